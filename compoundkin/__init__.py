@@ -1,0 +1,54 @@
+"""compoundkin: compound planar mechanisms taken apart into Assur groups and solved group by group.
+
+>>> import compoundkin as ck
+>>> crank = ck.Mechanism("Crank", ck.link("frame", A=(0, 0)), ck.link("crank", A=(0, 0), B=(2, 0)), ck.drive("crank"))
+>>> motion = ck.solve(crank, {"crank": ck.deg([0, 90])}, speed=3)
+>>> motion.points["B"].velocity.xy.round(12).tolist()
+[[0.0, 6.0], [-6.0, 0.0]]
+"""
+
+from compoundkin.checks import Check, Finding, verify
+from compoundkin.errors import (
+    CompoundkinError,
+    InvalidInput,
+    InvalidMechanism,
+    NotAssembled,
+    NotDetermined,
+    UnassembledPoses,
+    UnknownName,
+)
+from compoundkin.gaps import Gap, gaps
+from compoundkin.mechanism import Mechanism, deg, drawn, drive, expect, link, mode, polar
+from compoundkin.motion import Motion, solve
+from compoundkin.pairs import slide
+from compoundkin.structure import Structure, decompose
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Check",
+    "CompoundkinError",
+    "Finding",
+    "Gap",
+    "InvalidInput",
+    "InvalidMechanism",
+    "Mechanism",
+    "Motion",
+    "NotAssembled",
+    "NotDetermined",
+    "Structure",
+    "UnassembledPoses",
+    "UnknownName",
+    "decompose",
+    "deg",
+    "drawn",
+    "drive",
+    "expect",
+    "gaps",
+    "link",
+    "mode",
+    "polar",
+    "slide",
+    "solve",
+    "verify",
+]

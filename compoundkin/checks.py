@@ -1,0 +1,153 @@
+"""The independent verification of a motion: residuals from the pairs' own equations.
+
+Positions: what a pair holds must be zero. Velocities: the pair's Jacobian times the links' velocities must
+be zero. Accelerations: so must the second derivative of what it holds. Links: orientations must stay unit
+vectors in every derivative. Drivers: the driven coordinate must be the one asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import factorial
+
+import numpy as np
+
+from compoundkin.motion import Motion
+from compoundkin.pairs import Pair
+from compoundkin.series import Number
+
+# Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
+# over the groups of the solving order, and near a limit position by the inverse of the distance from it.
+TOLERANCE = 1e-9
+ORDERS = ("closure", "velocity", "acceleration", "jerk")
+# A pose slower than this part of the motion's fastest is judged by that: a mechanism at rest has no own scale.
+SLOWEST = 1e-6
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One check: its worst value relative to the mechanism's size and speed, the limit, and where it is worst.
+
+    `pose` is the index into the motion's shape; a value that is not a number does not pass.
+    """
+
+    name: str
+    value: float
+    limit: float
+    pair: str
+    pose: tuple[int, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is within its limit."""
+        return self.value <= self.limit
+
+
+@dataclass(frozen=True)
+class Check:
+    """All findings about a motion; `poses` of them were checked, `singular` had no rates to check."""
+
+    findings: tuple[Finding, ...]
+    poses: int
+    singular: int
+
+    @property
+    def passed(self) -> bool:
+        """Whether every finding passed, and there was something to check."""
+        return self.poses > 0 and all(finding.passed for finding in self.findings)
+
+
+def verify(motion: Motion) -> Check:
+    """Check every pair, link and driver of a motion in position and all its derivatives.
+
+    Poses that cannot be assembled are left out; at limit positions, where rates are infinite, only the
+    position is checked.
+
+    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.motion import solve
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> verify(solve(crank)).passed
+    True
+    """
+    with np.errstate(all="ignore"):
+        found = tuple(_worst(motion, name, k, part) for k in range(motion.order + 1) for name, part in _parts(motion, k))
+    closed = int(np.count_nonzero(motion.failed == 0))
+    return Check(found, closed, closed - int(np.count_nonzero(motion.regular)))
+
+
+def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
+    """The residuals of one order, by what is checked and by pair, link or driver."""
+    pairs = motion.tracker.plan.pairs
+    yield ORDERS[k], {name: _pair(motion, pair, k) for name, pair in pairs.items()}
+    yield f"rigid links, {ORDERS[k]}", {name: _rigid(motion, name, k) for name in motion.poses}
+    if motion.inputs.drives:
+        yield f"drivers, {ORDERS[k]}", {name: _driver(motion, name, k) for name in motion.inputs.drives}
+
+
+def _pair(motion: Motion, pair: Pair, k: int) -> Number:
+    ends = motion.inputs.ends[pair.name]
+    poses = (motion.poses[pair.members[0]], motion.poses[pair.members[1]])
+    if k == 1:
+        rates = [v for pose in poses for v in _twist(pose.z.derivative(1), pose.u)]
+        rows = pair.jacobian(ends, poses)[..., : pair.held, :]
+        return _largest([sum(rows[..., j, i] * rates[i] for i in range(6)) for j in range(pair.held)])
+    return _largest([series.derivative(k) for series in pair.closure(ends, poses)])
+
+
+def _twist(velocity: Number, u: object) -> tuple[Number, Number, Number]:
+    c0, c1 = u.derivative(0), u.derivative(1)  # type: ignore[attr-defined]
+    return velocity.real, velocity.imag, c0.real * c1.imag - c0.imag * c1.real
+
+
+def _rigid(motion: Motion, link: str, k: int) -> Number:
+    length = motion.poses[link].u.abs2().derivative(k)
+    return np.abs(length - (1.0 if k == 0 else 0.0)) * motion.size
+
+
+def _driver(motion: Motion, name: str, k: int) -> Number:
+    driven = motion.tracker.plan.driven[name]
+    asked = motion.inputs.series(motion.order)[name].derivative(k) * driven.pair.driven_by(driven.drive.link)
+    gap = motion.pairs[driven.pair.name].coordinate.derivative(k) - asked
+    if not driven.pair.free_is_angle:
+        return np.abs(gap)
+    return np.abs(np.angle(np.exp(1j * gap)) if k == 0 else gap) * motion.size
+
+
+def _largest(values: list[Number]) -> Number:
+    out = np.abs(values[0])
+    for value in values[1:]:
+        out = np.maximum(out, np.abs(value))
+    return out
+
+
+def _worst(motion: Motion, name: str, k: int, part: dict[str, Number]) -> Finding:
+    """The worst residual of one order over all pairs and poses."""
+    shape = (motion.inputs.designs, motion.inputs.poses)
+    counted = np.broadcast_to(motion.failed == 0, shape) if k == 0 else motion.regular
+    scale = _scale(motion, k, counted)
+    worst = Finding(name, 0.0, TOLERANCE, "", ())
+    for label, residual in part.items():
+        relative = np.where(counted, np.broadcast_to(residual / scale, shape), 0.0)
+        at = int(np.argmax(np.where(np.isnan(relative), np.inf, relative)))
+        value = float(relative.flat[at])
+        if not value <= worst.value:
+            pose = tuple(int(i) for i in np.unravel_index(at, motion.shape)) if motion.shape else ()
+            worst = Finding(name, value, TOLERANCE, label, pose)
+    return worst
+
+
+def _scale(motion: Motion, k: int, counted: Number) -> Number:
+    """The size of the mechanism, or of its fastest link's k-th derivative, at each pose."""
+    size = motion.size
+    if k == 0:
+        return size + max((float(np.nanmax(np.abs(p.z.c[0]), initial=0.0)) for p in motion.poses.values()), default=0.0)
+    largest: Number = np.zeros(counted.shape)
+    for pose in motion.poses.values():
+        for j in range(1, k + 1):
+            # products of lower derivatives enter the k-th one: a speed cubed is as large a term as a jerk
+            weight = factorial(k) * (np.abs(pose.u.derivative(j)) * size / factorial(j))
+            largest = np.maximum(largest, np.maximum(weight, np.abs(pose.z.derivative(j)) if j == k else 0.0))
+            largest = np.maximum(largest, size * np.abs(pose.u.derivative(1)) ** k)
+    fastest = float(np.max(largest, where=counted, initial=0.0))
+    return np.maximum(largest, SLOWEST * fastest) if fastest > 0 else np.ones(counted.shape)

@@ -1,0 +1,89 @@
+"""What can go wrong, as one small tree of exceptions that say where, what and how to mend it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing that is wrong: its place, what it is, what is known there, how to mend it.
+
+    >>> print(Problem("drives[0].link", "there is no link 'crnk'", "did you mean 'crank'?"))
+    drives[0].link: there is no link 'crnk'; did you mean 'crank'?
+    """
+
+    where: str
+    what: str
+    remedy: str = ""
+
+    def __str__(self) -> str:
+        text = f"{self.where}: {self.what}" if self.where else self.what
+        return f"{text}; {self.remedy}" if self.remedy else text
+
+
+class CompoundkinError(Exception):
+    """The root of every error compoundkin raises on purpose; `problems` lists all that was found.
+
+    `exit_code` is what the command line answers with.
+    """
+
+    exit_code = 2
+
+    def __init__(self, problems: Iterable[Problem] | Problem | str, heading: str = "") -> None:
+        if isinstance(problems, str):
+            problems = Problem("", problems)
+        if isinstance(problems, Problem):
+            problems = (problems,)
+        self.problems: tuple[Problem, ...] = tuple(problems)
+        self.heading = heading
+        super().__init__(self._text())
+
+    def _text(self) -> str:
+        if len(self.problems) == 1 and not self.heading:
+            return str(self.problems[0])
+        heading = self.heading or f"{len(self.problems)} problems"
+        return "\n".join([f"{heading}:", *(f"  {problem}" for problem in self.problems)])
+
+
+class InvalidMechanism(CompoundkinError, ValueError):
+    """A mechanism or a mechanism file says something that cannot be meant."""
+
+
+class InvalidInput(CompoundkinError, ValueError):
+    """A call was given values that do not fit the mechanism."""
+
+
+class UnknownName(CompoundkinError, LookupError):
+    """A name that the mechanism, its motion or the catalog does not have."""
+
+
+class NotDetermined(CompoundkinError):
+    """Mobility and drivers disagree, or a part of the mechanism is over- or under-constrained."""
+
+
+class NotAssembled(CompoundkinError):
+    """No pose, or not the pose asked for, can be assembled."""
+
+    exit_code = 3
+
+
+class UnassembledPoses(UserWarning):
+    """Some poses of a motion cannot be assembled; they are NaN, masked and explained."""
+
+
+def nearest(name: str, known: Sequence[str]) -> str:
+    """The remedy for an unknown name: the closest known one, or the list of what there is.
+
+    >>> nearest("crnk", ["crank", "rod"])
+    "did you mean 'crank'?"
+    >>> nearest("x", ["crank", "rod"])
+    'known: crank, rod'
+    """
+    import difflib
+
+    close = difflib.get_close_matches(name, known, n=1)
+    if close:
+        return f"did you mean {close[0]!r}?"
+    return f"known: {', '.join(known[:12])}{' ...' if len(known) > 12 else ''}" if known else "there is none"

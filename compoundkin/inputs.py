@@ -1,0 +1,209 @@
+"""What a solution is asked for, brought into one form: designs x poses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from compoundkin.errors import InvalidInput, Problem, nearest
+from compoundkin.mechanism import Drive, Mechanism
+from compoundkin.plan import Plan, rates
+from compoundkin.poses import End
+from compoundkin.series import Number, Series
+
+# A full turn in steps of five degrees: what a driver of a pin does when it is not told otherwise.
+FULL_TURN = np.deg2rad(np.arange(0.0, 361.0, 5.0))
+FULL_TURN.setflags(write=False)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """All numbers of a solution. Every entry is a number, or an array of shape (1 or designs, 1 or poses).
+
+    `ends` are the pairs' dimensions; `drives[name]` the value, speed, acceleration and jerk of a driver.
+    """
+
+    shape: tuple[int, ...]
+    ends: Mapping[str, tuple[End, End]]
+    drives: Mapping[str, tuple[Number, ...]]
+
+    @property
+    def designs(self) -> int:
+        """How many designs: the product of all axes but the last."""
+        return int(np.prod(self.shape[:-1], dtype=int))
+
+    @property
+    def poses(self) -> int:
+        """How many poses each design has: the length of the last axis."""
+        return self.shape[-1] if self.shape else 1
+
+    def cut(self, designs: slice, poses: slice) -> Inputs:
+        """A rectangle of designs and poses."""
+        return self._each(lambda v: _cut(v, designs, poses))
+
+    def at(self, s: Number) -> Inputs:
+        """All designs at places `s` (1-D) along the motion, fractional ones in between poses.
+
+        The drivers' speeds are then the slopes with respect to `s`.
+        """
+        return self._interpolated(s, np.floor(s))
+
+    def before(self, s: Number) -> Inputs:
+        """As `at`, but at a pose itself with the slopes of the way to it."""
+        return self._interpolated(s, np.ceil(s) - 1.0)
+
+    def _interpolated(self, s: Number, start: Number) -> Inputs:
+        i = np.clip(start.astype(int), 0, max(self.poses - 2, 0))
+        between = self._each(lambda v: _between(v, i, s - i))
+        slopes = {k: (between.drives[k][0], _slope(v[0], i)) for k, v in self.drives.items()}
+        return replace(between, drives=slopes)
+
+    def pick(self, designs: Number, s: Number) -> Inputs:
+        """One pose of each of the given designs, at its own place `s`: a column of poses."""
+        i = np.clip(np.floor(s).astype(int), 0, max(self.poses - 2, 0))
+        return self._each(lambda v: _picked(v, designs, i, s - i))
+
+    def driven(self, drives: Mapping[str, tuple[Number, ...]]) -> Inputs:
+        """The same dimensions with other driver values."""
+        return replace(self, drives=drives)
+
+    def series(self, order: int) -> dict[str, Series]:
+        """The drivers as series."""
+        return {name: rates(values, order) for name, values in self.drives.items()}
+
+    def _each(self, change: Any) -> Inputs:
+        ends = {name: (_map(a, change), _map(b, change)) for name, (a, b) in self.ends.items()}
+        return replace(self, ends=ends, drives={k: tuple(change(v) for v in vs) for k, vs in self.drives.items()})
+
+
+def inputs(
+    plan: Plan,
+    values: Mapping[str, Any] | None,
+    speed: Any,
+    acceleration: Any,
+    jerk: Any,
+) -> Inputs:
+    """The inputs of a solution; raises InvalidInput for unknown drivers or shapes that do not fit."""
+    mechanism = plan.structure.mechanism
+    given = {
+        drive.name: _driver(plan, drive, values, speed, acceleration, jerk, len(mechanism.drives) == 1)
+        for drive in mechanism.drives
+    }
+    _only_known(mechanism, {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk})
+    shape = _shape(plan, given)
+    return Inputs(
+        shape,
+        {k: (_map(a, fit(shape)), _map(b, fit(shape))) for k, (a, b) in plan.ends.items()},
+        {k: tuple(fit(shape)(v) for v in vs) for k, vs in given.items()},
+    )
+
+
+def _driver(
+    plan: Plan, drive: Drive, values: Mapping[str, Any] | None, speed: Any, acceleration: Any, jerk: Any, only: bool
+) -> tuple[Number, ...]:
+    value = (values or {}).get(drive.name, drive.values)
+    if value is None:
+        pair = plan.driven[drive.name].pair
+        if not pair.free_is_angle:
+            raise InvalidInput(Problem(f"drives.{drive.name}", "it has no values", f"solve(..., {{{drive.name!r}: lengths}})"))
+        value = FULL_TURN
+    rest = [_rate(drive, what, default, only) for what, default in
+            ((speed, drive.speed), (acceleration, drive.acceleration), (jerk, drive.jerk))]  # fmt: skip
+    return tuple(_number(f"{drive.name}", v) for v in (value, *rest))
+
+
+def _rate(drive: Drive, what: Any, default: Number, only: bool) -> Any:
+    if what is None:
+        return default
+    if isinstance(what, Mapping):
+        return what.get(drive.name, default)
+    if only:
+        return what
+    raise InvalidInput(Problem("speed", "there are several drivers", f"give one for each by name: {{{drive.name!r}: ...}}"))
+
+
+def _number(where: str, value: Any) -> Number:
+    try:
+        out = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInput(Problem(where, f"{value!r} is not a number or an array of numbers")) from None
+    if out.size == 0 or not np.isfinite(out).all():
+        raise InvalidInput(Problem(where, "the value is empty or not finite"))
+    return float(out) if out.ndim == 0 else out
+
+
+def _only_known(mechanism: Mechanism, given: Mapping[str, Any]) -> None:
+    names = [d.name for d in mechanism.drives]
+    wrong = [
+        Problem(f"{what}.{name}", f"there is no driver {name!r}", nearest(name, names))
+        for what, table in given.items()
+        if isinstance(table, Mapping)
+        for name in table
+        if name not in names
+    ]
+    if wrong:
+        raise InvalidInput(wrong)
+
+
+def _shape(plan: Plan, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, ...]:
+    found: tuple[int, ...] = ()
+    named = [(f"drives.{k}", v) for k, vs in drives.items() for v in vs]
+    named += [(name, v) for name, ends in plan.ends.items() for end in ends for v in end if v is not None]
+    for where, value in named:
+        try:
+            found = np.broadcast_shapes(found, np.shape(value))
+        except ValueError:
+            raise InvalidInput(
+                Problem(where, f"shape {np.shape(value)} does not broadcast with {found}", "the last axis is the motion")
+            ) from None
+    return found
+
+
+def _map(end: End, change: Any) -> End:
+    return End(change(end.point), None if end.direction is None else change(end.direction))
+
+
+def fit(shape: tuple[int, ...]) -> Callable[[Number], Number]:
+    """Brings a value into the form (1 or designs, 1 or poses); numbers stay numbers."""
+    designs = int(np.prod(shape[:-1], dtype=int))
+
+    def fitted(value: Number) -> Number:
+        if np.ndim(value) == 0:
+            return value if isinstance(value, complex | float) else value.item()
+        array = np.asarray(value)
+        last = array.shape[-1]
+        if array.size == last:
+            return array.reshape(1, last)
+        return np.broadcast_to(array, (*shape[:-1], last)).reshape(designs, last)
+
+    return fitted
+
+
+def _cut(value: Number, designs: slice, poses: slice) -> Number:
+    if np.ndim(value) == 0:
+        return value
+    return value[designs if value.shape[0] > 1 else slice(None), poses if value.shape[1] > 1 else slice(None)]
+
+
+def _between(value: Number, i: Number, weight: Number) -> Number:
+    if np.ndim(value) == 0 or value.shape[1] == 1:
+        return value
+    return value[:, i] * (1.0 - weight) + value[:, i + 1] * weight
+
+
+def _picked(value: Number, designs: Number, i: Number, weight: Number) -> Number:
+    if np.ndim(value) == 0:
+        return value
+    rows = designs if value.shape[0] > 1 else np.zeros_like(designs)
+    if value.shape[1] == 1:
+        return value[rows, :1]
+    return (value[rows, i] * (1.0 - weight) + value[rows, i + 1] * weight)[:, None]
+
+
+def _slope(value: Number, i: Number) -> Number:
+    if np.ndim(value) == 0 or value.shape[1] == 1:
+        return 0.0
+    return value[:, i + 1] - value[:, i]

@@ -1,0 +1,425 @@
+"""Solving: from a mechanism and driver values to a motion with every derivative asked for."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses, UnknownName, nearest
+from compoundkin.inputs import Inputs, fit, inputs
+from compoundkin.mechanism import FRAME, Mechanism, vector
+from compoundkin.plan import Plan, blocks
+from compoundkin.poses import FIXED, Pose
+from compoundkin.series import Number, Series
+from compoundkin.structure import decompose
+from compoundkin.structure.model import Structure
+from compoundkin.tracking import Tracker, read_hint
+
+# Poses a block: temporaries of a few dozen complex arrays of this length stay in a second-level cache.
+BLOCK = 4096
+HIGHEST_ORDER = 3
+
+
+class Vectors(np.ndarray[Any, np.dtype[np.complex128]]):
+    """A complex array of planar vectors; `xy` splits it.
+
+    >>> np.array([1 + 2j]).view(Vectors).xy.tolist()
+    [[1.0, 2.0]]
+    """
+
+    @property
+    def xy(self) -> Number:
+        """The components, in a last axis of length 2."""
+        plain = np.asarray(self)
+        return np.stack([plain.real, plain.imag], axis=-1)
+
+
+class PointMotion:
+    """The motion of a point: complex arrays of the motion's shape; `.xy` of each gives (..., 2)."""
+
+    def __init__(self, motion: Motion, derivative: Any) -> None:
+        self._motion = motion
+        self._derivative = derivative
+
+    def derivative(self, k: int) -> Vectors:
+        """The k-th time derivative of the position; raises InvalidInput beyond the order solved for."""
+        self._motion._has(k)
+        return self._motion._shaped(self._derivative(k)).astype(complex, copy=False).view(Vectors)
+
+    @property
+    def position(self) -> Vectors:
+        """Where it is, in the user's length unit."""
+        return self.derivative(0)
+
+    @property
+    def velocity(self) -> Vectors:
+        """Its velocity, length/s."""
+        return self.derivative(1)
+
+    @property
+    def acceleration(self) -> Vectors:
+        """Its acceleration, length/s^2."""
+        return self.derivative(2)
+
+    @property
+    def jerk(self) -> Vectors:
+        """Its jerk, length/s^3."""
+        return self.derivative(3)
+
+    @property
+    def x(self) -> Number:
+        """The first coordinate of its position."""
+        return np.asarray(self.position.real)
+
+    @property
+    def y(self) -> Number:
+        """The second coordinate of its position."""
+        return np.asarray(self.position.imag)
+
+    @property
+    def speed(self) -> Number:
+        """The length of its velocity."""
+        return np.abs(np.asarray(self.velocity))
+
+
+class LinkMotion:
+    """The motion of a link: its angle from the frame's x axis, and that of any of its points."""
+
+    def __init__(self, motion: Motion, pose: Pose) -> None:
+        self._motion = motion
+        self._pose = pose
+
+    @cached_property
+    def _angle(self) -> Series:
+        return self._pose.u.angle()
+
+    def _rate(self, k: int) -> Number:
+        self._motion._has(k)
+        return self._motion._shaped(self._angle.derivative(k))
+
+    @cached_property
+    def angle(self) -> Number:
+        """The angle of its x axis, radians, unwrapped along the motion."""
+        return unwrapped(self._rate(0))
+
+    @property
+    def angular_velocity(self) -> Number:
+        """Its angular velocity, rad/s."""
+        return self._rate(1)
+
+    @property
+    def angular_acceleration(self) -> Number:
+        """Its angular acceleration, rad/s^2."""
+        return self._rate(2)
+
+    @property
+    def angular_jerk(self) -> Number:
+        """Its angular jerk, rad/s^3."""
+        return self._rate(3)
+
+    @property
+    def origin(self) -> PointMotion:
+        """The motion of the origin of its frame."""
+        return PointMotion(self._motion, self._pose.z.derivative)
+
+    def at(self, point: Any) -> PointMotion:
+        """The motion of any point given in its frame, complex or (x, y)."""
+        p = vector("point", point)
+        return PointMotion(self._motion, lambda k: self._pose.z.derivative(k) + self._pose.u.derivative(k) * p)
+
+
+class PairMotion:
+    """The free relative coordinate of a pair: an angle (radians, unwrapped) or a displacement, and its rates."""
+
+    def __init__(self, motion: Motion, coordinate: Series, is_angle: bool) -> None:
+        self._motion = motion
+        self.coordinate = coordinate
+        self.is_angle = is_angle
+
+    def derivative(self, k: int) -> Number:
+        """The k-th time derivative; raises InvalidInput beyond the order solved for."""
+        self._motion._has(k)
+        value = self._motion._shaped(self.coordinate.derivative(k))
+        return unwrapped(value) if k == 0 and self.is_angle else value
+
+    @property
+    def value(self) -> Number:
+        """The relative angle or displacement."""
+        return self.derivative(0)
+
+    @property
+    def rate(self) -> Number:
+        """Its first time derivative."""
+        return self.derivative(1)
+
+    @property
+    def second(self) -> Number:
+        """Its second time derivative."""
+        return self.derivative(2)
+
+    @property
+    def third(self) -> Number:
+        """Its third time derivative."""
+        return self.derivative(3)
+
+
+class _Table(Mapping[str, Any]):
+    """Entries made when they are asked for; an unknown name raises UnknownName with the nearest known."""
+
+    def __init__(self, kind: str, names: tuple[str, ...], make: Any) -> None:
+        self._kind, self._names, self._make = kind, names, make
+        self._made: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._made:
+            if name not in self._names:
+                raise UnknownName(Problem(str(name), f"there is no such {self._kind}", nearest(str(name), self._names)))
+            self._made[name] = self._make(name)
+        return self._made[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def __iter__(self) -> Any:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A mechanism solved: every link's pose with all derivatives, over designs and poses.
+
+    `shape` is the broadcast shape of dimensions and driver values, the last axis the motion. Poses that
+    cannot be assembled are NaN, False in `assembled`, and explained by `compoundkin.gaps`.
+    """
+
+    structure: Structure
+    order: int
+    inputs: Inputs
+    poses: Mapping[str, Pose]
+    failed: Number  # shape (designs, poses): index of the first group that does not close plus one, or 0
+    tracker: Tracker
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism that was solved."""
+        return self.structure.mechanism
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of every array of the motion."""
+        return self.inputs.shape
+
+    @cached_property
+    def assembled(self) -> Number:
+        """Which poses are assembled, a bool array of the motion's shape."""
+        return self._shaped(self.failed == 0)
+
+    @cached_property
+    def regular(self) -> Number:
+        """Which poses have finite rates, (designs, poses): the assembled ones but for limit positions."""
+        good = np.array(self.failed == 0)
+        for pose in self.poses.values():
+            for c in (*pose.z.c[1:], *pose.u.c[1:]):
+                good = good & np.isfinite(c)
+        return good
+
+    @property
+    def size(self) -> float:
+        """The mechanism's length scale."""
+        return self._plan.size
+
+    @cached_property
+    def points(self) -> Mapping[str, PointMotion]:
+        """The motion of every point by its letter."""
+        return _Table("point", tuple(self.mechanism.carriers), self._point)
+
+    @cached_property
+    def links(self) -> Mapping[str, LinkMotion]:
+        """The motion of every link by its name."""
+        return _Table("link", tuple(self.mechanism.links), lambda name: LinkMotion(self, self.poses[name]))
+
+    @cached_property
+    def pairs(self) -> Mapping[str, PairMotion]:
+        """The relative motion in every pair by its name."""
+        return _Table("pair", tuple(self._plan.pairs), self._pair)
+
+    @cached_property
+    def drives(self) -> Mapping[str, PairMotion]:
+        """The prescribed coordinate of every driver by its name."""
+        return _Table("driver", tuple(self.inputs.drives), self._drive)
+
+    @property
+    def _plan(self) -> Plan:
+        return self.tracker.plan
+
+    def _point(self, name: str) -> PointMotion:
+        link = self.mechanism.carriers[name][0]
+        return PointMotion(self, self._derivative(link, name))
+
+    def _derivative(self, link: str, name: str) -> Any:
+        pose = self.poses[link]
+        p = fit(self.shape)(self.mechanism.geometry.points[link][name])
+        return lambda k: pose.z.derivative(k) + pose.u.derivative(k) * p
+
+    def _pair(self, name: str) -> PairMotion:
+        pair = self._plan.pairs[name]
+        ends = self.inputs.ends[name]
+        coordinate = pair.coordinate(ends, (self.poses[pair.members[0]], self.poses[pair.members[1]]))
+        return PairMotion(self, coordinate, pair.free_is_angle)
+
+    def _drive(self, name: str) -> PairMotion:
+        is_angle = self._plan.driven[name].pair.free_is_angle
+        return PairMotion(self, self.inputs.series(self.order)[name], is_angle)
+
+    def _has(self, k: int) -> None:
+        if k > self.order:
+            what = ("position", "velocity", "acceleration", "jerk")[k]
+            raise InvalidInput(Problem(what, f"the motion was solved to order {self.order}", f"solve(..., order={k})"))
+
+    def _shaped(self, value: Number) -> Number:
+        """A value of the form (1 or designs, 1 or poses) in the motion's shape."""
+        full = np.broadcast_to(value, (self.inputs.designs, self.inputs.poses))
+        return full.reshape(self.shape)
+
+
+def unwrapped(angle: Number) -> Number:
+    """An angle made continuous along the last axis, where it is known; leaps over unassembled poses included.
+
+    >>> unwrapped(np.array([3.0, np.nan, -3.0])).round(3).tolist()
+    [3.0, nan, 3.283]
+    """
+    if np.ndim(angle) == 0 or np.shape(angle)[-1] < 2:
+        return angle
+    if not np.isnan(angle).any():
+        return np.unwrap(angle)
+    rows = np.array(angle).reshape(-1, np.shape(angle)[-1])
+    for row in rows:
+        known = ~np.isnan(row)
+        row[known] = np.unwrap(row[known])
+    return rows.reshape(np.shape(angle))
+
+
+def solve(
+    mechanism: Mechanism | Structure,
+    values: Mapping[str, Any] | None = None,
+    *,
+    speed: Any = None,
+    acceleration: Any = None,
+    jerk: Any = None,
+    order: int = 2,
+    modes: Mapping[str, int] | None = None,
+    hint: Mapping[str, Any] | None = None,
+) -> Motion:
+    """Solve a mechanism group by group, for position and all derivatives up to `order` (0 to 3).
+
+    `values` gives each driver's coordinate (radians or lengths; arrays, the last axis the motion); `speed`,
+    `acceleration`, `jerk` its rates, a number for a single driver or a mapping by name. What is not given
+    comes from the mechanism's drives; a driver of a pin without values makes a full turn.
+
+    The assembly mode of each group is that of `modes` (a link of the group: +1 or -1), else the one nearest
+    to `hint` (points near their places at the first pose), else nearest to the mechanism's drawing, else +1.
+
+    Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
+    NotAssembled where a group has no pose at all; warns UnassembledPoses where some poses do not close.
+
+    >>> from compoundkin.mechanism import drive, link
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> solve(crank, {"crank": [0.0, np.pi / 2]}, speed=3.0).points["B"].velocity.xy.round(12).tolist()
+    [[0.0, 6.0], [-6.0, 0.0]]
+    """
+    if isinstance(order, bool) or order not in range(HIGHEST_ORDER + 1):
+        raise InvalidInput(Problem("order", f"{order!r} is not an order", "0 position, 1 velocity, 2 acceleration, 3 jerk"))
+    plan = _plan_of(mechanism)
+    with np.errstate(all="ignore"):
+        given = inputs(plan, values, speed, acceleration, jerk)
+        tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint))
+        motion = _run(plan, given, tracker, order)
+    missing = int(np.count_nonzero(motion.failed))
+    if missing:
+        text = f"{missing} of {motion.failed.size} poses cannot be assembled; Motion.assembled masks them, gaps(motion) explains them"
+        warnings.warn(text, UnassembledPoses, stacklevel=2)
+    return motion
+
+
+def _plan_of(mechanism: Mechanism | Structure) -> Plan:
+    """The plan of a mechanism, made once and kept with it."""
+    owner = mechanism.mechanism if isinstance(mechanism, Structure) else mechanism
+    plan: Plan | None = owner.__dict__.get("_plan")
+    if plan is None:
+        structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
+        if structure.faults:
+            problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
+            raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved")
+        plan = owner.__dict__["_plan"] = Plan(structure)
+    return plan
+
+
+def _signs(plan: Plan, modes: Mapping[str, int] | None) -> dict[str, int]:
+    mechanism = plan.structure.mechanism
+    signs = {link: mode.sign for mode in mechanism.modes for link in mode.links}
+    for name, sign in (modes or {}).items():
+        mechanism.link(name)
+        if sign not in (1, -1):
+            raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
+        signs[name] = sign
+    return signs
+
+
+def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> Motion:
+    """Solve block by block and gather."""
+    designs, poses = given.designs, given.poses
+    parts = list(blocks(designs, poses, BLOCK))
+    if len(parts) == 1:
+        run = tracker.run(given, order, *_places(slice(0, designs), slice(0, poses)))
+        failed = np.broadcast_to(run.failed, (designs, poses))
+        return Motion(plan.structure, order, given, dict(run.world), failed, tracker)
+    store = _Store(designs, poses, order)
+    for d, m in parts:
+        run = tracker.run(given.cut(d, m), order, *_places(d, m))
+        store.take(run.world, run.failed, d, m)
+    return Motion(plan.structure, order, given, store.poses(), store.failed, tracker)
+
+
+def _places(d: slice, m: slice) -> tuple[Number, Number]:
+    """The places along the motion (a row) and the design indices (a column) of a block."""
+    return np.arange(m.start, m.stop, dtype=float)[None], np.arange(d.start, d.stop)[:, None]
+
+
+class _Store:
+    """Where the blocks' results are gathered: one array for each series that changes."""
+
+    def __init__(self, designs: int, poses: int, order: int) -> None:
+        self.shape = (order + 1, designs, poses)
+        self.failed = np.zeros((designs, poses), dtype=np.int32)
+        self.arrays: dict[tuple[str, str], Number] = {}
+        self.fixed: dict[tuple[str, str], Series] = {}
+
+    def take(self, world: Mapping[str, Pose], failed: Number, d: slice, m: slice) -> None:
+        """Keep a block."""
+        self.failed[d, m] = failed
+        for link, pose in world.items():
+            for what, series in (("z", pose.z), ("u", pose.u)):
+                self._keep((link, what), series, d, m)
+
+    def _keep(self, key: tuple[str, str], series: Series, d: slice, m: slice) -> None:
+        if series.order == 0 and np.ndim(series.c[0]) == 0:
+            self.fixed[key] = series
+            return
+        if key not in self.arrays:
+            self.arrays[key] = np.zeros(self.shape, dtype=complex)
+        for k, c in enumerate(series.c):
+            self.arrays[key][k, d, m] = c
+
+    def poses(self) -> dict[str, Pose]:
+        """The links' poses over all blocks."""
+        found = {**{k: Series(tuple(a)) for k, a in self.arrays.items()}, **self.fixed}
+        links = dict.fromkeys(link for link, _ in found)
+        return {link: FIXED if link == FRAME else Pose(found[link, "z"], found[link, "u"]) for link in links}

@@ -1,0 +1,84 @@
+"""The revolute pair: two links pinned at a point that both carry under the same letter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.errors import Problem
+from compoundkin.geometry import Geometry
+from compoundkin.pairs.contract import Pair, table
+from compoundkin.poses import End, Pose
+from compoundkin.series import Number, Series, constant
+
+
+@dataclass(frozen=True)
+class Revolute(Pair):
+    """A pin at the letter `at` between the links `first` and `second`.
+
+    Held: the distance in x and in y between the two sides of the pin. Free: the angle from first to second.
+    """
+
+    name: str
+    at: str
+    first: str
+    second: str
+
+    code: ClassVar[str] = "R"
+    title: ClassVar[str] = "revolute pair"
+    held: ClassVar[int] = 2
+    free: ClassVar[tuple[str, ...]] = ("angle",)
+    free_is_angle: ClassVar[bool] = True
+
+    @property
+    def members(self) -> tuple[str, str]:
+        """The two links."""
+        return self.first, self.second
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The letter of the pin."""
+        return (self.at,)
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Nothing can be wrong: a pin exists only where two links share a letter."""
+        return iter(())
+
+    def ends(self, geometry: Geometry) -> tuple[End, End]:
+        """The pin on each link."""
+        return End(geometry.points[self.first][self.at]), End(geometry.points[self.second][self.at])
+
+    def closure(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> tuple[Series, ...]:
+        """Gap in x, gap in y."""
+        gap = poses[1].at(ends[1].point) - poses[0].at(ends[0].point)
+        return gap.real, gap.imag
+
+    def coordinate(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Series:
+        """The angle from the first link to the second."""
+        return (poses[1].u * poses[0].u.conj()).angle()
+
+    def jacobian(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Number:
+        """Rows of gap x, gap y and angle."""
+        arm = [(pose.u * end.point).c[0] for pose, end in zip(poses, ends, strict=True)]
+        return table(
+            (-1.0, 0.0, arm[0].imag, 1.0, 0.0, -arm[1].imag),
+            (0.0, -1.0, -arm[0].real, 0.0, 1.0, arm[1].real),
+            (0.0, 0.0, -1.0, 0.0, 0.0, 1.0),
+        )
+
+    def placed(self, ends: tuple[End, End], free: Series) -> Pose:
+        """The second link turned about the pin by the given angle."""
+        u = free.turn()
+        return Pose(Pose(constant(ends[0].point), u).at(-ends[1].point), u)
+
+    def generic(self, rng: np.random.Generator) -> tuple[End, End]:
+        """A pin at a random place."""
+        pin = complex(*rng.standard_normal(2))
+        return End(pin), End(pin)
+
+    def driven_by(self, link: str) -> int:
+        """The angle of the driven link from the other one."""
+        return 1 if link == self.second else -1

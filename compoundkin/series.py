@@ -1,0 +1,219 @@
+"""Arithmetic on truncated Taylor series in time: one position formula gives every derivative.
+
+A `Series` holds coefficients ``c[0..order]`` of ``x(t) = c[0] + c[1] t + c[2] t**2 + ...``, each a
+number or an array, so that the k-th time derivative is ``k! c[k]``. A series of one coefficient is a
+constant of any order; this is what keeps link lengths and the frame free of cost. Otherwise two series
+that meet have the same length.
+
+Source: A. Griewank and A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, section 13.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import factorial
+from typing import Any, TypeAlias
+
+import numpy as np
+
+# A number or an array of numbers; NumPy's stubs cannot say "the same array library as the operand".
+Number: TypeAlias = Any
+
+
+class Series:
+    """A truncated Taylor series; `c` is the tuple of its coefficients.
+
+    >>> t = Series((2.0, 1.0, 0.0))          # 2 + t
+    >>> (t * t).c
+    (4.0, 4.0, 1.0)
+    >>> (1.0 / t).c
+    (0.5, -0.25, 0.125)
+    """
+
+    __slots__ = ("c",)
+    # NumPy arrays on the left hand must leave the operation to us.
+    __array_ufunc__ = None
+
+    def __init__(self, c: tuple[Number, ...]) -> None:
+        self.c = c
+
+    @property
+    def order(self) -> int:
+        """The order of the highest derivative held; 0 for a constant."""
+        return len(self.c) - 1
+
+    def __add__(self, other: Series | Number) -> Series:
+        a, b = self.c, _coefficients(other)
+        if len(a) == len(b):
+            return Series(tuple([x + y for x, y in zip(a, b, strict=True)]))
+        if len(b) == 1:
+            return Series((a[0] + b[0], *a[1:]))
+        return Series((a[0] + b[0], *b[1:]))
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Series:
+        return Series(tuple([-x for x in self.c]))
+
+    def __sub__(self, other: Series | Number) -> Series:
+        a, b = self.c, _coefficients(other)
+        if len(a) == len(b):
+            return Series(tuple([x - y for x, y in zip(a, b, strict=True)]))
+        if len(b) == 1:
+            return Series((a[0] - b[0], *a[1:]))
+        return Series((a[0] - b[0], *[-y for y in b[1:]]))
+
+    def __rsub__(self, other: Number) -> Series:
+        return -self + other
+
+    def __mul__(self, other: Series | Number) -> Series:
+        return self._bilinear(other, _product)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Series | Number) -> Series:
+        b = _coefficients(other)
+        inverse = 1.0 / b[0]
+        if len(b) == 1:
+            return Series(tuple([x * inverse for x in self.c]))
+        a = self.c
+        q = [a[0] * inverse]
+        for k in range(1, len(b)):
+            carried = b[1] * q[k - 1]
+            for j in range(2, k + 1):
+                carried = carried + b[j] * q[k - j]
+            q.append((a[k] - carried) * inverse if k < len(a) else -carried * inverse)
+        return Series(tuple(q))
+
+    def __rtruediv__(self, other: Number) -> Series:
+        return Series((other,)) / self
+
+    def conj(self) -> Series:
+        """The complex conjugate."""
+        return Series(tuple([np.conjugate(x) for x in self.c]))
+
+    @property
+    def real(self) -> Series:
+        """The real part."""
+        return Series(tuple([x.real for x in self.c]))
+
+    @property
+    def imag(self) -> Series:
+        """The imaginary part."""
+        return Series(tuple([x.imag for x in self.c]))
+
+    def dot(self, other: Series | Number) -> Series:
+        """The scalar product of two planar vectors, ``Re(conj(a) b)``."""
+        return self._bilinear(other, _dot)
+
+    def cross(self, other: Series | Number) -> Series:
+        """The third component of the vector product of two planar vectors, ``Im(conj(a) b)``."""
+        return self._bilinear(other, _cross)
+
+    def abs2(self) -> Series:
+        """The squared length of a planar vector."""
+        a = self.c
+        out = []
+        for k in range(len(a)):
+            pairs = [_dot(a[j], a[k - j]) for j in range((k + 1) // 2)]
+            total = sum(pairs[1:], pairs[0]) * 2.0 if pairs else 0.0
+            out.append(total + _dot(a[k // 2], a[k // 2]) if k % 2 == 0 else total)
+        return Series(tuple(out))
+
+    def sqrt(self) -> Series:
+        """The positive square root; NaN where the leading coefficient is negative."""
+        a = self.c
+        root = [np.sqrt(a[0])]
+        if len(a) > 1:
+            half = 0.5 / root[0]
+            for k in range(1, len(a)):
+                rest = a[k]
+                for j in range(1, k):
+                    rest = rest - root[j] * root[k - j]
+                root.append(rest * half)
+        return Series(tuple(root))
+
+    def unit(self) -> Series:
+        """The unit vector of a planar vector."""
+        return self / self.abs2().sqrt()
+
+    def turn(self) -> Series:
+        """The unit vector ``exp(i a)`` at the angle this (real) series gives.
+
+        >>> Series((0.0, 2.0, 0.0)).turn().c
+        ((1+0j), 2j, (-2+0j))
+        """
+        a = self.c
+        out = [np.cos(a[0]) + 1j * np.sin(a[0])]
+        for k in range(1, len(a)):
+            total = a[1] * out[k - 1]
+            for j in range(2, k + 1):
+                total = total + (j * a[j]) * out[k - j]
+            out.append((1j / k) * total)
+        return Series(tuple([complex(x) if np.ndim(x) == 0 else x for x in out]))
+
+    def angle(self) -> Series:
+        """The angle of a unit vector, its leading coefficient between -pi and pi."""
+        u = self.c
+        out = [np.angle(u[0])]
+        for k in range(1, len(u)):
+            # theta' = Im(conj(u) u'), coefficient by coefficient
+            total = k * _cross(u[0], u[k])
+            for j in range(1, k):
+                total = total + j * _cross(u[k - j], u[j])
+            out.append(total / k)
+        return Series(tuple(out))
+
+    def derivative(self, k: int) -> Number:
+        """The k-th time derivative, an array; zero beyond the order of a constant."""
+        if k < len(self.c):
+            return self.c[k] * factorial(k) if k > 1 else self.c[k]
+        return np.zeros_like(self.c[0])
+
+    def _bilinear(self, other: Series | Number, product: Callable[[Number, Number], Number]) -> Series:
+        a, b = self.c, _coefficients(other)
+        if len(b) == 1:
+            return Series(tuple([product(x, b[0]) for x in a]))
+        if len(a) == 1:
+            return Series(tuple([product(a[0], y) for y in b]))
+        out = []
+        for k in range(len(a)):
+            total = product(a[0], b[k])
+            for j in range(1, k + 1):
+                total = total + product(a[j], b[k - j])
+            out.append(total)
+        return Series(tuple(out))
+
+    def __repr__(self) -> str:
+        return f"Series({self.c!r})"
+
+
+def constant(value: Number) -> Series:
+    """The series of a value that does not change."""
+    return Series((value,))
+
+
+def as_series(value: Series | Number) -> Series:
+    """A number as a constant; a series as it is."""
+    return value if isinstance(value, Series) else Series((value,))
+
+
+def planar(x: Series, y: Series) -> Series:
+    """The planar vector with the (real) components x and y."""
+    return x + y * 1j
+
+
+def _coefficients(value: Series | Number) -> tuple[Number, ...]:
+    return value.c if isinstance(value, Series) else (value,)
+
+
+def _product(a: Number, b: Number) -> Number:
+    return a * b
+
+
+def _dot(a: Number, b: Number) -> Number:
+    return a.real * b.real + a.imag * b.imag
+
+
+def _cross(a: Number, b: Number) -> Number:
+    return a.real * b.imag - a.imag * b.real

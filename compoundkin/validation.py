@@ -1,0 +1,235 @@
+"""What can be wrong with a mechanism as written; every problem is found, none hides another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compoundkin.errors import Problem, nearest
+
+if TYPE_CHECKING:
+    from compoundkin.mechanism import Drive, Mechanism
+    from compoundkin.pairs import Pair
+
+# Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
+ZERO_LENGTH = 1e-12
+
+
+def problems_of(mechanism: Mechanism) -> Iterator[Problem]:
+    """All problems, in the order of the words."""
+    yield from _names(mechanism)
+    yield from _points(mechanism)
+    yield from _pairs(mechanism)
+    yield from _joined(mechanism)
+    yield from _drives(mechanism)
+    yield from _modes(mechanism)
+    yield from _expectations(mechanism)
+    yield from _shapes(mechanism)
+
+
+def _names(mechanism: Mechanism) -> Iterator[Problem]:
+    from compoundkin.mechanism import FRAME
+
+    if FRAME not in mechanism.links:
+        yield Problem("links", f"no link is called {FRAME!r}", f"call the fixed link {FRAME!r}; {nearest(FRAME, list(mechanism.links))}")
+    seen: set[tuple[str, str]] = set()
+    for where, kind, name in _named(mechanism):
+        if not _is_name(name):
+            yield Problem(where, f"{name!r} is not a name", "use printable text without dots, commas or outer blanks")
+        if (kind, name) in seen:
+            yield Problem(where, f"the name {name!r} is used twice", "names are unique")
+        seen.add((kind, name))
+    for letter in mechanism.carriers:
+        if not _is_name(letter):
+            yield Problem(f"points.{letter}", f"{letter!r} is not a name", "use printable text without dots, commas or outer blanks")
+        if letter in mechanism.links:
+            yield Problem(f"links.{letter}", "a link and a point have the same name", "rename one of them")
+
+
+def _named(mechanism: Mechanism) -> Iterator[tuple[str, str, str]]:
+    """The place, sort and name of everything that has one; pairs of all kinds share their names."""
+    from compoundkin.mechanism import Link
+
+    for item in mechanism.items:
+        if isinstance(item, Link):
+            yield f"links.{item.name}", "link", item.name
+    for where, pair in _placed(mechanism.written_pairs):
+        yield f"{where}.name", "pair", pair.name
+    for index, drive in enumerate(mechanism.drives):
+        yield f"drives[{index}].name", "drive", drive.name
+
+
+def _is_name(name: str) -> bool:
+    return bool(name) and name == name.strip() and name.isprintable() and not set(name) & set(".,")
+
+
+def _points(mechanism: Mechanism) -> Iterator[Problem]:
+    size = _size(mechanism)
+    for name, link in mechanism.links.items():
+        if not link.points:
+            yield Problem(f"links.{name}.points", "a link needs at least one point")
+        for letter, p in link.points.items():
+            where = f"links.{name}.points.{letter}"
+            if p is None and letter not in mechanism.sketch:
+                yield Problem(where, "this point is neither given nor drawn", _undrawn(letter, mechanism.sketch))
+            elif p is not None and not _is_finite(p):
+                yield Problem(where, f"{p!r} is empty or not finite")
+        yield from _lengths(mechanism, name, size)
+    for letter, p in mechanism.sketch.items():
+        if letter not in mechanism.carriers:
+            yield Problem(f"drawn.{letter}", "no link carries this point", nearest(letter, list(mechanism.carriers)))
+        if not _is_finite(p):
+            yield Problem(f"drawn.{letter}", f"{p!r} is empty or not finite")
+
+
+def _is_finite(value: Any) -> bool:
+    return bool(np.size(value)) and bool(np.all(np.isfinite(value)))
+
+
+def _undrawn(letter: str, sketch: Mapping[str, Any]) -> str:
+    return f"add {letter} to the drawing" + (f"; {nearest(letter, list(sketch))}" if sketch else "")
+
+
+def _lengths(mechanism: Mechanism, name: str, size: float) -> Iterator[Problem]:
+    """Pinned points of one link that coincide: a link of no length between two pairs."""
+    link = mechanism.links[name]
+    place = {k: mechanism.sketch.get(k) if p is None else p for k, p in link.points.items()}
+    pinned = [(k, p) for k, p in place.items() if k in mechanism.pins and p is not None]
+    for i, (a, p) in enumerate(pinned):
+        for b, q in pinned[i + 1 :]:
+            if np.any(np.abs(p - q) <= ZERO_LENGTH * size):
+                yield Problem(f"links.{name}.points.{b}", f"{a} and {b} coincide: a link of zero length", "move one of them or give both one letter")
+
+
+def _size(mechanism: Mechanism) -> float:
+    values = [p for link in mechanism.links.values() for p in link.points.values() if p is not None]
+    values += list(mechanism.sketch.values())
+    finite = [np.abs(np.asarray(v))[np.isfinite(v)] for v in values]
+    return max((float(np.max(v, initial=0.0)) for v in finite), default=0.0)
+
+
+def _pairs(mechanism: Mechanism) -> Iterator[Problem]:
+    letters = {name: link.letters for name, link in mechanism.links.items()}
+    for where, pair in _placed(mechanism.written_pairs):
+        yield from pair.problems(letters, where)
+        for key in pair.keys:
+            value = getattr(pair, key.name, None)
+            if key.kind in ("length", "angle") and value is not None and not _is_finite(value):
+                yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite")
+        shared = [k for k, names in mechanism.pins.items() if set(pair.members) <= set(names)]
+        if shared and len(set(pair.members)) == 2:
+            yield Problem(where, f"{pair.members[1]!r} and {pair.members[0]!r} are also pinned at {shared[0]}, which blocks this pair",
+                          "give the two points different letters")  # fmt: skip
+
+
+def _placed(pairs: Iterable[Pair]) -> Iterator[tuple[str, Pair]]:
+    """Each written pair with its place in a file."""
+    count: dict[str, int] = {}
+    for pair in pairs:
+        index = count.get(pair.table, 0)
+        count[pair.table] = index + 1
+        yield f"{pair.table}[{index}]", pair
+
+
+def _joined(mechanism: Mechanism) -> Iterator[Problem]:
+    """Links that no pair joins to anything: most often a misspelt letter."""
+    paired = {name for names in mechanism.pins.values() for name in names}
+    paired |= {name for pair in mechanism.written_pairs for name in pair.members}
+    if len(mechanism.links) < 2:
+        return
+    for name, link in mechanism.links.items():
+        if name in paired or not link.points:
+            continue
+        others = [k for k, names in mechanism.carriers.items() if name not in names]
+        hints = [f"{k}: {nearest(k, others)}" for k in link.points if nearest(k, others).startswith("did")]
+        yield Problem(f"links.{name}", f"it is joined to nothing: no other link carries {', '.join(link.points)}",
+                      "; ".join(hints) or "share a letter with another link or write a slide")  # fmt: skip
+
+
+def _drives(mechanism: Mechanism) -> Iterator[Problem]:
+    driven: dict[tuple[str, frozenset[str]], str] = {}
+    for index, drive in enumerate(mechanism.drives):
+        where = f"drives[{index}]"
+        unknown = [(k, n) for k, n in (("link", drive.link), ("on", drive.on)) if n not in mechanism.links]
+        for key, name in unknown:
+            yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, list(mechanism.links)))
+        if not unknown:
+            choices = drivable(mechanism, drive)
+            yield from _driven_pair(drive, choices, where)
+            # a multiple pin may be driven once between each two of its links
+            place = choices[0] if choices else "", frozenset((drive.link, drive.on))
+            if len(choices) == 1 and place in driven:
+                yield Problem(where, f"the pair {choices[0]!r} is driven already by {driven[place]!r}", "leave one of them out")
+            if len(choices) == 1:
+                driven[place] = drive.name
+        for key in ("values", "speed", "acceleration", "jerk"):
+            value = getattr(drive, key)
+            if value is not None and not _is_finite(value):
+                yield Problem(f"{where}.{key}", "the value is empty or not finite")
+
+
+def drivable(mechanism: Mechanism, drive: Drive) -> list[str]:
+    """The names of the pairs between a drive's two links that it can mean."""
+    both = {drive.link, drive.on}
+    pins = [k for k, names in mechanism.pins.items() if both <= set(names) and len(both) == 2]
+    slides = [p.name for p in mechanism.written_pairs if set(p.members) == both]
+    return [name for name in [*pins, *slides] if drive.pair in ("", name)]
+
+
+def _driven_pair(drive: Drive, choices: list[str], where: str) -> Iterator[Problem]:
+    what = f"{drive.link!r} and {drive.on!r}"
+    if not choices:
+        named = f" called {drive.pair!r}" if drive.pair else ""
+        yield Problem(where, f"there is no pair{named} between {what} to drive", "drive a link against one it is paired with")
+    elif len(choices) > 1:
+        yield Problem(f"{where}.pair", f"{what} share several pairs", f"name one: {', '.join(choices)}")
+
+
+def _modes(mechanism: Mechanism) -> Iterator[Problem]:
+    for index, mode in enumerate(mechanism.modes):
+        for name in mode.links:
+            if name not in mechanism.links:
+                yield Problem(f"modes[{index}].links", f"there is no link {name!r}", nearest(name, list(mechanism.links)))
+
+
+def _expectations(mechanism: Mechanism) -> Iterator[Problem]:
+    """Published numbers that cannot be held against anything."""
+    drives = [drive.name for drive in mechanism.drives]
+    # a misspelt drive takes its name from the link; that problem is reported already
+    named = all(drive.link in mechanism.links for drive in mechanism.drives)
+    for index, expectation in enumerate(mechanism.expectations):
+        where = f"expected[{index}]"
+        for key, value in expectation.at:
+            driver, _, rate = key.partition(".")
+            if named and driver not in drives:
+                yield Problem(f"{where}.at.{key}", f"there is no driver {driver!r}", nearest(driver, drives))
+            if rate not in ("", "speed", "acceleration", "jerk"):
+                yield Problem(f"{where}.at.{key}", f"a driver has no {rate!r}", "known: speed, acceleration, jerk")
+            if not _is_finite(value):
+                yield Problem(f"{where}.at.{key}", f"{value!r} is not finite")
+        if not _is_finite(expectation.value):
+            yield Problem(f"{where}.value", f"{expectation.value!r} is not finite")
+        if not (_is_finite(expectation.tolerance) and expectation.tolerance >= 0):
+            yield Problem(f"{where}.tolerance", f"{expectation.tolerance!r} is not a tolerance", "give a number that is not negative")
+
+
+def _shapes(mechanism: Mechanism) -> Iterator[Problem]:
+    """Arrays that do not broadcast together."""
+    shapes: list[tuple[str, tuple[int, ...]]] = []
+    for name, link in mechanism.links.items():
+        shapes += [(f"links.{name}.points.{k}", np.shape(p)) for k, p in link.points.items() if p is not None]
+    shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
+    for where, pair in _placed(mechanism.written_pairs):
+        shapes += [(f"{where}.{k.name}", np.shape(getattr(pair, k.name, 0.0))) for k in pair.keys if k.kind in ("length", "angle")]
+    for index, drive in enumerate(mechanism.drives):
+        shapes += [(f"drives[{index}].{k}", np.shape(getattr(drive, k))) for k in ("values", "speed", "acceleration", "jerk") if getattr(drive, k) is not None]
+    total: tuple[int, ...] = ()
+    for where, shape in shapes:
+        if not shape:
+            continue
+        try:
+            total = np.broadcast_shapes(total, shape)
+        except ValueError:
+            yield Problem(where, f"shape {shape} does not broadcast with {total}", "give a new axis to designs: the last axis is the motion")
