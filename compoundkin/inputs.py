@@ -70,6 +70,10 @@ class Inputs:
         """The same dimensions with other driver values."""
         return replace(self, drives=drives)
 
+    def of_poses(self, count: int) -> Inputs:
+        """The same numbers, as a motion of `count` poses."""
+        return replace(self, shape=(*self.shape[:-1], count))
+
     def series(self, order: int) -> dict[str, Series]:
         """The drivers as series."""
         return {name: rates(values, order) for name, values in self.drives.items()}

@@ -280,6 +280,8 @@ class Mechanism:
         """The dimensions as numbers, those of links given as drawn read off the drawing."""
         points: dict[str, Mapping[str, Number]] = {}
         poses: dict[str, Pose] = {}
+        fixed = self.links[FRAME].points
+        seen = {**{k: p for k, p in fixed.items() if p is not None}, **self.sketch}
         for name, item in self.links.items():
             if name == FRAME:
                 poses[name] = FIXED
@@ -288,10 +290,9 @@ class Mechanism:
                 poses[name], points[name] = read_off(item.letters, self.sketch)
             else:
                 points[name] = {k: p for k, p in item.points.items() if p is not None}
-                pose = fitted_pose(points[name], self.sketch) if self.sketch else None
+                pose = fitted_pose(points[name], seen) if self.sketch else None
                 if pose is not None:
                     poses[name] = pose
-        seen = {**{k: p for k, p in points.get(FRAME, {}).items()}, **self.sketch}
         return Geometry(points, poses, frozenset(n for n, i in self.links.items() if i.is_drawn), seen)
 
     def replace(self, *items: Item, **changes: Any) -> Mechanism:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from compoundkin.change_points import NEAR, pass_through, rates_at
 from compoundkin.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses, UnknownName, nearest
 from compoundkin.inputs import Inputs, fit, inputs
 from compoundkin.mechanism import FRAME, Mechanism, vector
-from compoundkin.plan import Plan, blocks
+from compoundkin.plan import Plan, Run, blocks
 from compoundkin.poses import FIXED, Pose
 from compoundkin.series import Number, Series
 from compoundkin.structure import decompose
@@ -260,6 +261,23 @@ class Motion:
     def _plan(self) -> Plan:
         return self.tracker.plan
 
+    def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:
+        """The motion with some of its poses put in the place of what was solved there."""
+        if not len(designs):
+            return self
+        shape = (self.inputs.designs, self.inputs.poses)
+
+        def put(series: Series, other: Series) -> Series:
+            out = []
+            for k in range(self.order + 1):
+                full = np.array(np.broadcast_to(series.c[k] if k < len(series.c) else 0j, shape))
+                full[designs, index] = np.ravel(other.c[k]) if k < len(other.c) else 0j
+                out.append(full)
+            return Series(tuple(out))
+
+        mended = {n: FIXED if n == FRAME else Pose(put(p.z, poses[n].z), put(p.u, poses[n].u)) for n, p in self.poses.items()}
+        return replace(self, poses=mended)
+
     def _point(self, name: str) -> PointMotion:
         link = self.mechanism.carriers[name][0]
         return PointMotion(self, self._derivative(link, name))
@@ -341,7 +359,7 @@ def solve(
     with np.errstate(all="ignore"):
         given = inputs(plan, values, speed, acceleration, jerk)
         tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint))
-        motion = _run(plan, given, tracker, order)
+        motion = _settled(plan, given, tracker, order)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         text = f"{missing} of {motion.failed.size} poses cannot be assembled; Motion.assembled masks them, gaps(motion) explains them"
@@ -373,19 +391,33 @@ def _signs(plan: Plan, modes: Mapping[str, int] | None) -> dict[str, int]:
     return signs
 
 
-def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> Motion:
-    """Solve block by block and gather."""
+def _settled(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> Motion:
+    """Solve; again where a group is found to pass through a change point, from which its mode changes sign."""
+    while True:
+        motion, near = _run(plan, given, tracker, order)
+        if not near or not pass_through(given, tracker, near):
+            return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
+
+
+def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
+    """Solve block by block and gather; also the groups that come near a limit position."""
     designs, poses = given.designs, given.poses
+    near: set[int] = set()
     parts = list(blocks(designs, poses, BLOCK))
     if len(parts) == 1:
         run = tracker.run(given, order, *_places(slice(0, designs), slice(0, poses)))
         failed = np.broadcast_to(run.failed, (designs, poses))
-        return Motion(plan.structure, order, given, dict(run.world), failed, tracker)
+        return Motion(plan.structure, order, given, dict(run.world), failed, tracker), _near(run)
     store = _Store(designs, poses, order)
     for d, m in parts:
         run = tracker.run(given.cut(d, m), order, *_places(d, m))
         store.take(run.world, run.failed, d, m)
-    return Motion(plan.structure, order, given, store.poses(), store.failed, tracker)
+        near |= _near(run)
+    return Motion(plan.structure, order, given, store.poses(), store.failed, tracker), near
+
+
+def _near(run: Run) -> set[int]:
+    return {k for k, margin in run.margins.items() if np.fmin.reduce(margin, axis=None) < NEAR}
 
 
 def _places(d: slice, m: slice) -> tuple[Number, Number]:

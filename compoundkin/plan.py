@@ -10,7 +10,7 @@ from math import factorial
 import numpy as np
 
 from compoundkin.groups import DYADS, Attachment, Dyad
-from compoundkin.groups.contract import LIMIT
+from compoundkin.groups.contract import Root, clipped_root
 from compoundkin.groups.general import General, Member, Setting
 from compoundkin.pairs import Pair
 from compoundkin.poses import FIXED, End, Pose
@@ -133,9 +133,9 @@ class DyadStep:
         one, two = (_in_body(side, setting) for side in self.inner)
         return found[0], (one, two), found[1]
 
-    def run(self, run: Run, sign: Number, limit: float = LIMIT) -> None:
+    def run(self, run: Run, sign: Number, root: Root = clipped_root) -> None:
         """Close the group and add its links to what is known."""
-        poses, margin = self.kernel.close(*self.arguments(run), sign, limit)
+        poses, margin = self.kernel.close(*self.arguments(run), sign, root)
         run.margins[self.index] = margin
         run.failed = np.where((run.failed == 0) & ~(margin >= 0), self.index + 1, run.failed)
         for body, pose in zip(self.bodies, poses, strict=True):

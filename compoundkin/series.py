@@ -73,7 +73,10 @@ class Series:
 
     def __truediv__(self, other: Series | Number) -> Series:
         b = _coefficients(other)
-        inverse = 1.0 / b[0]
+        try:
+            inverse = 1.0 / b[0]
+        except ZeroDivisionError:  # Python's numbers raise it where arrays give NaN
+            inverse = float("nan")
         if len(b) == 1:
             return Series(tuple([x * inverse for x in self.c]))
         a = self.c

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.groups.contract import LIMIT, Attachment, Closed, Dyad, placed_at
+from compoundkin.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, placed_at
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series, as_series
 
@@ -27,7 +27,7 @@ class PRP(Dyad):
 
     @staticmethod
     def close(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, limit: float = LIMIT
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Meet the two lines on which the inner pin runs."""
         (here, u), (there, v) = _line(first, inner[0]), _line(second, inner[1])

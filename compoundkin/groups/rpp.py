@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from compoundkin.groups.contract import LIMIT, Attachment, Closed, Dyad, placed_at
+from compoundkin.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, placed_at
 from compoundkin.groups.prp import separated
 from compoundkin.poses import End
 from compoundkin.series import Number, as_series
@@ -22,7 +22,7 @@ class RPP(Dyad):
 
     @staticmethod
     def close(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, limit: float = LIMIT
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Slide the second body along its known guide until the first one's guide passes through."""
         track = second.world.along

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.groups.contract import LIMIT, Attachment, Closed, Dyad, placed_at, root, text
+from compoundkin.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, element, placed_at, text
 from compoundkin.poses import End
 from compoundkin.series import Number, Series, as_series, planar
 
@@ -24,12 +24,12 @@ class RPR(Dyad):
 
     @staticmethod
     def close(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, limit: float = LIMIT
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Turn the guide so that the pins have their known distance across it."""
         line, across = _distances(first, inner, second)
         line2 = line.abs2()
-        along, margin = root(line2 - across * across, line2.c[0], limit)
+        along, margin = root(line2 - across * across, line2.c[0])
         guide = line * planar(along * sign, -across) / line2
         u, v = guide * inner[0].along.conj(), guide * inner[1].along.conj()
         first_pose = placed_at(as_series(first.world.point), u, first.local.point)
@@ -39,6 +39,8 @@ class RPR(Dyad):
     def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
         """The pins are nearer to each other than their eccentricity."""
         line, across = _distances(first, inner, second)
+        if not element(np.abs(line.c[0]), at):
+            return f"{names[0]} and {names[2]} coincide, so that the direction of the guide of {names[1]} is not determined"
         return (
             f"|{names[0]}{names[2]}| = {text(np.abs(line.c[0]), at)} < {text(np.abs(across.c[0]), at)},"
             f" the distance of the two pins across the guide of {names[1]}"

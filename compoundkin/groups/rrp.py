@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.groups.contract import LIMIT, Attachment, Closed, Dyad, placed_at, root, text
+from compoundkin.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, placed_at, text
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series, as_series
 
@@ -24,13 +24,13 @@ class RRP(Dyad):
 
     @staticmethod
     def close(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, limit: float = LIMIT
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Intersect the circle about the outer pin with the line on which the inner pin runs."""
         rod, start, guide, v = _line(first, inner, second)
         across, along = guide.cross(start), guide.dot(start)
         rod2 = rod.abs2()
-        half, margin = root(rod2 - across * across, rod2.c[0], limit)
+        half, margin = root(rod2 - across * across, rod2.c[0])
         travel = half * sign - along
         u = (start + guide * travel) / rod
         block = placed_at(as_series(second.world.point) + guide * travel, v, second.local.point)

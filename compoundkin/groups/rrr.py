@@ -9,7 +9,17 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.groups.contract import LIMIT, Attachment, Closed, Dyad, placed_at, root, text
+from compoundkin.groups.contract import (
+    COINCIDENT,
+    Attachment,
+    Closed,
+    Dyad,
+    Root,
+    clipped_root,
+    element,
+    placed_at,
+    text,
+)
 from compoundkin.poses import End
 from compoundkin.series import Number, Series, as_series, planar
 
@@ -23,14 +33,15 @@ class RRR(Dyad):
 
     @staticmethod
     def close(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, limit: float = LIMIT
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Intersect the circle about each outer pin."""
         a, b, line = _sides(first, inner, second)
         line2, a2 = line.abs2(), a.abs2()
         foot = (line2 + a2 - b.abs2()) * 0.5  # the scalar product of a and the line
         square = a2 * line2 - foot * foot
-        height, margin = root(square, (a2 * line2).c[0], limit)
+        apart = line2.c[0] > COINCIDENT**2 * a2.c[0]
+        height, margin = root(square, np.where(apart, (a2 * line2).c[0], np.nan))
         height = height * sign
         arm = line * planar(foot, -height) / line2
         u, v = arm / a, (arm - line) / b
@@ -41,10 +52,11 @@ class RRR(Dyad):
     def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
         """Too far apart or too near."""
         a, b, line = (np.abs(s.c[0]) for s in _sides(first, inner, second))
-        far = np.asarray(line - (a + b)).ravel()
         outer, pin, other = names
+        if element(line, at) <= COINCIDENT * element(a, at):
+            return f"{outer} and {other} coincide, so that the direction of {outer}{pin} is not determined"
         between = f"|{outer}{other}| = {text(line, at)}"
-        if far[at if far.size > 1 else 0] > 0:
+        if element(line - (a + b), at) > 0:
             return f"{between} > |{outer}{pin}| + |{pin}{other}| = {text(a, at)} + {text(b, at)}"
         return f"{between} < ||{outer}{pin}| - |{pin}{other}|| = |{text(a, at)} - {text(b, at)}|"
 

@@ -1,0 +1,85 @@
+"""The way from the drawn pose to the motion: where the assembly modes are read off and carried from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from compoundkin.continuation import CLOSE
+from compoundkin.inputs import Inputs
+from compoundkin.plan import Plan
+from compoundkin.poses import Pose
+from compoundkin.series import Number, constant
+
+# The lead is sampled at least this finely: radians of a driver's angle, or parts of the size of its length.
+SPACING = np.pi / 36.0
+
+
+def approach(plan: Plan, given: Inputs, drawn: Mapping[str, Pose]) -> tuple[Inputs, int, float]:
+    """The lead, from the drawn drivers to the motion's pose `at` nearest to them; `at`; and the home of the modes.
+
+    The lead is one pose where the drawing shows no driver. The home is the place along the motion to which
+    the modes belong: just before `at` where the lead comes from before, else just after.
+    """
+    shown = {name: _drawn_value(plan, given, name, drawn) for name in plan.driven}
+    values = {name: value for name, value in shown.items() if value is not None}
+    at = _nearest(plan, given, values) if values else 0
+    end = given.cut(slice(None), slice(at, at + 1))
+    ways: dict[str, Number] = {}
+    for name, rest in end.drives.items():
+        way = rest[0] - values.get(name, rest[0])
+        if plan.driven[name].pair.free_is_angle:
+            way = way - 2.0 * np.pi * np.round(way / (2.0 * np.pi))
+        ways[name] = way
+    count = max(_samples(plan, name, way) for name, way in ways.items()) if ways else 1
+    ramp = np.linspace(-1.0, 0.0, count)[None] if count > 1 else np.zeros((1, 1))
+    lead = end.driven({name: (rest[0] + ways[name] * ramp,) for name, rest in end.drives.items()})
+    return lead.of_poses(count), at, at + _side(given, at, ways) * CLOSE
+
+
+def _drawn_value(plan: Plan, given: Inputs, name: str, drawn: Mapping[str, Pose]) -> Number | None:
+    """The driver's coordinate as the drawing shows it, a number or (designs, 1); None where it does not."""
+    driven = plan.driven[name]
+    pair = driven.pair
+    if any(link not in drawn for link in pair.members):
+        return None
+    ends = given.cut(slice(None), slice(0, 1)).ends[pair.name]
+    poses = (column(drawn[pair.members[0]]), column(drawn[pair.members[1]]))
+    return pair.coordinate(ends, poses).c[0] * pair.driven_by(driven.drive.link)
+
+
+def _nearest(plan: Plan, given: Inputs, values: Mapping[str, Number]) -> int:
+    """The index of the pose whose drivers are nearest to the drawn ones, over all designs."""
+    total: Number = np.zeros((1, 1))
+    for name, value in values.items():
+        gap = np.abs(given.drives[name][0] - value)
+        if plan.driven[name].pair.free_is_angle:
+            gap = np.abs(gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)))
+        total = total + gap
+    return int(np.argmin(np.broadcast_to(total.max(axis=0), given.poses)))
+
+
+def _samples(plan: Plan, name: str, way: Number) -> int:
+    size = 1.0 if plan.driven[name].pair.free_is_angle else plan.size
+    longest = float(np.max(np.abs(way))) / size
+    return 1 + int(np.ceil(longest / SPACING - CLOSE)) if longest > 0.0 else 1
+
+
+def _side(given: Inputs, at: int, ways: Mapping[str, Number]) -> float:
+    """-1 where the lead reaches the motion's pose `at` in the direction of the motion, else +1."""
+    step = given.at(np.array([float(at)])).drives if given.poses > 1 else {}
+    along = sum(float(np.sum(np.sign(values[1] * ways[name]))) for name, values in step.items())
+    return -1.0 if along > 0.0 else 1.0
+
+
+def first_of(value: Number) -> Number:
+    """A dimension at the first pose of each design: a number, or an array (designs, 1)."""
+    if np.ndim(value) == 0:
+        return value
+    array = np.asarray(value)
+    return array[..., :1].reshape(-1, 1)
+
+
+def column(pose: Pose) -> Pose:
+    return Pose(constant(first_of(pose.z.c[0])), constant(first_of(pose.u.c[0])))

@@ -1,0 +1,28 @@
+"""Structure without coordinates: mobility, loops, composite links, Assur groups in solving order, faults."""
+
+from __future__ import annotations
+
+from compoundkin.structure.decomposition import decompose
+from compoundkin.structure.graph import kinematic_graph, links_by_pairs, pair_counts
+from compoundkin.structure.loops import Loop, independent_loops, loop_count
+from compoundkin.structure.mobility import Mobility, PairCount
+from compoundkin.structure.model import Body, DrivenPair, Fault, Group, Structure
+from compoundkin.structure.naming import roman
+
+__all__ = [
+    "Body",
+    "DrivenPair",
+    "Fault",
+    "Group",
+    "Loop",
+    "Mobility",
+    "PairCount",
+    "Structure",
+    "decompose",
+    "independent_loops",
+    "kinematic_graph",
+    "links_by_pairs",
+    "loop_count",
+    "pair_counts",
+    "roman",
+]

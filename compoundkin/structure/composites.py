@@ -1,0 +1,110 @@
+"""Composite links: links joined by driven pairs move as one body of varying geometry."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from compoundkin.mechanism import FRAME, Drive, Mechanism
+from compoundkin.pairs import Pair
+from compoundkin.structure.model import Body, DrivenPair
+from compoundkin.structure.pins import Pins
+from compoundkin.validation import drivable
+
+GROUND = -1
+
+
+@dataclass(frozen=True)
+class Composites:
+    """The bodies of a mechanism: the ground, the moving ones in input order, and what closes on itself.
+
+    `body_of` maps each link to the index of its moving body, or to GROUND. `closing` are the drives whose
+    links other drives join already.
+    """
+
+    ground: Body
+    moving: tuple[Body, ...]
+    pins: Pins
+    body_of: dict[str, int]
+    closing: tuple[Drive, ...]
+
+    def body(self, index: int) -> Body:
+        """The body of an index as in `body_of`."""
+        return self.ground if index == GROUND else self.moving[index]
+
+
+def composites(mechanism: Mechanism) -> Composites:
+    """The bodies that the drives make of the links."""
+    neighbours: dict[str, list[DrivenPair]] = {name: [] for name in mechanism.links}
+    leader = {name: name for name in mechanism.links}
+    pins = Pins(mechanism)
+    closing = []
+    for drive in mechanism.drives:
+        if not _join(leader, drive.on, drive.link):
+            closing.append(drive)
+            continue
+        pair = driven_pair(pins, drive)
+        neighbours[drive.on].append(DrivenPair(drive, pair, drive.on, drive.link))
+        neighbours[drive.link].append(DrivenPair(drive, pair, drive.link, drive.on))
+    ground = _outward(FRAME, neighbours)
+    body_of = dict.fromkeys(ground.links, GROUND)
+    moving: list[Body] = []
+    for name in mechanism.links:
+        if name not in body_of:
+            body = _outward(name, neighbours)
+            body_of.update(dict.fromkeys(body.links, len(moving)))
+            moving.append(body)
+    return Composites(ground, tuple(moving), pins, body_of, tuple(closing))
+
+
+def driven_pair(pins: Pins, drive: Drive) -> Pair:
+    """The pair that a drive prescribes: a written one, or the pin between precisely its two links."""
+    mechanism = pins.mechanism
+    (name,) = drivable(mechanism, drive)
+    if {drive.link, drive.on} <= set(mechanism.pins.get(name, ())):
+        return pins.pair(name, drive.on, drive.link)
+    return next(pair for pair in mechanism.written_pairs if pair.name == name)
+
+
+def spanned(body: Body, links: Iterable[str]) -> tuple[DrivenPair, ...]:
+    """The driven pairs of a composite that lie between some of its links."""
+    below = dict.fromkeys(body.links, 0)
+    wanted = [name for name in dict.fromkeys(links) if name in below]
+    for name in wanted:
+        below[name] = 1
+    found = []
+    for step in reversed(body.driven):
+        if 0 < below[step.link] < len(wanted):
+            found.append(step)
+        below[step.parent] += below[step.link]
+    return tuple(reversed(found))
+
+
+def _outward(base: str, neighbours: dict[str, list[DrivenPair]]) -> Body:
+    if not neighbours[base]:
+        return Body((base,))
+    links, driven = {base: None}, []
+    queue = deque([base])
+    while queue:
+        for step in neighbours[queue.popleft()]:
+            if step.link not in links:
+                links[step.link] = None
+                driven.append(step)
+                queue.append(step.link)
+    return Body(tuple(links), tuple(driven))
+
+
+def _join(leader: dict[str, str], a: str, b: str) -> bool:
+    """Unite two sets of links; False if they are one already."""
+    a, b = find(leader, a), find(leader, b)
+    leader[b] = a
+    return a != b
+
+
+def find(leader: dict[str, str], name: str) -> str:
+    """The representative of the set that a name belongs to."""
+    while leader[name] != name:
+        leader[name] = leader[leader[name]]
+        name = leader[name]
+    return name

@@ -1,0 +1,198 @@
+"""Over- and under-constrained parts, named: which links, by how much, and what to add or remove."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from compoundkin.mechanism import FRAME
+from compoundkin.structure.composites import GROUND, find, spanned
+from compoundkin.structure.matching import Matching
+from compoundkin.structure.model import Body, DrivenPair, Fault
+from compoundkin.structure.rank import Deficiency, Part, RankTest
+from compoundkin.structure.system import POINT_FREEDOMS, Constraint, System
+
+# How many alternatives a remedy lists.
+_LISTED = 6
+
+
+def closed_drives(system: System) -> Iterator[Fault]:
+    """Composites that close on themselves: driven pairs in a ring, or pairs across a driven chain."""
+    for body in (system.bodies.ground, *system.bodies.moving):
+        if len(body.links) > 1:
+            yield from _closed(system, body)
+
+
+def _closed(system: System, body: Body) -> Iterator[Fault]:
+    inside = set(body.links)
+    across, closing = dict(_letters_twice(system, body)), {}
+    in_tree = {step.pair.name for step in body.driven}
+    for pair in system.mechanism.written_pairs:
+        if pair.name not in in_tree and inside.issuperset(pair.members):
+            across[pair.name] = (pair.held, pair.members)
+    for drive in system.bodies.closing:
+        if drive.link in inside:
+            closing[drive.name] = (1, (drive.on, drive.link))
+    if across or closing:
+        extra = [*across.values(), *closing.values()]
+        amount = sum(held for held, _ in extra)
+        drives = spanned(body, [link for _, links in extra for link in links])
+        links = tuple(dict.fromkeys(_between(drives))) or body.links
+        excess = _number(amount, "constraint")
+        text = f"{_listed(links)}: driven links close on themselves, held by {excess} too many"
+        remedy = f"remove {_of(amount, [*(step.drive.name for step in drives), *closing], 'driver')}"
+        if across:
+            remedy += f" or take apart {_either(list(across))}"
+        yield Fault("over", links, amount, text, remedy)
+
+
+def _letters_twice(system: System, body: Body) -> Iterator[tuple[str, tuple[int, tuple[str, ...]]]]:
+    """Letters that links of one composite share without being driven there, with what they hold too many."""
+    links: dict[str, list[str]] = {}
+    for name in body.links:
+        for letter in system.mechanism.links[name].points:
+            links.setdefault(letter, []).append(name)
+    for letter, names in links.items():
+        if len(names) == 1:
+            continue
+        leader = {name: name for name in names}
+        for step in body.driven:
+            if step.pair.letters[0] == letter and step.link in leader and step.parent in leader:
+                leader[find(leader, step.link)] = find(leader, step.parent)
+        parts = sum(1 for name in names if find(leader, name) == name)
+        if parts > 1:
+            yield letter, (POINT_FREEDOMS * (parts - 1), tuple(names))
+
+
+def counted_faults(
+    system: System, matching: Matching, over: list[bool], under: list[bool]
+) -> Iterator[Fault]:
+    """The parts that more rows hold than they have freedoms, and those that fewer hold."""
+    touching: list[list[Constraint]] = [[] for _ in over]
+    free = [unknown for unknown, yes in enumerate(under) if yes]
+    owned_by_under = {system.constraint_of[row] for unknown in free for row in matching.owned[unknown]}
+    for number, constraint in enumerate(system.constraints):
+        over_held = bool(constraint.unknowns) and all(over[u] for u in constraint.unknowns)
+        if over_held or number in owned_by_under:
+            for unknown in constraint.unknowns:
+                touching[unknown].append(constraint)
+    for marked in (over, under):
+        for unknowns in _connected(marked, touching):
+            constraints = {id(c): c for u in unknowns for c in touching[u]}
+            yield from _part_faults(system, Part(tuple(unknowns), tuple(constraints.values())))
+
+
+def _connected(marked: list[bool], touching: list[list[Constraint]]) -> Iterator[list[int]]:
+    left = dict.fromkeys(u for u, yes in enumerate(marked) if yes)
+    while left:
+        first = next(iter(left))
+        del left[first]
+        part = [first]
+        for unknown in part:
+            for other in (v for c in touching[unknown] for v in c.unknowns if v in left):
+                del left[other]
+                part.append(other)
+        yield sorted(part)
+
+
+def _part_faults(system: System, part: Part) -> Iterator[Fault]:
+    yield from rank_faults(system, part, RankTest(system).analysed(part))
+
+
+def rank_faults(system: System, part: Part, found: Deficiency) -> Iterator[Fault]:
+    """What is redundant and what is free in a part; both where its pairs hold less than they count."""
+    if found.redundant:
+        yield _over(system, found)
+    if found.free:
+        yield _under(system, part, found)
+
+
+def _between(drives: Iterable[DrivenPair]) -> list[str]:
+    return [name for step in drives for name in (step.parent, step.link)]
+
+
+def _over(system: System, found: Deficiency) -> Fault:
+    touched = [link for constraint in found.tight for link in _links_of(system, constraint)]
+    by_body: dict[int, list[str]] = {}
+    for link in touched:
+        by_body.setdefault(system.bodies.body_of[link], []).append(link)
+    drives = [s for body, on_it in by_body.items() for s in spanned(system.bodies.body(body), on_it)]
+    links = _in_input_order(system, [*touched, *_between(drives)])
+    text = f"{_listed(links)} {_are(links)} held by {_number(found.redundant, 'constraint')} too many"
+    pairs = dict.fromkeys(constraint.letter or constraint.pair.name for constraint in found.tight)
+    return Fault("over", links, found.redundant, text, _over_remedy(found.redundant, drives, list(pairs)))
+
+
+def _over_remedy(amount: int, drives: Sequence[DrivenPair], pairs: Sequence[str]) -> str:
+    names = list(dict.fromkeys(step.drive.name for step in drives))
+    free = f"free {_of(amount, pairs, 'coordinate', 'of the pairs')}"
+    return f"remove {_of(amount, names, 'driver')} or {free}" if names else f"{free} or take out a link"
+
+
+def _under(system: System, part: Part, found: Deficiency) -> Fault:
+    bodies = [system.bodies.moving[u] for u in found.loose if system.is_body(u)]
+    links = _in_input_order(system, [name for body in bodies for name in body.links])
+    text = f"{_listed(links)} {_are(links)} left with {_number(found.free, 'freedom')}"
+    own = set(part.unknowns)
+    if not any(side not in own for constraint in part.constraints for side in constraint.sides):
+        remedy = f"join {_listed(links)} to the frame by a pair"
+    else:
+        choices = [choice for constraint in found.moving for choice in _drivable(system, constraint)]
+        remedy = _under_remedy(found.free, sorted(choices, key=lambda text: " on frame (" not in text))
+    return Fault("under", links, found.free, text, remedy)
+
+
+def _under_remedy(amount: int, choices: Sequence[str]) -> str:
+    if not choices:
+        return f"hold {_number(amount, 'freedom')} by further pairs"
+    wanted = "a driver on one of" if amount == 1 else f"{amount} drivers among"
+    return f"add {wanted}: {_listed(choices)}"
+
+
+def _drivable(system: System, constraint: Constraint) -> Iterator[str]:
+    """Where a driver could be put: "crank on frame (pin A)"."""
+    links = _links_of(system, constraint)
+    if constraint.letter and len(links) == 1:
+        other = system.neighbour(constraint.letter, constraint.sides[1])
+        links = (system.carrier(constraint.letter, other), *links)
+    if len(links) == 2 and constraint.pair.free:
+        kind = "pin " if constraint.letter else ""
+        yield f"{links[1]} on {links[0]} ({kind}{constraint.letter or constraint.pair.name})"
+
+
+def _links_of(system: System, constraint: Constraint) -> tuple[str, ...]:
+    if not constraint.letter:
+        return constraint.pair.members
+    bodies = [side for side in constraint.sides if side == GROUND or system.is_body(side)]
+    return tuple(system.carrier(constraint.letter, body) for body in bodies)
+
+
+def _in_input_order(system: System, links: Iterable[str]) -> tuple[str, ...]:
+    """The links once each; the frame only if it is alone."""
+    named = set(links)
+    moving = tuple(name for name in system.mechanism.links if name in named and name != FRAME)
+    return moving or (FRAME,)
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names[:_LISTED]) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
+
+
+def _of(amount: int, names: Sequence[str], word: str, among: str = "") -> str:
+    """ "driver a", "one of the drivers a, b", "2 of the drivers a, b, c"."""
+    among = among or f"of the {word}s"
+    if len(names) == 1:
+        return f"{'the ' + word if word == 'driver' else _number(amount, word) + ' of the pair'} {names[0]}"
+    count = "one" if amount == 1 else str(amount)
+    return f"{count} {among} {_listed(names)}"
+
+
+def _either(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"one of {_listed(names)}"
+
+
+def _are(links: Sequence[str]) -> str:
+    return "is" if len(links) == 1 else "are"
+
+
+def _number(amount: int, word: str) -> str:
+    return f"{amount} {word}{'' if amount == 1 else 's'}"

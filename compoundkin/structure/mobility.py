@@ -1,0 +1,92 @@
+"""The count of freedoms: links, pairs, mobility, and whether the drivers determine it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from compoundkin.mechanism import Mechanism
+from compoundkin.pairs import Pair
+
+
+@dataclass(frozen=True)
+class PairCount:
+    """How many pairs of one kind there are: its letter, what one of them holds, and their number."""
+
+    code: str
+    held: int
+    number: int
+
+
+@dataclass(frozen=True)
+class Mobility:
+    """The mobility by the count of Chebyshev and Gruebler: F = 3 (n - 1) - the sum of what the pairs hold.
+
+    A multiple pin of k links counts as k - 1 pairs.
+
+    >>> count = Mobility(6, (PairCount("R", 2, 6), PairCount("P", 2, 1)), 1)
+    >>> count.freedoms, count.is_determinate
+    (1, True)
+    >>> count.formula
+    'F = 3 (n - 1) - 2 p = 3 (6 - 1) - 2 * 7 = 1, p = 6 R + 1 P'
+    """
+
+    links: int
+    pairs: tuple[PairCount, ...]
+    drivers: int
+
+    @property
+    def freedoms(self) -> int:
+        """The mobility F."""
+        return 3 * (self.links - 1) - sum(count.held * count.number for count in self.pairs)
+
+    @property
+    def is_determinate(self) -> bool:
+        """Whether there are as many drivers as freedoms."""
+        return self.drivers == self.freedoms
+
+    @property
+    def formula(self) -> str:
+        """The count with its numbers substituted."""
+        held = sorted({count.held for count in self.pairs}, reverse=True)
+        total = {h: sum(c.number for c in self.pairs if c.held == h) for h in held}
+        letter = {h: "p" if len(held) == 1 else f"p{h}" for h in held}
+        symbols = "".join(f" - {_times(h)}{letter[h]}" for h in held)
+        numbers = "".join(f" - {h} * {total[h]}" if h > 1 else f" - {total[h]}" for h in held)
+        kinds = [f", {letter[h]} = {self._kinds(h)}" for h in held]
+        return f"F = 3 (n - 1){symbols} = 3 ({self.links} - 1){numbers} = {self.freedoms}{''.join(kinds)}"
+
+    @property
+    def verdict(self) -> str:
+        """How the drivers compare with the freedoms, in a sentence.
+
+        >>> Mobility(4, (PairCount("R", 2, 4),), 0).verdict
+        'mobility 1 and no driver: 1 driver is missing'
+        """
+        drivers = _counted(self.drivers, "driver") if self.drivers else "no driver"
+        missing = self.freedoms - self.drivers
+        outcome = "the motion is determined"
+        if missing:
+            outcome = f"{_counted(abs(missing), 'driver')} {'is' if abs(missing) == 1 else 'are'} "
+            outcome += "missing" if missing > 0 else "too many"
+        return f"mobility {self.freedoms} and {drivers}: {outcome}"
+
+    def _kinds(self, held: int) -> str:
+        return " + ".join(f"{count.number} {count.code}" for count in self.pairs if count.held == held)
+
+
+def mobility_of(mechanism: Mechanism, pairs: Sequence[Pair]) -> Mobility:
+    """The mobility of a mechanism with all its pairs, those of multiple pins one by one."""
+    numbers: dict[tuple[str, int], int] = {}
+    for pair in pairs:
+        numbers[pair.code, pair.held] = numbers.get((pair.code, pair.held), 0) + 1
+    counts = tuple(PairCount(code, held, number) for (code, held), number in numbers.items())
+    return Mobility(len(mechanism.links), counts, len(mechanism.drives))
+
+
+def _times(held: int) -> str:
+    return f"{held} " if held > 1 else ""
+
+
+def _counted(number: int, word: str) -> str:
+    return f"{number} {word}{'' if number == 1 else 's'}"

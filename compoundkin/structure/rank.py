@@ -1,0 +1,177 @@
+"""Does a part hold as it counts? The rank of its constraint Jacobian at a random generic pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import accumulate
+from typing import Any
+
+import numpy as np
+
+from compoundkin.poses import FIXED, End
+from compoundkin.structure.composites import GROUND
+from compoundkin.structure.system import LINK_FREEDOMS, Constraint, System
+
+# Random Jacobians of some hundred columns keep their least singular value far above this fraction of the
+# largest, and rounding keeps that of a deficient one far below.
+RANK_TOLERANCE = 1e-9
+# Beyond this many columns a dense singular value decomposition takes a second or more.
+DENSE_UP_TO = 600
+_SEED = 20260101
+
+Matrix = np.ndarray[Any, np.dtype[np.float64]]
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some unknowns and the constraints that are to determine them, given all unknowns outside."""
+
+    unknowns: tuple[int, ...]
+    constraints: tuple[Constraint, ...]
+
+
+@dataclass(frozen=True)
+class Deficiency:
+    """By how much a part's constraints are dependent and its unknowns free.
+
+    `tight` are the constraints that depend on one another, `loose` the unknowns that move, `moving` the
+    constraints whose pairs then move.
+    """
+
+    redundant: int
+    free: int
+    tight: tuple[Constraint, ...]
+    loose: tuple[int, ...]
+    moving: tuple[Constraint, ...]
+
+
+@dataclass
+class RankTest:
+    """Tests parts; those of the same make-up share one test, for a generic rank depends on nothing else."""
+
+    system: System
+    known: dict[tuple[Any, ...], bool] = field(default_factory=dict)
+
+    def deficiency(self, part: Part) -> Deficiency | None:
+        """What is wrong with a part that counts as determined, or None if it is."""
+        make_up = self._make_up(part)
+        if make_up not in self.known:
+            self.known[make_up] = self._is_regular(part)
+        return None if self.known[make_up] else self.analysed(part)
+
+    def analysed(self, part: Part) -> Deficiency:
+        """The redundancy and freedom of any part; by count alone, and for all of it, where it is large."""
+        rows, columns = self._shape(part)
+        if max(rows, columns) > DENSE_UP_TO:
+            # at least one of each where a square part is singular
+            spare = 1 if rows == columns else 0
+            over, under = max(rows - columns, spare), max(columns - rows, spare)
+            return Deficiency(over, under, part.constraints, part.unknowns, part.constraints)
+        left, values, right = np.linalg.svd(self._dense(part))
+        rank = int(np.sum(values > RANK_TOLERANCE * max(values, default=1.0)))
+        held = _taking_part(left[:, rank:], [c.pair.held for c in part.constraints])
+        moved = _taking_part(right[rank:].T, [self.system.freedoms[u] for u in part.unknowns])
+        tight = tuple(c for c, yes in zip(part.constraints, held, strict=True) if yes)
+        loose = tuple(u for u, yes in zip(part.unknowns, moved, strict=True) if yes)
+        moving = self._moving(part, right[rank:].T)
+        return Deficiency(rows - rank, columns - rank, tight, loose, moving)
+
+    def _is_regular(self, part: Part) -> bool:
+        if self._shape(part)[1] > DENSE_UP_TO:
+            return self._is_regular_sparse(part)
+        values = np.linalg.svd(self._dense(part), compute_uv=False)
+        return bool(values[-1] > RANK_TOLERANCE * values[0])
+
+    def _is_regular_sparse(self, part: Part) -> bool:
+        from scipy.sparse import csc_array
+        from scipy.sparse.linalg import splu
+
+        entries = [
+            (row + i, column + j, block[i, j])
+            for row, column, block in self._blocks(part)
+            for i, j in np.ndindex(*block.shape)
+        ]
+        rows, columns, values = (np.array(v) for v in zip(*entries, strict=True))
+        matrix = csc_array((values, (rows, columns)), shape=self._shape(part))
+        try:
+            pivots = np.abs(splu(matrix).U.diagonal())
+        except RuntimeError:  # exactly singular
+            return False
+        return bool(np.min(pivots) > RANK_TOLERANCE * np.max(pivots))
+
+    def _make_up(self, part: Part) -> tuple[Any, ...]:
+        place = {unknown: k for k, unknown in enumerate(part.unknowns)}
+        letters: dict[str, int] = {"": 0}
+        made: list[Any] = [self.system.freedoms[unknown] for unknown in part.unknowns]
+        for c in part.constraints:
+            letter = letters.setdefault(c.letter, len(letters))
+            made.append((type(c.pair), letter, *[place.get(side, -1) for side in c.sides]))
+        return tuple(made)
+
+    def _shape(self, part: Part) -> tuple[int, int]:
+        return sum(c.pair.held for c in part.constraints), sum(self.system.freedoms[u] for u in part.unknowns)
+
+    def _dense(self, part: Part) -> Matrix:
+        matrix = np.zeros(self._shape(part))
+        for row, column, block in self._blocks(part):
+            matrix[row : row + block.shape[0], column : column + block.shape[1]] += block
+        return matrix
+
+    def _blocks(self, part: Part) -> Iterator[tuple[int, int, Matrix]]:
+        """The blocks of the Jacobian: the held rows of each constraint; x, y and of a body theta."""
+        start = self._start(part)
+        row = 0
+        for constraint, rows in _rows(part):
+            held = rows[: constraint.pair.held]
+            for member, side in enumerate(constraint.sides):
+                if side in start:
+                    first = LINK_FREEDOMS * member
+                    yield row, start[side], held[:, first : first + self.system.freedoms[side]]
+            row += len(held)
+
+    def _start(self, part: Part) -> dict[int, int]:
+        """The first column of each unknown."""
+        sizes = [self.system.freedoms[unknown] for unknown in part.unknowns]
+        return dict(zip(part.unknowns, accumulate(sizes, initial=0), strict=False))
+
+    def _moving(self, part: Part, motions: Matrix) -> tuple[Constraint, ...]:
+        """The constraints whose pairs move where the unknowns have the given motions."""
+        start = self._start(part)
+        found = []
+        for constraint, rows in _rows(part):
+            change = np.zeros((len(rows) - constraint.pair.held, motions.shape[1]))
+            for member, side in enumerate(self._body_sides(constraint)):
+                if side in start:
+                    first = LINK_FREEDOMS * member
+                    block = rows[constraint.pair.held :, first : first + LINK_FREEDOMS]
+                    change += block @ motions[start[side] : start[side] + LINK_FREEDOMS]
+            if np.max(np.abs(change), initial=0.0) > RANK_TOLERANCE:
+                found.append(constraint)
+        return tuple(found)
+
+    def _body_sides(self, constraint: Constraint) -> tuple[int, ...]:
+        """The bodies a constraint is between; of a multiple pin, with the first other body on it."""
+        first, *others = constraint.sides
+        if first == GROUND or self.system.is_body(first):
+            return constraint.sides
+        return self.system.neighbour(constraint.letter, others[0]), *others
+
+
+def _rows(part: Part) -> Iterator[tuple[Constraint, Matrix]]:
+    """Each pair's rows in the world at a generic pose; all links on a pin share its one place."""
+    rng = np.random.default_rng(_SEED)
+    pins: dict[str, tuple[End, End]] = {}
+    for constraint in part.constraints:
+        pair = constraint.pair
+        ends = pins.get(constraint.letter) or pair.generic(rng)
+        if constraint.letter:
+            pins[constraint.letter] = ends
+        yield constraint, np.asarray(pair.jacobian(ends, (FIXED, FIXED)), dtype=float)
+
+
+def _taking_part(null_space: Matrix, sizes: Sequence[int]) -> list[bool]:
+    """Which blocks of rows of a null space are not zero."""
+    weights = np.linalg.norm(null_space, axis=1)
+    blocks = zip(accumulate(sizes, initial=0), sizes, strict=False)
+    return [bool(np.max(weights[a : a + n], initial=0.0) > RANK_TOLERANCE) for a, n in blocks]

@@ -1,0 +1,103 @@
+"""The constraint system of a mechanism: what is unknown, and what each pair holds.
+
+A moving body has three freedoms. A pin that joins three moving bodies or more is an unknown of its own with
+two freedoms, and each body on it holds two with it: written as pairs in a star around one of its links it
+would wrongly merge groups. A pin on the ground is simply fixed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from compoundkin.mechanism import Mechanism
+from compoundkin.pairs import Pair
+from compoundkin.structure.composites import GROUND, Composites
+from compoundkin.structure.pins import pin_at
+
+LINK_FREEDOMS = 3
+POINT_FREEDOMS = 2
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """What one pair holds between the unknowns (or GROUND) of its members, its `sides`.
+
+    `letter` is that of a pin, "" for a written pair; `unknowns` are the sides but GROUND, once each.
+    """
+
+    pair: Pair
+    sides: tuple[int, ...]
+    letter: str
+    unknowns: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class System:
+    """Unknowns (first the moving bodies, then the pins in `vertices`) and the constraints between them."""
+
+    mechanism: Mechanism
+    bodies: Composites
+    vertices: tuple[str, ...]
+    constraints: tuple[Constraint, ...]
+
+    @cached_property
+    def freedoms(self) -> list[int]:
+        """The freedoms of each unknown."""
+        return [LINK_FREEDOMS] * len(self.bodies.moving) + [POINT_FREEDOMS] * len(self.vertices)
+
+    @cached_property
+    def rows(self) -> list[tuple[int, ...]]:
+        """One row a held coordinate: the unknowns it is between."""
+        return [c.unknowns for c in self.constraints for _ in range(c.pair.held)]
+
+    @cached_property
+    def constraint_of(self) -> list[int]:
+        """The constraint of each row."""
+        return [k for k, c in enumerate(self.constraints) for _ in range(c.pair.held)]
+
+    def is_body(self, unknown: int) -> bool:
+        """Whether an unknown is a moving body (else a pin)."""
+        return unknown < len(self.bodies.moving)
+
+    def neighbour(self, letter: str, body: int) -> int:
+        """The first other body that carries a letter."""
+        on_pin = (self.bodies.body_of[name] for name in self.mechanism.pins[letter])
+        return next(other for other in on_pin if other != body)
+
+    def carrier(self, letter: str, body: int) -> str:
+        """The link of a body that carries a letter, the one nearest to its base."""
+        links = self.mechanism.links
+        return next(name for name in self.bodies.body(body).links if letter in links[name].points)
+
+
+def system_of(mechanism: Mechanism, bodies: Composites) -> System:
+    """The constraint system of a mechanism with its driven links already joined."""
+    count = len(bodies.moving)
+    vertices: list[str] = []
+    constraints: list[Constraint] = []
+    for letter, names in mechanism.pins.items():
+        on_pin = tuple(dict.fromkeys([bodies.body_of[name] for name in names]))
+        if len(on_pin) > 2 and GROUND not in on_pin:
+            vertices.append(letter)
+        sides = _pin_sides(on_pin, count + len(vertices) - 1)
+        constraints += [_constraint(pin_at(letter), pair, letter) for pair in sides]
+    for pair in mechanism.written_pairs:
+        members = tuple(bodies.body_of[name] for name in pair.members)
+        if len(set(members)) > 1:
+            constraints.append(_constraint(pair, members, ""))
+    return System(mechanism, bodies, tuple(vertices), tuple(constraints))
+
+
+def _pin_sides(on_pin: tuple[int, ...], vertex: int) -> Iterator[tuple[int, int]]:
+    if GROUND in on_pin:
+        yield from ((GROUND, body) for body in on_pin if body != GROUND)
+    elif len(on_pin) == 2:
+        yield on_pin[0], on_pin[1]
+    elif len(on_pin) > 2:
+        yield from ((vertex, body) for body in on_pin)
+
+
+def _constraint(pair: Pair, sides: tuple[int, ...], letter: str) -> Constraint:
+    return Constraint(pair, sides, letter, tuple(dict.fromkeys([s for s in sides if s != GROUND])))
