@@ -55,7 +55,7 @@ def rates_at(given: Inputs, tracker: Tracker, order: int) -> tuple[Number, Numbe
     """The poses that are change points themselves, solved through the double root: designs, indices, poses."""
     spots: dict[tuple[int, int], dict[int, bool]] = {}
     for k, flips in tracker.flips.items():
-        place = np.round(flips)
+        place: Number = np.round(flips)
         for d, j in zip(*np.nonzero(np.abs(flips - place) < CLOSE), strict=True):
             spots.setdefault((int(d), int(place[d, j])), {})[k] = True
     designs = np.array([d for d, _ in spots], dtype=int)

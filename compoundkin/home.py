@@ -16,13 +16,15 @@ from compoundkin.series import Number, constant
 SPACING = np.pi / 36.0
 
 
-def approach(plan: Plan, given: Inputs, drawn: Mapping[str, Pose]) -> tuple[Inputs, int, float]:
+def approach(
+    plan: Plan, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
+) -> tuple[Inputs, int, float]:
     """The lead, from the drawn drivers to the motion's pose `at` nearest to them; `at`; and the home of the modes.
 
     The lead is one pose where the drawing shows no driver. The home is the place along the motion to which
     the modes belong: just before `at` where the lead comes from before, else just after.
     """
-    shown = {name: _drawn_value(plan, given, name, drawn) for name in plan.driven}
+    shown = {name: _drawn_value(plan, given, name, drawn, sketch) for name in plan.driven}
     values = {name: value for name, value in shown.items() if value is not None}
     at = _nearest(plan, given, values) if values else 0
     end = given.cut(slice(None), slice(at, at + 1))
@@ -38,12 +40,15 @@ def approach(plan: Plan, given: Inputs, drawn: Mapping[str, Pose]) -> tuple[Inpu
     return lead.of_poses(count), at, at + _side(given, at, ways) * CLOSE
 
 
-def _drawn_value(plan: Plan, given: Inputs, name: str, drawn: Mapping[str, Pose]) -> Number | None:
+def _drawn_value(
+    plan: Plan, given: Inputs, name: str, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
+) -> Number | None:
     """The driver's coordinate as the drawing shows it, a number or (designs, 1); None where it does not."""
     driven = plan.driven[name]
     pair = driven.pair
     if any(link not in drawn for link in pair.members):
-        return None
+        value = pair.drawn_coordinate(sketch)
+        return None if value is None else first_of(value)
     ends = given.cut(slice(None), slice(0, 1)).ends[pair.name]
     poses = (column(drawn[pair.members[0]]), column(drawn[pair.members[1]]))
     return pair.coordinate(ends, poses).c[0] * pair.driven_by(driven.drive.link)
@@ -82,4 +87,5 @@ def first_of(value: Number) -> Number:
 
 
 def column(pose: Pose) -> Pose:
+    """A pose at the first pose of each design."""
     return Pose(constant(first_of(pose.z.c[0])), constant(first_of(pose.u.c[0])))

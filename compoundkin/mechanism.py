@@ -401,7 +401,7 @@ def _plain(mechanism: Mechanism) -> list[Any]:
     drawing = [["Drawn", mechanism.sketch]] if mechanism.sketch else []
     written = [[type(item).__name__, vars(item)] for item in mechanism.items if not isinstance(item, Drawn)]
     # the order between different words says nothing; that within one kind does
-    return [*about, *drawing, *sorted(written, key=lambda entry: entry[0])]
+    return [*about, *drawing, *sorted(written, key=lambda entry: str(entry[0]))]
 
 
 def find_problems(mechanism: Mechanism) -> Iterable[Problem]:

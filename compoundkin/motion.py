@@ -130,7 +130,7 @@ class LinkMotion:
 
     def at(self, point: Any) -> PointMotion:
         """The motion of any point given in its frame, complex or (x, y)."""
-        p = vector("point", point)
+        p = self._motion._fitted(vector("point", point))
         return PointMotion(self._motion, lambda k: self._pose.z.derivative(k) + self._pose.u.derivative(k) * p)
 
 
@@ -298,9 +298,19 @@ class Motion:
         return PairMotion(self, self.inputs.series(self.order)[name], is_angle)
 
     def _has(self, k: int) -> None:
-        if k > self.order:
-            what = ("position", "velocity", "acceleration", "jerk")[k]
-            raise InvalidInput(Problem(what, f"the motion was solved to order {self.order}", f"solve(..., order={k})"))
+        if not 0 <= k <= self.order:
+            names = ("position", "velocity", "acceleration", "jerk")
+            what = names[k] if 0 <= k <= HIGHEST_ORDER else f"derivative {k}"
+            remedy = f"solve(..., order={k})" if 0 <= k <= HIGHEST_ORDER else f"0 to {HIGHEST_ORDER}"
+            raise InvalidInput(Problem(what, f"the motion was solved to order {self.order}", remedy))
+
+    def _fitted(self, value: Number) -> Number:
+        """A value that broadcasts with the motion, in the form (1 or designs, 1 or poses)."""
+        try:
+            return fit(self.shape)(value)
+        except ValueError:
+            what = f"shape {np.shape(value)} does not broadcast with {self.shape}"
+            raise InvalidInput(Problem("point", what, "the last axis is the motion")) from None
 
     def _shaped(self, value: Number) -> Number:
         """A value of the form (1 or designs, 1 or poses) in the motion's shape."""

@@ -51,6 +51,13 @@ class Run:
     margins: dict[int, Number] = field(default_factory=dict)
 
 
+    def copy(self) -> Run:
+        """The same block, to try a group on."""
+        world = dict(self.world)
+        setting = Setting(self.setting.ends, world, self.setting.local)
+        return Run(setting, world, self.order, self.drives, self.failed)
+
+
 class Plan:
     """The steps that solve a structure, in order: the driven links of the frame, then the groups."""
 

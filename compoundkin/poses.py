@@ -39,6 +39,11 @@ class Pose:
         self.z = z
         self.u = u
 
+    @classmethod
+    def of(cls, z: Number, u: Number) -> Pose:
+        """A pose of order 0."""
+        return cls(constant(z), constant(u))
+
     def at(self, p: Series | Number) -> Series:
         """Where the point that is `p` in the link's frame is in the world."""
         if isinstance(p, complex | float | int) and p == 0:

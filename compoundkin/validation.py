@@ -85,7 +85,10 @@ def _points(mechanism: Mechanism) -> Iterator[Problem]:
 
 
 def _is_finite(value: Any) -> bool:
-    return bool(np.size(value)) and bool(np.all(np.isfinite(value)))
+    try:
+        return bool(np.size(value)) and bool(np.all(np.isfinite(value)))
+    except (TypeError, ValueError):  # a text, a ragged list
+        return False
 
 
 def _undrawn(letter: str, sketch: Mapping[str, Any]) -> str:
@@ -212,7 +215,8 @@ def _expectations(mechanism: Mechanism) -> Iterator[Problem]:
         if not _is_finite(expectation.value):
             yield Problem(f"{where}.value", f"{expectation.value!r} is not finite")
         if not (_is_finite(expectation.tolerance) and expectation.tolerance >= 0):
-            yield Problem(f"{where}.tolerance", f"{expectation.tolerance!r} is not a tolerance", "give a number that is not negative")
+            what = f"{expectation.tolerance!r} is not a tolerance"
+            yield Problem(f"{where}.tolerance", what, "give a number that is not negative")
 
 
 def _shapes(mechanism: Mechanism) -> Iterator[Problem]:

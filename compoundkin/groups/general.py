@@ -105,7 +105,7 @@ class General:
         """The bodies' poses to the given order, from a closed state."""
         bodies = self.poses(state)
         theta = [[state[..., 3 * k + 2]] for k in range(self.n)]
-        inverse = inverted(self.matrix(bodies, _leading(setting))) if order else None
+        inverse = inverted(self.matrix(bodies, _leading(setting))) if order else np.zeros(())
         for k in range(1, order + 1):
             trial = [Pose(Series((*b.z.c, 0j)), Series((*t, np.zeros_like(t[0]))).turn()) for b, t in zip(bodies, theta, strict=True)]
             step = -np.einsum("...ij,...j->...i", inverse, self.residual(trial, setting, k))

@@ -62,6 +62,10 @@ class Pair(ABC):
     def coordinate(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Series:
         """The free relative coordinate as a series."""
 
+    def drawn_coordinate(self, sketch: Mapping[str, Number]) -> Number | None:
+        """The free coordinate as drawn points alone show it, without the links' poses; None where they do not."""
+        return None
+
     @abstractmethod
     def jacobian(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Number:
         """The derivatives of `closure` and then `coordinate` by x, y, theta of the first member, then of the second.

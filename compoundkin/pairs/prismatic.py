@@ -123,6 +123,13 @@ class Prismatic(Pair):
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.dot(block.point - guide.point)
 
+    def drawn_coordinate(self, sketch: Mapping[str, Number]) -> Number | None:
+        """The displacement from `through` to `at`, taken to be forward along the guide."""
+        if self.at not in sketch or self.through not in sketch:
+            return None
+        across = 0.0 if self.offset is None else self.offset
+        return np.sqrt(np.maximum(np.abs(sketch[self.at] - sketch[self.through]) ** 2 - across**2, 0.0))
+
     def jacobian(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Number:
         """Rows of distance, angle and displacement."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])

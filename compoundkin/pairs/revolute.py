@@ -12,7 +12,7 @@ from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
 from compoundkin.pairs.contract import Pair, table
 from compoundkin.poses import End, Pose
-from compoundkin.series import Number, Series, constant
+from compoundkin.series import Number, Series, as_series
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Revolute(Pair):
     def placed(self, ends: tuple[End, End], free: Series) -> Pose:
         """The second link turned about the pin by the given angle."""
         u = free.turn()
-        return Pose(Pose(constant(ends[0].point), u).at(-ends[1].point), u)
+        return Pose(Pose(as_series(ends[0].point), u).at(-ends[1].point), u)
 
     def generic(self, rng: np.random.Generator) -> tuple[End, End]:
         """A pin at a random place."""

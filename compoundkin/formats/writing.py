@@ -1,0 +1,107 @@
+"""From a mechanism to the document of its file, by the table of keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from compoundkin.errors import InvalidInput, Problem
+from compoundkin.formats import document as doc
+from compoundkin.formats import exact
+from compoundkin.formats.reading import default_name
+from compoundkin.keys import Key, Kind
+from compoundkin.mechanism import Expectation, Link, Mechanism, same
+from compoundkin.pairs import WRITTEN, Pair
+from compoundkin.series import Number
+
+
+def document(mechanism: Mechanism) -> dict[str, Any]:
+    """The document that says what a mechanism says, in the order in which files are written.
+
+    Raises InvalidInput for a link of which only some points have coordinates: files cannot say that.
+
+    >>> from compoundkin.mechanism import link
+    >>> document(Mechanism("Pin", link("frame", A=(0, 0))))["links"]
+    {'frame': {'points': {'A': [0, 0]}}}
+    """
+    out: dict[str, Any] = {"format": doc.FORMATS[-1], **_table(mechanism, doc.HEAD)}
+    out["links"] = {name: _link(item) for name, item in mechanism.links.items()}
+    for name, kind in WRITTEN.items():
+        out[name] = [_pair(item) for item in mechanism.items if isinstance(item, kind)]
+    out["drives"] = [_drive(mechanism, i) for i in range(len(mechanism.drives))]
+    out[doc.DRAWN.name] = _points(mechanism.sketch)
+    out["modes"] = [_table(item, doc.MODE) for item in mechanism.modes]
+    out["expected"] = [_expected(mechanism, item) for item in mechanism.expectations]
+    return {key: value for key, value in out.items() if value not in ([], {})}
+
+
+def _table(item: Any, keys: tuple[Key, ...], angle: bool = False) -> dict[str, Any]:
+    """What an item holds by key; defaults are left out."""
+    said = [(key, getattr(item, key.name)) for key in keys]
+    return {key.name: WRITERS[key.kind](held, angle) for key, held in said if not _left_out(key, held)}
+
+
+def _left_out(key: Key, value: Any) -> bool:
+    if key.required:
+        return False
+    return value is None or same(value, key.default) or (isinstance(value, str | tuple) and not value)
+
+
+def _link(item: Link) -> dict[str, Any]:
+    drawn = [letter for letter, p in item.points.items() if p is None]
+    if drawn and len(drawn) < len(item.points):
+        what = f"only some of its points have coordinates; {drawn[0]} has none"
+        remedy = "give all by letters or all by coordinates"
+        raise InvalidInput(Problem(f"links.{item.name}", what, remedy))
+    return {"points": drawn or _points(item.points)}
+
+
+def _points(points: Mapping[str, Number]) -> dict[str, Any]:
+    return {letter: exact.point(p) for letter, p in points.items()}
+
+
+def _pair(item: Pair) -> dict[str, Any]:
+    out = _table(item, item.keys)
+    return {key: value for key, value in out.items() if key != "name" or value != default_name(item)}
+
+
+def _drive(mechanism: Mechanism, index: int) -> dict[str, Any]:
+    item = mechanism.drives[index]
+    out = _table(item, type(item).keys, bool(doc.is_angle(mechanism, item)))
+    return {key: value for key, value in out.items() if key != "name" or value != item.link}
+
+
+def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
+    angles = {d.name: bool(doc.is_angle(mechanism, d)) for d in mechanism.drives}
+    out = _table(item, doc.EXPECTED, doc.quantity_is_angle(item.quantity))
+    if item.at:
+        out["at"] = {key: _at(angles, key, value) for key, value in item.at}
+    owner, _, rest = item.quantity.partition(".")
+    if owner in mechanism.carriers and "." not in rest:
+        out["value"] = exact.point(item.value)
+    return out
+
+
+def _at(angles: Mapping[str, bool], key: str, value: float) -> Any:
+    name, _, rated = key.partition(".")
+    return (exact.rate if rated else exact.coordinate)(value, angles.get(name, False))
+
+
+def _published(value: complex, angle: bool) -> Any:
+    return exact.point(value) if value.imag else exact.coordinate(value.real, angle)
+
+
+WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
+    "name": lambda value, _: value,
+    "text": lambda value, _: value,
+    "names": lambda value, _: list(value),
+    "sign": lambda value, _: int(value),
+    "length": lambda value, _: exact.plain(value),
+    "angle": lambda value, _: exact.degrees(value),
+    "point": lambda value, _: exact.point(value),
+    "values": exact.values,
+    "rate": exact.rate,
+    "at": lambda value, _: None,
+    "published": _published,
+    "margin": exact.coordinate,
+}

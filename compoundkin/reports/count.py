@@ -1,0 +1,106 @@
+"""Mobility, loops, and equations against unknowns: what is counted before anything is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from compoundkin.reports.model import Block, Column, Formula, Paragraph, Section, Table
+from compoundkin.reports.wording import counted
+from compoundkin.structure import Structure, loop_count
+
+# Beyond these a report lists only the first: a reader has seen enough.
+MOST_LOOPS = 20
+
+
+@dataclass(frozen=True)
+class EquationCount:
+    """The position equations of a mechanism against their unknowns, with the angles of the links as unknowns.
+
+    Unknown are the angle of every moving link and the displacement of every pair that slides. Each loop
+    closes in x and in y; each pair that slides without turning ties the angles of its two links, an
+    auxiliary equation; each driver prescribes one coordinate.
+    Source: vector loops as in R. L. Norton, Design of Machinery, chapter 4, and E. Soylemez, Mechanisms.
+
+    >>> count = EquationCount(loops=2, angles=5, displacements=1, auxiliary=1, drivers=1)
+    >>> count.equations, count.unknowns
+    (6, 6)
+    """
+
+    loops: int
+    angles: int
+    displacements: int
+    auxiliary: int
+    drivers: int
+
+    @property
+    def equations(self) -> int:
+        """How many equations there are."""
+        return 2 * self.loops + self.auxiliary + self.drivers
+
+    @property
+    def unknowns(self) -> int:
+        """How many coordinates are unknown."""
+        return self.angles + self.displacements
+
+
+def equation_count(structure: Structure) -> EquationCount:
+    """Count the equations and unknowns of a structure.
+
+    >>> from compoundkin.mechanism import Mechanism, link
+    >>> from compoundkin.structure import decompose
+    >>> bars = link("frame", A=0, D=4), link("crank", A=0, B=1), link("rod", B=0, C=3), link("arm", C=0, D=3)
+    >>> count = equation_count(decompose(Mechanism("m", *bars)))
+    >>> count.equations, count.unknowns
+    (2, 3)
+    """
+    slides = [0 if pair.free_is_angle else 1 for pair in structure.pairs]
+    # of what a pair holds, two less its displacements are the components of position; the rest are angles
+    angles = [pair.held - 2 + slide for pair, slide in zip(structure.pairs, slides, strict=True)]
+    links = len(structure.mechanism.links)
+    return EquationCount(loop_count(structure), links - 1, sum(slides), sum(angles), structure.mobility.drivers)
+
+
+def mobility_section(structure: Structure) -> Section:
+    """The mobility sum with its numbers, and whether the drivers determine the motion."""
+    mobility = structure.mobility
+    text = mobility.verdict[:1].upper() + mobility.verdict[1:] + "."
+    if mobility.is_determinate and structure.faults:
+        text += " The count is right as a whole but not in every part: see below."
+    return Section("mobility", "Mobility", (Formula(mobility.formula), Paragraph(text)))
+
+
+def loops_section(structure: Structure) -> Section:
+    """The independent loops as chains, and the equations against the unknowns."""
+    count = equation_count(structure)
+    links, pairs = count.angles + 1, len(structure.pairs)
+    euler = Formula(f"L = p - n + 1 = {pairs} - {links} + 1 = {pairs - links + 1}")
+    blocks: list[Block] = [euler]
+    if count.loops != pairs - links + 1:
+        blocks.append(Paragraph(f"The links fall into separate pieces, so that there are {counted(count.loops, 'loop')}."))
+    rows = tuple((k, str(loop)) for k, loop in enumerate(structure.loops[:MOST_LOOPS], 1))
+    if rows:
+        blocks.append(Table((Column("loop", style="each"), Column("chain: link -pair- link")), rows))
+    if count.loops > MOST_LOOPS:
+        blocks.append(Paragraph(f"... and {count.loops - MOST_LOOPS} more."))
+    return Section("loops", "Loops and equations", (*blocks, *_equations(count)))
+
+
+def _equations(count: EquationCount) -> tuple[Block, ...]:
+    unknowns = Formula(f"unknowns:  {_sum(((count.angles, 'link angle'), (count.displacements, 'displacement')), count.unknowns)}")
+    terms = ((2 * count.loops, "for loops (x and y)"), (count.auxiliary, "auxiliary"), (count.drivers, "for drivers"))
+    equations = Formula(f"equations: {_sum(terms, count.equations)}")
+    return unknowns, equations, *_verdict(count)
+
+
+def _sum(terms: tuple[tuple[int, str], ...], total: int) -> str:
+    parts = [f"{number} {word}{'s' if number != 1 and word.split()[-1] in ('angle', 'displacement') else ''}"
+             for number, word in terms if number]  # fmt: skip
+    return f"{' + '.join(parts) or '0'} = {total}"
+
+
+def _verdict(count: EquationCount) -> tuple[Block, ...]:
+    auxiliary = " An auxiliary equation says that a block turns with its guide." if count.auxiliary else ""
+    if count.equations == count.unknowns:
+        return (Paragraph(f"As many equations as unknowns.{auxiliary}"),)
+    side = "more" if count.equations > count.unknowns else "fewer"
+    return (Paragraph(f"There are {abs(count.equations - count.unknowns)} equations {side} than unknowns.{auxiliary}"),)

@@ -1,0 +1,97 @@
+"""The first closed pose of a group without a closed form: from a drawing or hint, otherwise from random starts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from compoundkin.errors import NotAssembled, Problem
+from compoundkin.geometry import fitted_pose
+from compoundkin.home import column, first_of
+from compoundkin.plan import DyadStep, GeneralStep, Plan, Run
+from compoundkin.poses import Pose
+from compoundkin.series import Number
+
+# Random starts for a group that is not drawn completely; those after the first closed one only where a
+# drawing can tell the better of two.
+STARTS = 200
+COMPARED = 50
+# Newton is given more steps here than when tracking: a random start is far away.
+STEPS = 40
+
+Letters = list[tuple[str, str]]
+
+
+def shown(plan: Plan, step: DyadStep | GeneralStep, sketch: Mapping[str, Number]) -> Letters:
+    """The letters a sketch shows on the links of a group, each with its link."""
+    links = plan.structure.mechanism.links
+    return [(link, letter) for link in step.group.links for letter in links[link].points if letter in sketch]
+
+
+def distance(plan: Plan, letters: Letters, sketch: Mapping[str, Number], run: Run) -> Number:
+    """The summed squared distances of a group's points from where they are drawn."""
+    points = plan.structure.mechanism.geometry.points
+    total: Number = 0.0
+    for link, letter in letters:
+        gap = run.world[link].at(first_of(points[link][letter])).c[0] - first_of(sketch[letter])
+        total = total + np.abs(gap) ** 2
+    return total
+
+
+def first_state(
+    plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Number], designs: int
+) -> tuple[Number, str]:
+    """A closed state (designs, 1, 3 n) of a group at a single pose, and what chose it; NaN for designs without.
+
+    Raises NotAssembled where no design has any.
+    """
+    letters = shown(plan, step, sketch)
+    best = np.full((designs, 1, 3 * step.solver.n), np.nan)
+    least = np.full((designs, 1), np.inf)
+    guesses = _guesses(plan, step, run, sketch)
+    complete = all(pose is not None for pose in guesses)
+    for count, start in enumerate(_starts(plan, step, guesses)):
+        found = step.solver.newton(start, run.setting, steps=STEPS)
+        trial = run.copy()
+        step.run(trial, found.state)
+        cost = np.where(found.closed, distance(plan, letters, sketch, trial) if letters else float(count), np.inf)
+        best = np.where((cost < least)[..., None], found.state, best)
+        least = np.minimum(cost, least)
+        enough = 0 if complete or not letters else COMPARED
+        if count >= enough and np.isfinite(least).all():
+            break
+    if not np.isfinite(least).any():
+        raise NotAssembled(_unfound(step))
+    return best, "drawing" if letters else "first found"
+
+
+def _guesses(plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Number]) -> list[Pose | None]:
+    """The poses of the group's bodies as far as drawn points and points known already show them."""
+    points = plan.structure.mechanism.geometry.points
+    seen = {k: run.world[n].at(first_of(p)).c[0] for n in step.group.uses for k, p in points[n].items()}
+    seen.update({k: first_of(p) for k, p in sketch.items()})
+    return [fitted_pose({k: first_of(p) for k, p in points[b.links[0]].items()}, seen) for b in step.group.bodies]
+
+
+def _starts(plan: Plan, step: GeneralStep, guesses: list[Pose | None]) -> Iterator[Number]:
+    """Random states around the frame, the bodies that are shown where they are shown."""
+    rng = np.random.default_rng(step.solver.n)
+    frame = list(plan.structure.mechanism.geometry.points["frame"].values())
+    centre = complex(np.mean([np.mean(p) for p in frame]))
+    for _ in range(STARTS):
+        bodies = []
+        for guess in guesses:
+            spot = centre + complex(*rng.standard_normal(2)) * plan.size / 2.0
+            angle = rng.uniform(-np.pi, np.pi)
+            random = Pose.of(np.full((1, 1), spot), np.full((1, 1), np.exp(1j * angle)))
+            bodies.append(column(guess) if guess is not None else random)
+        yield step.solver.state(bodies)
+
+
+def _unfound(step: GeneralStep) -> Problem:
+    return Problem(
+        f"group of {', '.join(step.group.links)}",
+        "no assembled pose was found from the drawing or from random starts",
+        "draw its points near an assembled pose, or give a hint",
+    )
