@@ -1,7 +1,8 @@
 """compoundkin: compound planar mechanisms taken apart into Assur groups and solved group by group.
 
 >>> import compoundkin as ck
->>> crank = ck.Mechanism("Crank", ck.link("frame", A=(0, 0)), ck.link("crank", A=(0, 0), B=(2, 0)), ck.drive("crank"))
+>>> frame, link = ck.link("frame", A=(0, 0)), ck.link("crank", A=(0, 0), B=(2, 0))
+>>> crank = ck.Mechanism("Crank", frame, link, ck.drive("crank"))
 >>> motion = ck.solve(crank, {"crank": ck.deg([0, 90])}, speed=3)
 >>> motion.points["B"].velocity.xy.round(12).tolist()
 [[0.0, 6.0], [-6.0, 0.0]]
@@ -17,6 +18,7 @@ from compoundkin.errors import (
     UnassembledPoses,
     UnknownName,
 )
+from compoundkin.formats import load, save, save_table, to_pandas
 from compoundkin.gaps import Gap, gaps
 from compoundkin.mechanism import Mechanism, deg, drawn, drive, expect, link, mode, polar
 from compoundkin.motion import Motion, solve
@@ -46,9 +48,13 @@ __all__ = [
     "expect",
     "gaps",
     "link",
+    "load",
     "mode",
     "polar",
+    "save",
+    "save_table",
     "slide",
     "solve",
+    "to_pandas",
     "verify",
 ]

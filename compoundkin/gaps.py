@@ -54,7 +54,7 @@ def gaps(motion: Motion) -> tuple[Gap, ...]:
     runs = _runs(motion.failed != 0)
     if not len(runs):
         return ()
-    designs, first, last = runs.T
+    designs, first, last = runs[:, 0], runs[:, 1], runs[:, 2]
     with np.errstate(all="ignore"):
         begin = _edges(motion, designs, first - 1, first)
         end = _edges(motion, designs, last + 1, last)

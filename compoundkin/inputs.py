@@ -156,6 +156,8 @@ def _shape(plan: Plan, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, .
     found: tuple[int, ...] = ()
     named = [(f"drives.{k}", v) for k, vs in drives.items() for v in vs]
     named += [(name, v) for name, ends in plan.ends.items() for end in ends for v in end if v is not None]
+    points = plan.structure.mechanism.geometry.points
+    named += [(f"links.{name}.points.{k}", v) for name, placed in points.items() for k, v in placed.items()]
     for where, value in named:
         try:
             found = np.broadcast_shapes(found, np.shape(value))

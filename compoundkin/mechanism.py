@@ -188,7 +188,7 @@ def expect(quantity: str, value: Any, tolerance: float, **at: float) -> Expectat
     >>> expect("block.angle", 0.5, 1e-3, crank=1.0).at
     (('crank', 1.0),)
     """
-    return Expectation(quantity, complex(vector("expected", value)), float(tolerance), tuple(at.items()))
+    return Expectation(quantity, complex(vector("expected", value)), float(_real("expected.tolerance", tolerance)), tuple(at.items()))
 
 
 class Mechanism:
@@ -338,7 +338,7 @@ def vector(where: str, value: Any) -> Number:
         if isinstance(value, tuple | list) and len(value) == 2:
             x, y = (np.asarray(v, dtype=float) for v in value)
             out = x + 1j * y
-        elif isinstance(value, tuple | list | str):
+        elif value is None or isinstance(value, tuple | list | str):
             raise ValueError
         else:
             out = np.asarray(value, dtype=complex)
@@ -392,7 +392,7 @@ def _identity(item: Item) -> tuple[Any, ...]:
         return Mode, frozenset(item.links)
     if isinstance(item, Drawn):
         return (Drawn,)
-    return type(item), item.quantity if isinstance(item, Expectation) else item.name
+    return type(item), (item.quantity, item.at) if isinstance(item, Expectation) else item.name
 
 
 def _plain(mechanism: Mechanism) -> list[Any]:

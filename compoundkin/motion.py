@@ -403,8 +403,10 @@ def _signs(plan: Plan, modes: Mapping[str, int] | None) -> dict[str, int]:
 
 def _settled(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> Motion:
     """Solve; again where a group is found to pass through a change point, from which its mode changes sign."""
+    lead = tracker.lead_run()
     while True:
         motion, near = _run(plan, given, tracker, order)
+        near |= _near(lead) if lead else set()
         if not near or not pass_through(given, tracker, near):
             return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
 

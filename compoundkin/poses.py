@@ -46,7 +46,7 @@ class Pose:
 
     def at(self, p: Series | Number) -> Series:
         """Where the point that is `p` in the link's frame is in the world."""
-        if isinstance(p, complex | float | int) and p == 0:
+        if isinstance(p, (complex, float, int)) and p == 0:
             return self.z
         if self is FIXED:
             return p if isinstance(p, Series) else constant(p)

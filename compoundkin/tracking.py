@@ -96,6 +96,13 @@ class Tracker:
                 self.leads[k], self.paths[k] = track(self, k, step.solver, state)
                 step.run(run, state)
 
+    def lead_run(self) -> Run | None:
+        """The lead solved for position, or None where there is none."""
+        if self.lead.poses < 2:
+            return None
+        places, designs = np.arange(self.lead.poses, dtype=float)[None], np.arange(self.given.designs)[:, None]
+        return self.run(self.lead, 0, places, designs, lead=True)
+
     def _sign(self, k: int, step: DyadStep, run: Run) -> Number:
         """The mode whose points lie nearest to the drawn ones."""
         if k in self._fixed or step.kernel.modes == 1:

@@ -19,6 +19,7 @@ ZERO_LENGTH = 1e-12
 
 def problems_of(mechanism: Mechanism) -> Iterator[Problem]:
     """All problems, in the order of the words."""
+    yield from _words(mechanism)
     yield from _names(mechanism)
     yield from _points(mechanism)
     yield from _pairs(mechanism)
@@ -27,6 +28,15 @@ def problems_of(mechanism: Mechanism) -> Iterator[Problem]:
     yield from _modes(mechanism)
     yield from _expectations(mechanism)
     yield from _shapes(mechanism)
+
+
+def _words(mechanism: Mechanism) -> Iterator[Problem]:
+    """What is not a word at all."""
+    from compoundkin.mechanism import Item
+
+    for index, item in enumerate(mechanism.items):
+        if not isinstance(item, Item):
+            yield Problem(f"items[{index}]", f"{item!r} is not a word", "known: link, slide, drive, drawn, mode, expect")
 
 
 def _names(mechanism: Mechanism) -> Iterator[Problem]:

@@ -119,11 +119,7 @@ def test_moves_continuously_and_closes_after_a_turn(name: str) -> None:
             assert abs(point.position[0] - point.position[-1]) < 1e-9 * solved.size, letter
 
 
-# A cylinder pinned at one point shows no pose in the drawing, so that the motion's home falls back to its first pose.
-NO_HOME = pytest.mark.xfail(reason="Tracker._home does not see drivers whose links show one point only", strict=True)
-
-
-@pytest.mark.parametrize("name", [pytest.param(n, marks=NO_HOME) if n == "excavator-arm" else n for n in NAMES])
+@pytest.mark.parametrize("name", NAMES)
 def test_a_pose_alone_is_that_pose_of_the_motion(name: str) -> None:
     """The assembly mode is chosen by the drawing, not by where the motion happens to begin."""
     solved = motion(name)

@@ -28,9 +28,10 @@ class RPR(Dyad):
     ) -> Closed:
         """Turn the guide so that the pins have their known distance across it."""
         line, across = _distances(first, inner, second)
-        line2 = line.abs2()
-        along, margin = root(line2 - across * across, line2.c[0])
-        guide = line * planar(along * sign, -across) / line2
+        unit = 1.0 / line.abs2()
+        side = across * unit
+        along, margin = root(unit - side * side, unit.c[0])  # this too divided by the squared line
+        guide = line * planar(along * sign, -side)
         u, v = guide * inner[0].along.conj(), guide * inner[1].along.conj()
         first_pose = placed_at(as_series(first.world.point), u, first.local.point)
         return Closed((first_pose, placed_at(as_series(second.world.point), v, second.local.point)), margin)

@@ -37,13 +37,12 @@ class RRR(Dyad):
     ) -> Closed:
         """Intersect the circle about each outer pin."""
         a, b, line = _sides(first, inner, second)
-        line2, a2 = line.abs2(), a.abs2()
-        foot = (line2 + a2 - b.abs2()) * 0.5  # the scalar product of a and the line
-        square = a2 * line2 - foot * foot
-        apart = line2.c[0] > COINCIDENT**2 * a2.c[0]
-        height, margin = root(square, np.where(apart, (a2 * line2).c[0], np.nan))
-        height = height * sign
-        arm = line * planar(foot, -height) / line2
+        a2, unit = a.abs2(), 1.0 / line.abs2()  # the line becomes the unit of length
+        reach2 = a2 * unit
+        foot = (a2 - b.abs2()) * 0.5 * unit + 0.5
+        apart = reach2.c[0] < COINCIDENT**-2
+        height, margin = root(reach2 - foot * foot, np.where(apart, reach2.c[0], np.nan))
+        arm = line * planar(foot, height * -sign)
         u, v = arm / a, (arm - line) / b
         first_pose = placed_at(_point(first), u, first.local.point)
         return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin)

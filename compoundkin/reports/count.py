@@ -86,10 +86,10 @@ def loops_section(structure: Structure) -> Section:
 
 
 def _equations(count: EquationCount) -> tuple[Block, ...]:
-    unknowns = Formula(f"unknowns:  {_sum(((count.angles, 'link angle'), (count.displacements, 'displacement')), count.unknowns)}")
+    unknowns = f"unknowns:  {_sum(((count.angles, 'link angle'), (count.displacements, 'displacement')), count.unknowns)}"
     terms = ((2 * count.loops, "for loops (x and y)"), (count.auxiliary, "auxiliary"), (count.drivers, "for drivers"))
-    equations = Formula(f"equations: {_sum(terms, count.equations)}")
-    return unknowns, equations, *_verdict(count)
+    equations = f"equations: {_sum(terms, count.equations)}"
+    return Formula(f"{unknowns}\n{equations}"), *_verdict(count)
 
 
 def _sum(terms: tuple[tuple[int, str], ...], total: int) -> str:

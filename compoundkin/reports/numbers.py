@@ -13,14 +13,15 @@ LARGEST, SMALLEST = 1e7, 1e-3
 NOTHING = "-"
 
 
-def written(column: Column, cells: Iterable[Cell]) -> list[str]:
-    """The cells of a column as text.
+def written(column: Column, cells: Iterable[Cell], between: str = ", ") -> list[str]:
+    """The cells of a column as text; `between` the numbers of a cell that holds several.
 
     >>> written(Column("x", style="fixed"), [1.0, 2.25, None])
     ['1.00', '2.25', '-']
     """
     cells = list(cells)
-    return [_cell(column, cell, _writer(column, cells)) for cell in cells]
+    write = _writer(column, cells)
+    return [_cell(column, cell, write, between) for cell in cells]
 
 
 def number(value: float) -> str:
@@ -35,19 +36,19 @@ def number(value: float) -> str:
 def brief(value: float) -> str:
     """A number of which only the magnitude matters.
 
-    >>> brief(2.13e-14), brief(0.0)
-    ('2.1e-14', '0')
+    >>> brief(2.13e-14), brief(1e-9), brief(0.0)
+    ('2.1e-14', '1e-09', '0')
     """
-    return f"{value:.1e}" if value else "0"
+    return f"{value:.1e}".replace(".0e", "e") if value else "0"
 
 
-def _cell(column: Column, cell: Cell, write: Callable[[float], str]) -> str:
+def _cell(column: Column, cell: Cell, write: Callable[[float], str], between: str) -> str:
     if isinstance(cell, bool):
         return "pass" if cell else "FAIL"
     if isinstance(cell, str):
         return cell
     if isinstance(cell, tuple):
-        return ", ".join(_one(column, value, write) for value in cell)
+        return between.join(_one(column, value, write) for value in cell)
     return NOTHING if cell is None else _one(column, cell, write)
 
 

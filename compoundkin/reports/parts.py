@@ -10,7 +10,7 @@ from compoundkin.reports.model import Alert, Block, Column, Paragraph, Section, 
 from compoundkin.reports.numbers import number
 from compoundkin.reports.wording import counted, joined, kind_of_link, listed
 from compoundkin.series import Number
-from compoundkin.structure import Structure, links_by_pairs, pair_counts
+from compoundkin.structure import DrivenPair, Structure, links_by_pairs, pair_counts
 
 # A coordinate below this part of the mechanism's size is the rounding of a zero.
 ROUNDING = 1e-12
@@ -60,18 +60,20 @@ def _pairs_by_link(structure: Structure) -> dict[str, list[str]]:
 
 def pairs_section(structure: Structure) -> Section:
     """The pairs: what kind each is, which links it joins and where, and what drives it."""
+    drivers = {step.pair.name: name for name, step in driven_pairs(structure).items()}
     rows = tuple(
-        (pair.name, f"{pair.code}, {pair.title.removesuffix(' pair')}", joined(pair.members), ", ".join(pair.letters), by)
-        for pair, by in zip(structure.pairs, _drivers(structure), strict=True)
-    )
+        (pair.name, f"{pair.code}, {pair.title.removesuffix(' pair')}", joined(pair.members),
+         ", ".join(pair.letters), drivers.get(pair.name, ""))
+        for pair in structure.pairs
+    )  # fmt: skip
     columns = (Column("pair"), Column("kind"), Column("joins"), Column("at"), Column("driven by"))
     return Section("pairs", "Pairs", (*_multiple_pins(structure), Table(columns, rows)))
 
 
-def _drivers(structure: Structure) -> list[str]:
+def driven_pairs(structure: Structure) -> dict[str, DrivenPair]:
+    """The driven pair of every driver that has its place in the structure, by the driver's name."""
     bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
-    driven = {step.pair.name: step.drive.name for body in bodies for step in body.driven}
-    return [driven.get(pair.name, "") for pair in structure.pairs]
+    return {step.drive.name: step for body in bodies for step in body.driven}
 
 
 def _multiple_pins(structure: Structure) -> Iterator[Block]:

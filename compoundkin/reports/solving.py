@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compoundkin.groups import DYADS
-from compoundkin.pairs import Pair
 from compoundkin.reports.model import Paragraph, Section, Step
 from compoundkin.reports.wording import counted, listed
 from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
@@ -62,11 +61,8 @@ def _ground(ground: Body, letters: Iterable[str]) -> Step:
 
 def _driven(step: DrivenPair) -> str:
     drive, pair = step.drive, step.pair
-    return f"{drive.name}: {drive.link} is driven on {drive.on}, {'/'.join(pair.free)} of {_named(pair)}"
-
-
-def _named(pair: Pair) -> str:
-    return f"{pair.title.removesuffix(' pair')} pair {pair.name}"
+    name = f"{drive.name}: " if drive.name != drive.link else ""
+    return f"{name}{drive.link} on {drive.on}, the {' and '.join(pair.free)} of {pair.title} {pair.name}"
 
 
 def _facts(structure: Structure, group: Group, new: list[str]) -> Iterator[tuple[str, str]]:
@@ -110,7 +106,7 @@ def _mode(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]]:
     else:
         sign = _sign(motion, k, design)
         meaning = kernel.sign_means if sign > 0 else f"the other one; in +1, {kernel.sign_means}"
-        yield "mode", f"{sign:+d}, {why}: {meaning}{_changes(motion, k, design)}"
+        yield "mode", f"{sign:+d}, {why} ({meaning}){_changes(motion, k, design)}"
 
 
 def _sign(motion: Motion, k: int, design: int) -> int:
@@ -122,4 +118,4 @@ def _sign(motion: Motion, k: int, design: int) -> int:
 def _changes(motion: Motion, k: int, design: int) -> str:
     flips = motion.tracker.flips.get(k)
     count = 0 if flips is None else int(np.count_nonzero(np.isfinite(flips[design])))
-    return f" (it changes at {counted(count, 'change point')})" if count else ""
+    return f"; it changes at {counted(count, 'change point')}" if count else ""

@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.mechanism import FRAME, Drive, Mechanism
 from compoundkin.quantities import PER_SECOND, Quantity
 from compoundkin.reports.model import Block, Cell, Column, Paragraph, Section, Table
+from compoundkin.reports.parts import driven_pairs
 from compoundkin.reports.sampling import Sample
 from compoundkin.reports.wording import counted, listed, ordinal
 from compoundkin.structure import Structure
@@ -39,31 +40,28 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
     """Each driver with its range, its number of poses and its rates."""
-    columns = (Column("driver"), Column("drives"), *(Column(name, style="each") for name in ("from", "to", "poses")),
-               Column("unit"), Column("speed", style="each"), Column("accel.", style="each"), Column("unit"))  # fmt: skip
+    numbers = [Column(name, style="each") for name in ("from", "to", "poses", "speed", "acceleration")]
+    columns = (Column("driver"), Column("drives"), *numbers[:3], Column("unit"), *numbers[3:], Column("rate unit"))
     rows = tuple(_driver_row(structure, drive, sample) for drive in structure.mechanism.drives)
-    blocks: tuple[Block, ...] = (Table(columns, rows, keys=1),) if rows else (Paragraph("There is no driver."),)
+    if not any(row[7] for row in rows):
+        columns, rows = columns[:7] + columns[8:], tuple(row[:7] + row[8:] for row in rows)
+    blocks: tuple[Block, ...] = (Table(columns, rows),) if rows else (Paragraph("There is no driver."),)
     return Section("drivers", "Drivers", blocks)
 
 
 def _driver_row(structure: Structure, drive: Drive, sample: Sample | None) -> tuple[Cell, ...]:
-    pair = _driven_pair(structure, drive)
-    is_angle = pair is None or pair.free_is_angle
+    step = driven_pairs(structure).get(drive.name)
+    is_angle = step is None or step.pair.free_is_angle
     unit = "deg" if is_angle else structure.mechanism.unit or "length"
     rate = ("rad" if is_angle else unit) + PER_SECOND[1]
     values, speed, acceleration = _given(drive, sample)
-    what = f"{drive.link} on {drive.on}" + (f", {pair.name}" if pair else "")
+    what = f"{drive.link} on {drive.on}" + (f", {step.pair.name}" if step else "")
     if values is None:
         span: tuple[Cell, ...] = (0.0, 360.0, 73) if is_angle else (None, None, None)
     else:
         ends = (float(values[0]), float(values[-1]))
         span = (*(map(degrees, ends) if is_angle else ends), len(values))
     return drive.name, what, *span, unit, speed, acceleration, rate
-
-
-def _driven_pair(structure: Structure, drive: Drive) -> Any:
-    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
-    return next((step.pair for body in bodies for step in body.driven if step.drive is drive), None)
 
 
 def _given(drive: Drive, sample: Sample | None) -> tuple[Any, Cell, Cell]:
