@@ -22,8 +22,8 @@ from compoundkin.tracking import Tracker
 NEAR = 0.05
 # A margin below this at its minimum is a touching zero: rounding times the inverse of the margin's curvature.
 TOUCHING = 1e-12
-# Steps of golden-section search: 0.618**40 of a bracket is the square root of rounding.
-STEPS = 45
+# Steps of golden-section search: 0.618**65 is below TOUCHING, for margins that fall linearly to zero.
+STEPS = 65
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 BLOCK = 4096
 
@@ -88,7 +88,7 @@ def _touching(given: Inputs, tracker: Tracker, k: int, lead: bool) -> tuple[Numb
     margin = _margins(given, tracker, k, lead)
     padded = np.pad(margin, ((0, 0), (1, 1)), constant_values=np.inf)
     here, before, after = margin, padded[:, :-2], padded[:, 2:]
-    lowest = (here < NEAR) & (here >= 0) & (here <= before) & (here < after) & (before >= 0) & (after >= 0)
+    lowest = (here < NEAR) & (here >= -TOUCHING) & (here <= before) & (here < after) & (before >= 0) & (after >= 0)
     designs, index = np.nonzero(lowest)
     if not len(designs):
         return designs, index

@@ -73,7 +73,7 @@ def gaps(motion: Motion) -> tuple[Gap, ...]:
 
 def _runs(failed: Number) -> Number:
     """Rows (design, first, last) of the runs of True along the last axis."""
-    edge = np.diff(np.pad(failed, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    edge: Number = np.diff(np.pad(failed, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     design, first = np.nonzero(edge == 1)
     last = np.nonzero(edge == -1)[1] - 1
     return np.stack([design, first, last], axis=1)
@@ -82,7 +82,7 @@ def _runs(failed: Number) -> Number:
 def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[str, Number]:
     """The driver values between an assembled pose and its neighbour that is not, by bisection."""
     inside = (good >= 0) & (good < motion.inputs.poses)
-    near = np.where(inside, good, bad).astype(float)
+    near: Number = bad + np.where(inside, good - bad, 0.0)
     far = bad.astype(float)
     for _ in range(HALVINGS):
         middle = (near + far) / 2.0

@@ -43,24 +43,23 @@ def _span(points: list[Number]) -> float:
     return float(np.hypot(wide, high))
 
 
-def read_off(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Pose, dict[str, Number]]:
+def read_off(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Pose | None, dict[str, Number]]:
     """The drawn pose of a link given by its letters only, and its points in its own frame.
 
-    The origin is the first letter; the x axis points to the second (parallel to the drawing's where there is none).
+    The origin is the first letter; the x axis points to the second. A single letter shows no direction, so no pose.
     """
+    if len(letters) == 1:
+        return None, {letters[0]: 0j}
     origin = sketch[letters[0]]
-    turned: Number = 1 + 0j
-    if len(letters) > 1:
-        line = sketch[letters[1]] - origin
-        turned = line / np.abs(line)
+    line = sketch[letters[1]] - origin
+    turned = line / np.abs(line)
     back = np.conjugate(turned)
     points: dict[str, Number] = {}
     for letter in letters:
         p = back * (sketch[letter] - origin)
         points[letter] = complex(p) if np.ndim(p) == 0 else p
-    if len(letters) > 1:
-        # the second letter defines the axis: keep rounding out of it
-        points[letters[1]] = points[letters[1]].real + 0j
+    # the second letter defines the axis: keep rounding out of it
+    points[letters[1]] = points[letters[1]].real + 0j
     return Pose(constant(origin), constant(turned)), points
 
 

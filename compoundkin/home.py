@@ -73,7 +73,8 @@ def _samples(plan: Plan, name: str, way: Number) -> int:
 
 def _side(given: Inputs, at: int, ways: Mapping[str, Number]) -> float:
     """-1 where the lead reaches the motion's pose `at` in the direction of the motion, else +1."""
-    step = given.at(np.array([float(at)])).drives if given.poses > 1 else {}
+    leads = given.poses > 1 and any(np.any(way != 0.0) for way in ways.values())
+    step = given.at(np.array([float(at)])).drives if leads else {}
     along = sum(float(np.sum(np.sign(values[1] * ways[name]))) for name, values in step.items())
     return -1.0 if along > 0.0 else 1.0
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -33,7 +35,7 @@ class Inputs:
     @property
     def designs(self) -> int:
         """How many designs: the product of all axes but the last."""
-        return int(np.prod(self.shape[:-1], dtype=int))
+        return prod(self.shape[:-1])
 
     @property
     def poses(self) -> int:
@@ -78,8 +80,15 @@ class Inputs:
         """The drivers as series."""
         return {name: rates(values, order) for name, values in self.drives.items()}
 
+    @cached_property
+    def _rigid(self) -> bool:
+        """Whether every dimension is a number."""
+        return not any(isinstance(v, np.ndarray) for ends in self.ends.values() for end in ends for v in end)
+
     def _each(self, change: Any) -> Inputs:
-        ends = {name: (_map(a, change), _map(b, change)) for name, (a, b) in self.ends.items()}
+        ends = self.ends
+        if not self._rigid:
+            ends = {name: (_map(a, change), _map(b, change)) for name, (a, b) in ends.items()}
         return replace(self, ends=ends, drives={k: tuple(change(v) for v in vs) for k, vs in self.drives.items()})
 
 
@@ -98,10 +107,11 @@ def inputs(
     }
     _only_known(mechanism, {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk})
     shape = _shape(plan, given)
+    fitted = fit(shape)
     return Inputs(
         shape,
-        {k: (_map(a, fit(shape)), _map(b, fit(shape))) for k, (a, b) in plan.ends.items()},
-        {k: tuple(fit(shape)(v) for v in vs) for k, vs in given.items()},
+        {k: (_map(a, fitted), _map(b, fitted)) for k, (a, b) in plan.ends.items()},
+        {k: tuple(fitted(v) for v in vs) for k, vs in given.items()},
     )
 
 
@@ -159,6 +169,8 @@ def _shape(plan: Plan, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, .
     points = plan.structure.mechanism.geometry.points
     named += [(f"links.{name}.points.{k}", v) for name, placed in points.items() for k, v in placed.items()]
     for where, value in named:
+        if not isinstance(value, np.ndarray):
+            continue
         try:
             found = np.broadcast_shapes(found, np.shape(value))
         except ValueError:
@@ -174,11 +186,13 @@ def _map(end: End, change: Any) -> End:
 
 def fit(shape: tuple[int, ...]) -> Callable[[Number], Number]:
     """Brings a value into the form (1 or designs, 1 or poses); numbers stay numbers."""
-    designs = int(np.prod(shape[:-1], dtype=int))
+    designs = prod(shape[:-1])
 
     def fitted(value: Number) -> Number:
+        if isinstance(value, (complex, float)):
+            return value
         if np.ndim(value) == 0:
-            return value if isinstance(value, complex | float) else value.item()
+            return value.item()
         array = np.asarray(value)
         last = array.shape[-1]
         if array.size == last:

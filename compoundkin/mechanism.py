@@ -287,7 +287,9 @@ class Mechanism:
                 poses[name] = FIXED
                 points[name] = {k: self.sketch[k] if p is None else p for k, p in item.points.items()}
             elif item.is_drawn:
-                poses[name], points[name] = read_off(item.letters, self.sketch)
+                pose, points[name] = read_off(item.letters, self.sketch)
+                if pose is not None:
+                    poses[name] = pose
             else:
                 points[name] = {k: p for k, p in item.points.items() if p is not None}
                 pose = fitted_pose(points[name], seen) if self.sketch else None

@@ -12,6 +12,7 @@ import numpy as np
 
 from compoundkin.change_points import NEAR, pass_through, rates_at
 from compoundkin.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses, UnknownName, nearest
+from compoundkin.gathering import Gathering
 from compoundkin.inputs import Inputs, fit, inputs
 from compoundkin.mechanism import FRAME, Mechanism, vector
 from compoundkin.plan import Plan, Run, blocks
@@ -21,8 +22,11 @@ from compoundkin.structure import decompose
 from compoundkin.structure.model import Structure
 from compoundkin.tracking import Tracker, read_hint
 
-# Poses a block: temporaries of a few dozen complex arrays of this length stay in a second-level cache.
-BLOCK = 4096
+# Up to so many poses are solved at once: gathering blocks would copy more than the caches save.
+WHOLE = 65536
+# Longer motions are solved in blocks of so many poses: their arrays stay in a second-level cache of 2 MB, and the
+# calls take far less time than the work.
+BLOCK = 16384
 HIGHEST_ORDER = 3
 
 
@@ -50,7 +54,8 @@ class PointMotion:
     def derivative(self, k: int) -> Vectors:
         """The k-th time derivative of the position; raises InvalidInput beyond the order solved for."""
         self._motion._has(k)
-        return self._motion._shaped(self._derivative(k)).astype(complex, copy=False).view(Vectors)
+        found: Vectors = self._motion._known(self._derivative(k)).astype(complex, copy=False).view(Vectors)
+        return found
 
     @property
     def position(self) -> Vectors:
@@ -96,12 +101,13 @@ class LinkMotion:
         self._pose = pose
 
     @cached_property
-    def _angle(self) -> Series:
-        return self._pose.u.angle()
+    def _turning(self) -> Series:
+        return self._pose.u.turning()
 
     def _rate(self, k: int) -> Number:
         self._motion._has(k)
-        return self._motion._shaped(self._angle.derivative(k))
+        rate = self._turning.derivative(k - 1) if k else np.angle(self._pose.u.c[0])
+        return self._motion._known(rate)
 
     @cached_property
     def angle(self) -> Number:
@@ -131,21 +137,23 @@ class LinkMotion:
     def at(self, point: Any) -> PointMotion:
         """The motion of any point given in its frame, complex or (x, y)."""
         p = self._motion._fitted(vector("point", point))
-        return PointMotion(self._motion, lambda k: self._pose.z.derivative(k) + self._pose.u.derivative(k) * p)
+        return PointMotion(self._motion, lambda k: self._pose.derivative(p, k))
 
 
 class PairMotion:
     """The free relative coordinate of a pair: an angle (radians, unwrapped) or a displacement, and its rates."""
 
-    def __init__(self, motion: Motion, coordinate: Series, is_angle: bool) -> None:
+    def __init__(self, motion: Motion, coordinate: Series, is_angle: bool, prescribed: bool = False) -> None:
         self._motion = motion
+        self._prescribed = prescribed
         self.coordinate = coordinate
         self.is_angle = is_angle
 
     def derivative(self, k: int) -> Number:
         """The k-th time derivative; raises InvalidInput beyond the order solved for."""
         self._motion._has(k)
-        value = self._motion._shaped(self.coordinate.derivative(k))
+        value = self.coordinate.derivative(k)
+        value = self._motion._shaped(value) if self._prescribed else self._motion._known(value)
         return unwrapped(value) if k == 0 and self.is_angle else value
 
     @property
@@ -285,7 +293,7 @@ class Motion:
     def _derivative(self, link: str, name: str) -> Any:
         pose = self.poses[link]
         p = fit(self.shape)(self.mechanism.geometry.points[link][name])
-        return lambda k: pose.z.derivative(k) + pose.u.derivative(k) * p
+        return lambda k: pose.derivative(p, k)
 
     def _pair(self, name: str) -> PairMotion:
         pair = self._plan.pairs[name]
@@ -295,7 +303,7 @@ class Motion:
 
     def _drive(self, name: str) -> PairMotion:
         is_angle = self._plan.driven[name].pair.free_is_angle
-        return PairMotion(self, self.inputs.series(self.order)[name], is_angle)
+        return PairMotion(self, self.inputs.series(self.order)[name], is_angle, prescribed=True)
 
     def _has(self, k: int) -> None:
         if not 0 <= k <= self.order:
@@ -307,10 +315,20 @@ class Motion:
     def _fitted(self, value: Number) -> Number:
         """A value that broadcasts with the motion, in the form (1 or designs, 1 or poses)."""
         try:
-            return fit(self.shape)(value)
+            np.broadcast_to(value, self.shape)
         except ValueError:
             what = f"shape {np.shape(value)} does not broadcast with {self.shape}"
             raise InvalidInput(Problem("point", what, "the last axis is the motion")) from None
+        return fit(self.shape)(value)
+
+    def _known(self, value: Number) -> Number:
+        """A value in the motion's shape, not a number at poses that are not assembled."""
+        shaped = self._shaped(value)
+        return shaped if self._complete else np.where(self.assembled, shaped, np.nan)
+
+    @cached_property
+    def _complete(self) -> bool:
+        return not self.failed.any()
 
     def _shaped(self, value: Number) -> Number:
         """A value of the form (1 or designs, 1 or poses) in the motion's shape."""
@@ -390,14 +408,24 @@ def _plan_of(mechanism: Mechanism | Structure) -> Plan:
     return plan
 
 
-def _signs(plan: Plan, modes: Mapping[str, int] | None) -> dict[str, int]:
+def _signs(plan: Plan, modes: Mapping[str, int] | None) -> dict[int, int]:
+    """The modes chosen by sign, by group; those of the call go before those of the mechanism."""
     mechanism = plan.structure.mechanism
-    signs = {link: mode.sign for mode in mechanism.modes for link in mode.links}
-    for name, sign in (modes or {}).items():
-        mechanism.link(name)
+    called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
+    return {**_by_group(plan, written), **_by_group(plan, called)}
+
+
+def _by_group(plan: Plan, modes: Mapping[str, int]) -> dict[int, int]:
+    signs: dict[int, int] = {}
+    where = {link: k for k, step in enumerate(plan.steps) for link in step.group.links}
+    for name, sign in modes.items():
+        plan.structure.mechanism.link(name)
         if sign not in (1, -1):
             raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
-        signs[name] = sign
+        if name not in where:
+            raise InvalidInput(Problem(f"modes.{name}", "this link is driven or fixed: it has no assembly mode"))
+        if signs.setdefault(where[name], sign) != sign:
+            raise InvalidInput(Problem(f"modes.{name}", "another link of its group has the opposite mode"))
     return signs
 
 
@@ -415,12 +443,12 @@ def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> tuple[Motio
     """Solve block by block and gather; also the groups that come near a limit position."""
     designs, poses = given.designs, given.poses
     near: set[int] = set()
-    parts = list(blocks(designs, poses, BLOCK))
+    parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
     if len(parts) == 1:
         run = tracker.run(given, order, *_places(slice(0, designs), slice(0, poses)))
         failed = np.broadcast_to(run.failed, (designs, poses))
         return Motion(plan.structure, order, given, dict(run.world), failed, tracker), _near(run)
-    store = _Store(designs, poses, order)
+    store = Gathering(designs, poses)
     for d, m in parts:
         run = tracker.run(given.cut(d, m), order, *_places(d, m))
         store.take(run.world, run.failed, d, m)
@@ -429,41 +457,9 @@ def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> tuple[Motio
 
 
 def _near(run: Run) -> set[int]:
-    return {k for k, margin in run.margins.items() if np.fmin.reduce(margin, axis=None) < NEAR}
+    return {k for k, margin in run.margins.items() if np.any(margin < NEAR)}
 
 
 def _places(d: slice, m: slice) -> tuple[Number, Number]:
     """The places along the motion (a row) and the design indices (a column) of a block."""
     return np.arange(m.start, m.stop, dtype=float)[None], np.arange(d.start, d.stop)[:, None]
-
-
-class _Store:
-    """Where the blocks' results are gathered: one array for each series that changes."""
-
-    def __init__(self, designs: int, poses: int, order: int) -> None:
-        self.shape = (order + 1, designs, poses)
-        self.failed = np.zeros((designs, poses), dtype=np.int32)
-        self.arrays: dict[tuple[str, str], Number] = {}
-        self.fixed: dict[tuple[str, str], Series] = {}
-
-    def take(self, world: Mapping[str, Pose], failed: Number, d: slice, m: slice) -> None:
-        """Keep a block."""
-        self.failed[d, m] = failed
-        for link, pose in world.items():
-            for what, series in (("z", pose.z), ("u", pose.u)):
-                self._keep((link, what), series, d, m)
-
-    def _keep(self, key: tuple[str, str], series: Series, d: slice, m: slice) -> None:
-        if series.order == 0 and np.ndim(series.c[0]) == 0:
-            self.fixed[key] = series
-            return
-        if key not in self.arrays:
-            self.arrays[key] = np.zeros(self.shape, dtype=complex)
-        for k, c in enumerate(series.c):
-            self.arrays[key][k, d, m] = c
-
-    def poses(self) -> dict[str, Pose]:
-        """The links' poses over all blocks."""
-        found = {**{k: Series(tuple(a)) for k, a in self.arrays.items()}, **self.fixed}
-        links = dict.fromkeys(link for link, _ in found)
-        return {link: FIXED if link == FRAME else Pose(found[link, "z"], found[link, "u"]) for link in links}

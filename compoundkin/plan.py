@@ -10,7 +10,7 @@ from math import factorial
 import numpy as np
 
 from compoundkin.groups import DYADS, Attachment, Dyad
-from compoundkin.groups.contract import Root, clipped_root
+from compoundkin.groups.contract import COINCIDENT, Root, clipped_root
 from compoundkin.groups.general import General, Member, Setting
 from compoundkin.pairs import Pair
 from compoundkin.poses import FIXED, End, Pose
@@ -73,7 +73,7 @@ class Plan:
         self.pairs = pairs
         self.ends = {name: pair.ends(geometry) for name, pair in pairs.items()}
         self.steps: tuple[DyadStep | GeneralStep, ...] = tuple(
-            DyadStep(k, g) if g.name in DYADS else GeneralStep(k, g, self.size) for k, g in enumerate(structure.groups)
+            DyadStep(k, g, self.size) if g.name in DYADS else GeneralStep(k, g, self.size) for k, g in enumerate(structure.groups)
         )
 
     @cached_property
@@ -118,9 +118,10 @@ def _driven(driven: DrivenPair, ends: Mapping[str, tuple[End, End]], drives: Map
 class DyadStep:
     """A dyad bound to its kernel."""
 
-    def __init__(self, index: int, group: Group) -> None:
+    def __init__(self, index: int, group: Group, size: float) -> None:
         self.index = index
         self.group = group
+        self.size = size
         self.kernel: type[Dyad] = DYADS[group.name]
         inner = group.inner[0]
         bodies, outer = group.bodies, group.outer
@@ -142,9 +143,11 @@ class DyadStep:
 
     def run(self, run: Run, sign: Number, root: Root = clipped_root) -> None:
         """Close the group and add its links to what is known."""
-        poses, margin = self.kernel.close(*self.arguments(run), sign, root)
+        poses, margin, meeting = self.kernel.close(*self.arguments(run), sign, root)
+        if meeting is not None:
+            margin = np.minimum(margin, np.sqrt(meeting) / self.size - COINCIDENT)
         run.margins[self.index] = margin
-        run.failed = np.where((run.failed == 0) & ~(margin >= 0), self.index + 1, run.failed)
+        run.failed = np.where((margin >= 0) | (run.failed != 0), run.failed, self.index + 1)
         for body, pose in zip(self.bodies, poses, strict=True):
             _publish(body, pose, run)
 
@@ -209,12 +212,13 @@ def rates(values: tuple[Number, ...], order: int) -> Series:
 
 
 def blocks(designs: int, poses: int, size: int) -> Iterator[tuple[slice, slice]]:
-    """Rectangles of at most `size` poses that cover designs x poses, along the motion first.
+    """Rectangles of at most `size` poses, much of one width, that cover designs x poses, along the motion first.
 
     >>> list(blocks(1, 5, 3))
     [(slice(0, 1, None), slice(0, 3, None)), (slice(0, 1, None), slice(3, 5, None))]
     """
     high = max(1, size // max(poses, 1))
+    wide = -(-poses // -(-poses // size)) if poses else size
     for d in range(0, designs, high):
-        for m in range(0, poses, size):
-            yield slice(d, min(d + high, designs)), slice(m, min(m + size, poses))
+        for m in range(0, poses, wide):
+            yield slice(d, min(d + high, designs)), slice(m, min(m + wide, poses))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import factorial
 from typing import NamedTuple
 
 from compoundkin.series import Number, Series, constant
@@ -51,6 +52,18 @@ class Pose:
         if self is FIXED:
             return p if isinstance(p, Series) else constant(p)
         return self.z + self.u * p
+
+    def derivative(self, p: Number, k: int) -> Number:
+        """The k-th time derivative of where the point `p` of the link is.
+
+        >>> Pose(constant(1 + 0j), constant(1j)).derivative(2.0, 0)
+        (1+2j)
+        """
+        z, u = self.z.c, self.u.c
+        found = u[k] * p if k < len(u) else 0j
+        if k < len(z):
+            found = found + z[k]
+        return found * factorial(k) if k > 1 else found
 
     def carry(self, end: End) -> End:
         """The link's side of a pair, in the world."""

@@ -51,7 +51,18 @@ class Quantity:
         """
         if not self.is_angle:
             return self
-        return Quantity(self.name, np.rad2deg(self.values), "deg", self.order, True)
+        return Quantity(self.name, degrees(self.values), "deg", self.order, True)
+
+
+def degrees(angle: Any) -> Any:
+    """Radians as degrees; a short decimal that the conversion misses by its own rounding is that decimal.
+
+    >>> float(np.rad2deg(np.deg2rad(30.0))), float(degrees(np.deg2rad(30.0)))
+    (29.999999999999996, 30.0)
+    """
+    exact = np.rad2deg(angle)
+    short = np.round(exact, 9)
+    return np.where(np.abs(short - exact) <= 2.0 * np.spacing(np.abs(exact)), short, exact)
 
 
 def quantity(motion: Motion, name: str) -> Quantity:
@@ -68,15 +79,16 @@ def quantity(motion: Motion, name: str) -> Quantity:
     >>> found.values.tolist(), found.unit
     ([6j], 'mm/s')
     """
-    owner, _, attribute = name.rpartition(".") if "." in name else (name, "", "")
+    owner, dot, attribute = name.rpartition(".") if "." in name else (name, "", "")
     owners = list(_owners(motion, owner))
     if not owners:
-        raise UnknownName(Problem(name, f"there is no point, link, pair or driver {owner!r}", nearest(owner, known_owners(motion))))
+        known = nearest(owner, known_owners(motion))
+        raise UnknownName(Problem(name, f"there is no point, link, pair or driver {owner!r}", known))
     for one in owners:
-        if attribute in one.attributes or not attribute:
-            return one.read(name, attribute or next(iter(one.attributes)))
-    known = list(dict.fromkeys(a for one in owners for a in one.attributes))
-    raise UnknownName(Problem(name, f"{owner!r} has no {attribute!r}", _nearest(owner, attribute, known)))
+        if attribute in one.attributes or not dot:
+            return one.read(name, attribute if dot else next(iter(one.attributes)))
+    attributes = list(dict.fromkeys(a for one in owners for a in one.attributes))
+    raise UnknownName(Problem(name, f"{owner!r} has no {attribute!r}", _nearest(owner, attribute, attributes)))
 
 
 def order_of(name: str) -> int:
@@ -106,10 +118,8 @@ class _Owner:
     def read(self, name: str, attribute: str) -> Quantity:
         """The quantity of an attribute."""
         order = self.attributes[attribute]
-        if hasattr(self.motion, "derivative") and attribute not in ("x", "y", "speed"):
-            values = self.motion.derivative(order)
-        else:
-            values = getattr(self.motion, attribute)
+        known = hasattr(type(self.motion), attribute)
+        values = getattr(self.motion, attribute) if known else self.motion.derivative(order)
         unit = self.unit + PER_SECOND[order]
         return Quantity(name, np.asarray(values), unit, order, unit == "rad")
 

@@ -3,16 +3,17 @@
 A `Series` holds coefficients ``c[0..order]`` of ``x(t) = c[0] + c[1] t + c[2] t**2 + ...``, each a
 number or an array, so that the k-th time derivative is ``k! c[k]``. A series of one coefficient is a
 constant of any order; this is what keeps link lengths and the frame free of cost. Otherwise two series
-that meet have the same length. Adding the number 0 and multiplying by the number 0 or 1 costs nothing;
-where nothing changes the same object comes back, so that links of one orientation are known to share it.
+that meet have the same length. Adding the number 0 or multiplying by the number 1 gives the same object back;
+it costs nothing, and two links of one orientation are known to share it.
 
 Source: A. Griewank and A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, section 13.2.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import factorial, inf
+from operator import mul
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -65,7 +66,7 @@ class Series:
         return Series((a[0] - b[0], *[_negative(y) for y in b[1:]]))
 
     def __rsub__(self, other: Number) -> Series:
-        return -self + other
+        return (-self).__add__(other)
 
     def __mul__(self, other: Series | Number) -> Series:
         b = _coefficients(other)
@@ -74,8 +75,8 @@ class Series:
         if len(self.c) == 1:
             return Series(b)._scaled(self.c[0])
         if other is self:
-            return Series(tuple([_folded(b, k, _product) for k in range(len(b))]))
-        return self._bilinear(other, _product)
+            return Series(tuple([_folded(b, b, k, mul) for k in range(len(b))]))
+        return self._bilinear(other, mul)
 
     __rmul__ = __mul__
 
@@ -86,10 +87,8 @@ class Series:
             return self._scaled(inverse)
         q = [a[0] * inverse]
         for k in range(1, len(b)):
-            carried = b[1] * q[k - 1]
-            for j in range(2, k + 1):
-                carried = carried + b[j] * q[k - j]
-            q.append((a[k] - carried) * inverse if k < len(a) else -carried * inverse)
+            carried = _convolved(b[1 : k + 1], q, mul)
+            q.append((a[k] - carried) * inverse if k < len(a) else carried * -inverse)
         return Series(tuple(q))
 
     def __rtruediv__(self, other: Number) -> Series:
@@ -97,10 +96,7 @@ class Series:
         q = [_reciprocal(b[0])]
         minus = _negative(q[0])
         for k in range(1, len(b)):
-            carried = b[1] * q[k - 1]
-            for j in range(2, k + 1):
-                carried = carried + b[j] * q[k - j]
-            q.append(carried * minus)
+            q.append(_convolved(b[1 : k + 1], q, mul) * minus)
         return Series(tuple(q))._scaled(other)
 
     def conj(self) -> Series:
@@ -127,7 +123,8 @@ class Series:
 
     def abs2(self) -> Series:
         """The squared length of a planar vector."""
-        return Series(tuple([_folded(self.c, k, _dot) for k in range(len(self.c))]))
+        back = [x.conjugate() for x in self.c[: (len(self.c) + 1) // 2]]
+        return Series(tuple([_folded(back, self.c, k, _real_product) for k in range(len(self.c))]))
 
     def sqrt(self) -> Series:
         """The positive square root; NaN where the leading coefficient is negative."""
@@ -136,10 +133,7 @@ class Series:
         if len(a) > 1:
             half = 0.5 / root[0]
             for k in range(1, len(a)):
-                rest = a[k]
-                for j in range(1, k):
-                    rest = rest - root[j] * root[k - j]
-                root.append(rest * half)
+                root.append((a[k] - _convolved(root[1:], root[1:], mul) if k > 1 else a[k]) * half)
         return Series(tuple(root))
 
     def unit(self) -> Series:
@@ -153,10 +147,10 @@ class Series:
         ((1+0j), 2j, (-2+0j))
         """
         out = [_joined(np.cos(self.c[0]), np.sin(self.c[0]))]
-        rates = [1j * j * x for j, x in enumerate(self.c)]
+        rates = self.c
         for k in range(1, len(rates)):
-            terms = [rates[j] * out[k - j] for j in range(1, k + 1) if not _is(rates[j], 0)]
-            out.append(sum(terms[1:], terms[0]) * (1.0 / k) if terms else 0j)
+            terms = [(1j * j / k * rates[j]) * out[k - j] for j in range(1, k + 1) if not _is(rates[j], 0)]
+            out.append(sum(terms[1:], terms[0]) if terms else 0j)
         return Series(tuple([x if isinstance(x, np.ndarray) else complex(x) for x in out]))
 
     def angle(self) -> Series:
@@ -167,11 +161,12 @@ class Series:
     def turning(self) -> Series:
         """The rate at which a unit vector turns, ``Im(conj(u) u')``, one order lower than the vector itself."""
         u = self.c
+        back = [x.conjugate() for x in u[: len(u) // 2]]
         out = []
         for k in range(1, len(u)):
-            total = k * _cross(u[0], u[k])
-            for j in range(1, k):
-                total = total + j * _cross(u[k - j], u[j])
+            total = (back[0] * u[k]).imag * float(k)
+            for j in range(k // 2 + 1, k):  # two by two: Im(conj(b) a) = -Im(conj(a) b)
+                total = total + (back[k - j] * u[j]).imag * float(2 * j - k)
             out.append(total)
         return Series(tuple(out) or (0.0,))
 
@@ -182,9 +177,7 @@ class Series:
         return np.zeros_like(self.c[0])
 
     def _scaled(self, factor: Number) -> Series:
-        if _is(factor, 1):
-            return self
-        return Series((0.0,)) if _is(factor, 0) else Series(tuple([x * factor for x in self.c]))
+        return self if _is(factor, 1) else Series(tuple([x * factor for x in self.c]))
 
     def _bilinear(self, other: Series | Number, product: Callable[[Number, Number], Number]) -> Series:
         a, b = self.c, _coefficients(other)
@@ -192,13 +185,7 @@ class Series:
             return Series(tuple([product(x, b[0]) for x in a]))
         if len(a) == 1:
             return Series(tuple([product(a[0], y) for y in b]))
-        out = []
-        for k in range(len(a)):
-            total = product(a[0], b[k])
-            for j in range(1, k + 1):
-                total = total + product(a[j], b[k - j])
-            out.append(total)
-        return Series(tuple(out))
+        return Series(tuple([_convolved(a[: k + 1], b[: k + 1], product) for k in range(len(a))]))
 
     def __repr__(self) -> str:
         return f"Series({self.c!r})"
@@ -253,19 +240,28 @@ def _reciprocal(a: Number) -> Number:
     return inf if _is(a, 0) else 1.0 / a
 
 
-def _folded(c: tuple[Number, ...], k: int, product: Callable[[Number, Number], Number]) -> Number:
-    """The k-th coefficient of a symmetric product of a series with itself."""
+def _convolved(a: Sequence[Number], b: Sequence[Number], product: Callable[[Number, Number], Number]) -> Number:
+    """The sum of a[0] b[-1], a[1] b[-2] ... a[-1] b[0]."""
+    # products are not given names, so that NumPy may add to a large one in place
+    if len(a) == 1:
+        return product(a[0], b[0])
+    return product(a[0], b[-1]) + _convolved(a[1:], b[:-1], product)
+
+
+def _folded(
+    a: Sequence[Number], b: Sequence[Number], k: int, product: Callable[[Number, Number], Number]
+) -> Number:
+    """The k-th coefficient of a product in which a[i] b[j] and a[j] b[i] are the same."""
+    half = (k + 1) // 2
     if k == 0:
-        return product(c[0], c[0])
-    total = product(c[0], c[k])
-    for j in range(1, (k + 1) // 2):
-        total = total + product(c[j], c[k - j])
-    total = total * 2.0
-    return total if k % 2 else total + product(c[k // 2], c[k // 2])
+        return product(a[0], b[0])
+    if k % 2:
+        return _convolved(a[:half], b[half : k + 1], product) * 2.0
+    return _convolved(a[:half], b[half + 1 : k + 1], product) * 2.0 + product(a[half], b[half])
 
 
-def _product(a: Number, b: Number) -> Number:
-    return a * b
+def _real_product(a: Number, b: Number) -> Number:
+    return (a * b).real
 
 
 def _dot(a: Number, b: Number) -> Number:

@@ -51,19 +51,36 @@ def first_state(
     least = np.full((designs, 1), np.inf)
     guesses = _guesses(plan, step, run, sketch)
     complete = all(pose is not None for pose in guesses)
-    for count, start in enumerate(_starts(plan, step, guesses)):
-        found = step.solver.newton(start, run.setting, steps=STEPS)
+    batches = _batches(_starts(plan, step, guesses), together=designs == 1)
+    count = 0
+    for batch in batches:
+        found = step.solver.newton(batch, run.setting, steps=STEPS)
         trial = run.copy()
         step.run(trial, found.state)
-        cost = np.where(found.closed, distance(plan, letters, sketch, trial) if letters else float(count), np.inf)
-        best = np.where((cost < least)[..., None], found.state, best)
+        order = count + np.arange(len(batch), dtype=float)[:, None]
+        count += 1 if designs > 1 else len(batch)
+        cost = np.where(found.closed, distance(plan, letters, sketch, trial) if letters else order, np.inf)
+        state = found.state
+        if designs == 1:
+            first = int(np.argmin(cost))
+            state, cost = state[first : first + 1], cost[first : first + 1]
+        best = np.where((cost < least)[..., None], state, best)
         least = np.minimum(cost, least)
-        enough = 0 if complete or not letters else COMPARED
-        if count >= enough and np.isfinite(least).all():
+        enough = not letters or (complete and count == 1) or count >= COMPARED
+        if enough and np.isfinite(least).all():
             break
     if not np.isfinite(least).any():
         raise NotAssembled(_unfound(step))
     return best, "drawing" if letters else "first found"
+
+
+def _batches(starts: Iterator[Number], together: bool) -> Iterator[Number]:
+    """The first start alone; then one by one, or for a single design all the others at once."""
+    yield next(starts)
+    if together:
+        yield np.concatenate(list(starts))
+    else:
+        yield from starts
 
 
 def _guesses(plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Number]) -> list[Pose | None]:
@@ -75,17 +92,21 @@ def _guesses(plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Numbe
 
 
 def _starts(plan: Plan, step: GeneralStep, guesses: list[Pose | None]) -> Iterator[Number]:
-    """Random states around the frame, the bodies that are shown where they are shown."""
+    """Random states around the frame, the bodies that are shown where they are shown.
+
+    Newton may not get from what is shown to any closed state, so that later states are wholly random.
+    """
+    held = 1 if all(guess is not None for guess in guesses) else COMPARED
     rng = np.random.default_rng(step.solver.n)
     frame = list(plan.structure.mechanism.geometry.points["frame"].values())
     centre = complex(np.mean([np.mean(p) for p in frame]))
-    for _ in range(STARTS):
+    for number in range(STARTS):
         bodies = []
         for guess in guesses:
             spot = centre + complex(*rng.standard_normal(2)) * plan.size / 2.0
             angle = rng.uniform(-np.pi, np.pi)
             random = Pose.of(np.full((1, 1), spot), np.full((1, 1), np.exp(1j * angle)))
-            bodies.append(column(guess) if guess is not None else random)
+            bodies.append(random if guess is None or number >= held else column(guess))
         yield step.solver.state(bodies)
 
 

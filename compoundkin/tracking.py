@@ -20,7 +20,7 @@ from compoundkin.starting import distance, first_state, shown
 class Tracker:
     """Chooses and keeps the configuration of every group of a plan, for given inputs."""
 
-    def __init__(self, plan: Plan, given: Inputs, signs: Mapping[str, int], hint: Mapping[str, Number]) -> None:
+    def __init__(self, plan: Plan, given: Inputs, signs: Mapping[int, int], hint: Mapping[str, Number]) -> None:
         self.plan = plan
         self.given = given
         geometry = plan.structure.mechanism.geometry
@@ -35,7 +35,7 @@ class Tracker:
         self.lead_flips: dict[int, Number] = {}
         self.flips: dict[int, Number] = {}
         self.lead, self.at, self.home = approach(plan, given, self.drawn, {} if hint else geometry.sketch)
-        self._fixed = {k: s for k, step in enumerate(plan.steps) for link, s in signs.items() if link in step.group.links}
+        self._fixed = signs
         if self.sketch or plan.general:
             self.choose()
         else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from math import factorial
@@ -202,11 +203,16 @@ def home(mechanism: ck.Mechanism) -> dict[str, float]:
     return values
 
 
-def well_conditioned(mechanism: ck.Mechanism, limit: float = 40.0) -> bool:
-    """Whether no link is much faster than the driver in the drawn pose, that is no limit position is near."""
-    motion = ck.solve(mechanism, home(mechanism), order=2)
-    fast = [abs(m.derivative(k)) ** (1 / k) for m in motion.points.values() for k in (1, 2)]
-    return bool(np.all(motion.assembled)) and float(np.max(fast)) < limit
+def well_conditioned(mechanism: ck.Mechanism, limit: float, reach: float) -> bool:
+    """Whether no link is much faster than the driver within some reach of the drawn pose: no limit position is near."""
+    values = {name: value + reach * np.linspace(-1.0, 1.0, 9) for name, value in home(mechanism).items()}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        motion = ck.solve(mechanism, values, order=2)
+    if not np.all(motion.assembled):
+        return False
+    fast = [np.max(np.abs(point.derivative(k))) ** (1 / k) for point in motion.points.values() for k in (1, 2)]
+    return float(np.max(fast)) < limit
 
 
 def differences(values: Any, step: float) -> list[Any]:

@@ -122,3 +122,50 @@ def test_a_class_iii_group_behind_a_change_point_is_tracked_again():
     assert np.abs(motion.links["coupler"].angle).max() < 1e-12
     assert np.abs(np.diff(motion.links["plate"].angle)).max() < 0.2
     assert ck.verify(motion).passed
+
+
+def whitworth():
+    """A turning guide whose crank is as long as its pivots are apart: the block passes through the guide's pivot."""
+    return ck.Mechanism(
+        "Turning guide of equal lengths",
+        ck.link("frame", A=0, D=1),
+        ck.link("crank", A=0, B=1),
+        ck.link("block", B=0),
+        ck.link("guide", D=0, E=3),
+        ck.slide("block", on="guide", through="D"),
+        ck.drive("crank"),
+    )
+
+
+def test_a_guide_goes_on_when_its_block_passes_its_pivot():
+    values = ck.deg(np.arange(92.5, 700.0, 5.0))
+    motion = ck.solve(whitworth(), {"crank": values})
+    # the guide turns at half the speed of the crank: the angle at the circumference
+    assert np.abs(motion.links["guide"].angular_velocity - 0.5).max() < 1e-10
+    assert np.abs(np.diff(motion.links["guide"].angle) - np.deg2rad(2.5)).max() < 1e-10
+    assert ck.verify(motion).passed
+
+
+def test_the_pose_in_which_the_pivots_coincide_is_masked_and_explained():
+    with pytest.warns(ck.UnassembledPoses):
+        motion = ck.solve(whitworth(), {"crank": ck.deg([350.0, 355.0, 360.0, 365.0, 370.0])})
+    assert motion.assembled.tolist() == [True, True, False, True, True]
+    assert "coincide" in ck.gaps(motion)[0].reason
+    good = motion.assembled
+    assert np.abs(motion.links["guide"].angular_velocity[good] - 0.5).max() < 1e-10
+    assert np.abs(np.diff(motion.links["guide"].angle[good])).max() < 0.1
+
+
+def test_a_rhombus_goes_on_when_its_outer_pins_pass_each_other():
+    mechanism = ck.Mechanism(
+        "Rhombus",
+        ck.link("frame", A=0, D=1),
+        ck.link("crank", A=0, B=1),
+        ck.link("coupler", B=0, C=1),
+        ck.link("rocker", D=0, C=1),
+        ck.drive("crank"),
+        ck.drawn(B=(0, 1), C=(1, 1)),
+    )
+    motion = ck.solve(mechanism, {"crank": ck.deg(np.arange(92.5, 700.0, 5.0))})
+    assert np.abs(motion.links["rocker"].angular_velocity - 1.0).max() < 1e-9
+    assert ck.verify(motion).passed

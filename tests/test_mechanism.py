@@ -231,7 +231,7 @@ def test_links_with_dimensions_may_be_drawn_too() -> None:
     assert "crank" not in mechanism.geometry.as_drawn
 
 
-def test_a_drawn_link_of_one_letter_keeps_the_drawings_axes() -> None:
+def test_a_drawn_link_of_one_letter_shows_no_direction_and_lies_along_its_guide() -> None:
     mechanism = ck.Mechanism(
         "m",
         ck.link("frame", "O", "Q"),
@@ -241,7 +241,7 @@ def test_a_drawn_link_of_one_letter_keeps_the_drawings_axes() -> None:
         ck.drawn(O=0, Q=1 + 1j, C=3),
     )
     motion = ck.solve(mechanism)
-    assert abs(float(motion.links["block"].angle)) < 1e-15
+    assert abs(float(motion.links["block"].angle) - np.pi / 4) < 1e-15
     # C is drawn 3/sqrt(2) to the right of the line OQ
     assert abs(complex(motion.points["C"].position) - (2 - 3j / np.sqrt(2)) * np.exp(1j * np.pi / 4)) < 1e-14
 

@@ -38,11 +38,13 @@ class Attachment(NamedTuple):
 class Closed(NamedTuple):
     """A group solved: the poses of its two bodies, and the margin, negative where it cannot be assembled.
 
-    For a group of two modes the margin is the squared sine of the angle in which the modes differ.
+    For a group of two modes the margin is the squared sine of the angle in which the modes differ. `meeting`
+    is a squared length whose zero leaves the pose undetermined, for groups that have such a place.
     """
 
     poses: tuple[Pose, Pose]
     margin: Number
+    meeting: Number | None = None
 
 
 class Dyad(ABC):

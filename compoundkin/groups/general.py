@@ -129,22 +129,19 @@ class General:
     def matrix(self, bodies: list[Pose], setting: Setting) -> Number:
         """The Jacobian of all closures by the state, (..., 3 n, 3 n)."""
         blocks = []
+        top = 0
         for pair, members in zip(self.pairs, self.members, strict=True):
             poses = self._links(members, bodies, setting, 0)
             rows = pair.jacobian(setting.ends[pair.name], poses)[..., : pair.held, :]
-            blocks.append((members, rows, poses))
-        shape = np.broadcast_shapes(*(rows.shape[:-2] for _, rows, _ in blocks))
-        out = np.zeros((*shape, 3 * self.n, 3 * self.n))
-        top = 0
-        for members, rows, poses in blocks:
-            height = rows.shape[-2]
             for side, member in enumerate(members):
                 if member.body is not None:
                     columns = rows[..., 3 * side : 3 * side + 3]
-                    out[..., top : top + height, 3 * member.body : 3 * member.body + 3] += _about(
-                        columns, poses[side], bodies[member.body]
-                    )
-            top += height
+                    blocks.append((top, member.body, _about(columns, poses[side], bodies[member.body])))
+            top += pair.held
+        shape = np.broadcast_shapes(*(columns.shape[:-2] for _, _, columns in blocks))
+        out = np.zeros((*shape, 3 * self.n, 3 * self.n))
+        for top, body, columns in blocks:
+            out[..., top : top + columns.shape[-2], 3 * body : 3 * body + 3] += columns
         return out
 
     def _links(self, members: tuple[Member, Member], bodies: list[Pose], setting: Setting, k: int) -> tuple[Pose, Pose]:

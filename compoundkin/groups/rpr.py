@@ -28,19 +28,19 @@ class RPR(Dyad):
     ) -> Closed:
         """Turn the guide so that the pins have their known distance across it."""
         line, across = _distances(first, inner, second)
-        unit = 1.0 / line.abs2()
-        side = across * unit
-        along, margin = root(unit - side * side, unit.c[0])  # this too divided by the squared line
-        guide = line * planar(along * sign, -side)
+        line2 = line.abs2()
+        along, margin = root(line2 - across * across, line2.c[0])
+        guide = line / planar(along * sign, across)
         u, v = guide * inner[0].along.conj(), guide * inner[1].along.conj()
         first_pose = placed_at(as_series(first.world.point), u, first.local.point)
-        return Closed((first_pose, placed_at(as_series(second.world.point), v, second.local.point)), margin)
+        second_pose = placed_at(as_series(second.world.point), v, second.local.point)
+        return Closed((first_pose, second_pose), margin, line2.c[0])
 
     @staticmethod
     def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
         """The pins are nearer to each other than their eccentricity."""
         line, across = _distances(first, inner, second)
-        if not element(np.abs(line.c[0]), at):
+        if element(np.abs(line.c[0]) - np.abs(across.c[0]), at) >= 0:
             return f"{names[0]} and {names[2]} coincide, so that the direction of the guide of {names[1]} is not determined"
         return (
             f"|{names[0]}{names[2]}| = {text(np.abs(line.c[0]), at)} < {text(np.abs(across.c[0]), at)},"

@@ -37,27 +37,27 @@ class RRR(Dyad):
     ) -> Closed:
         """Intersect the circle about each outer pin."""
         a, b, line = _sides(first, inner, second)
-        a2, unit = a.abs2(), 1.0 / line.abs2()  # the line becomes the unit of length
-        reach2 = a2 * unit
-        foot = (a2 - b.abs2()) * 0.5 * unit + 0.5
-        apart = reach2.c[0] < COINCIDENT**-2
-        height, margin = root(reach2 - foot * foot, np.where(apart, reach2.c[0], np.nan))
-        arm = line * planar(foot, height * -sign)
-        u, v = arm / a, (arm - line) / b
+        line2, a2 = line.abs2(), a.abs2()
+        reach2 = a2 * line2
+        foot = (line2 + (a2 - b.abs2())) * 0.5  # the scalar product of the first link and the line
+        apart = line2.c[0] > COINCIDENT**2 * a2.c[0]
+        height, margin = root(reach2 - foot * foot, np.where(apart, reach2.c[0], np.nan))  # their cross product
+        u = line * a.conj() / planar(foot, height * sign)
+        v = (u * a - line) / b
         first_pose = placed_at(_point(first), u, first.local.point)
-        return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin)
+        return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin, line2.c[0])
 
     @staticmethod
     def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
         """Too far apart or too near."""
         a, b, line = (np.abs(s.c[0]) for s in _sides(first, inner, second))
         outer, pin, other = names
-        if element(line, at) <= COINCIDENT * element(a, at):
-            return f"{outer} and {other} coincide, so that the direction of {outer}{pin} is not determined"
         between = f"|{outer}{other}| = {text(line, at)}"
         if element(line - (a + b), at) > 0:
             return f"{between} > |{outer}{pin}| + |{pin}{other}| = {text(a, at)} + {text(b, at)}"
-        return f"{between} < ||{outer}{pin}| - |{pin}{other}|| = |{text(a, at)} - {text(b, at)}|"
+        if element(line - np.abs(a - b), at) < 0 and element(line, at) > COINCIDENT * element(a, at):
+            return f"{between} < ||{outer}{pin}| - |{pin}{other}|| = |{text(a, at)} - {text(b, at)}|"
+        return f"{outer} and {other} coincide, so that the direction of {outer}{pin} is not determined"
 
 
 def _sides(first: Attachment, inner: tuple[End, End], second: Attachment) -> tuple[Series, Series, Series]:

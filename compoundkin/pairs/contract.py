@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,26 @@ from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series
+
+
+class Point(NamedTuple):
+    """A relative instant centre at ``(x / w, y / w)``, at infinity in the direction (x, y) where w is zero.
+
+    The free coordinate's rate times (x, y, w) is the motion of the second member relative to the first: the
+    velocity of the point p is ``1j * (w * p - (x + 1j * y))`` times that rate.
+    """
+
+    x: Number
+    y: Number
+    w: Number
+
+
+class Line(NamedTuple):
+    """The line ``a x + b y + c w = 0`` that a relative instant centre lies on, such as a common normal."""
+
+    a: Number
+    b: Number
+    c: Number
 
 
 class Pair(ABC):
@@ -72,6 +92,13 @@ class Pair(ABC):
 
         Shape (..., held + 1, 6), at the leading coefficient of the poses.
         """
+
+    def centre(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Point | Line | None:
+        """Where the relative instant centre is: a point, or the line it must lie on (higher pairs), or nothing.
+
+        At the leading coefficient of the poses; which of the three it is depends on the kind of pair only.
+        """
+        return None
 
     @abstractmethod
     def placed(self, ends: tuple[End, End], free: Series) -> Pose:

@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.errors import Problem, nearest
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
-from compoundkin.pairs.contract import Pair, table
+from compoundkin.pairs.contract import Pair, Point, table
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series
 
@@ -23,7 +23,7 @@ class Prismatic(Pair):
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x
     axis of `on`) or toward the point `toward`, moved `offset` to the left of that direction. The x axis of
     the block is turned by `turn` from the guide. Where both links are given as drawn, `offset` and `turn`
-    are read off the drawing unless they are stated.
+    are read off the drawing unless they are stated (`turn` only where the block shows two points).
 
     Held: the distance of `at` from the guide; the sine of the angle between block and guide. Free: the
     displacement from `through` to `at` along the guide.
@@ -103,9 +103,9 @@ class Prismatic(Pair):
         point = geometry.points[self.link][self.at]
         offset, turn = self.offset, self.turn
         along: Number = 1 + 0j if turn is None else np.cos(turn) - 1j * np.sin(turn)
-        if {self.on, self.link} <= geometry.as_drawn:
+        if {self.on, self.link} <= geometry.as_drawn and self.on in geometry.drawn:
             seen = geometry.drawn[self.on].u.c[0] * guide
-            if turn is None:
+            if turn is None and self.link in geometry.drawn:
                 along = np.conjugate(geometry.drawn[self.link].u.c[0]) * seen
             if offset is None:
                 offset = (np.conjugate(seen) * (geometry.sketch[self.at] - geometry.sketch[self.through])).imag
@@ -146,6 +146,11 @@ class Prismatic(Pair):
             (0.0, 0.0, -aligned, 0.0, 0.0, aligned),
             (-e.real, -e.imag, along, e.real, e.imag, _dot(e, 1j * arm1)),
         )
+
+    def centre(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Point:
+        """At infinity, at right angles to the guide."""
+        guide = poses[0].carry(ends[0]).along.c[0]
+        return Point(-guide.imag, guide.real, 0.0)
 
     def placed(self, ends: tuple[End, End], free: Series) -> Pose:
         """The block moved along the guide by the given displacement."""

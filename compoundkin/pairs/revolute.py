@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
-from compoundkin.pairs.contract import Pair, table
+from compoundkin.pairs.contract import Pair, Point, table
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series, as_series
 
@@ -68,6 +68,11 @@ class Revolute(Pair):
             (0.0, -1.0, -arm[0].real, 0.0, 1.0, arm[1].real),
             (0.0, 0.0, -1.0, 0.0, 0.0, 1.0),
         )
+
+    def centre(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Point:
+        """The pin."""
+        pin = poses[0].at(ends[0].point).c[0]
+        return Point(pin.real, pin.imag, 1.0)
 
     def placed(self, ends: tuple[End, End], free: Series) -> Pose:
         """The second link turned about the pin by the given angle."""

@@ -8,11 +8,11 @@ import numpy as np
 
 from compoundkin.checks import Check, verify
 from compoundkin.gaps import Gap, gaps
-from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion
+from compoundkin.quantities import order_of
 from compoundkin.reports.count import loops_section, mobility_section
 from compoundkin.reports.findings import checks_section, gaps_section
-from compoundkin.reports.model import Block, Outcome, Paragraph, Report, Section
+from compoundkin.reports.model import Outcome, Paragraph, Report, Section
 from compoundkin.reports.parts import faults_section, links_section, pairs_section
 from compoundkin.reports.published import Comparison, comparisons, published_section
 from compoundkin.reports.sampling import Sample
@@ -31,7 +31,7 @@ def report(subject: Structure | Motion, outputs: Sequence[str] = (), design: int
 
     Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
 
-    >>> from compoundkin.mechanism import drive, link
+    >>> from compoundkin.mechanism import Mechanism, drive, link
     >>> from compoundkin.structure import decompose
     >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
     >>> [section.key for section in report(decompose(crank)).sections]
@@ -46,19 +46,21 @@ def _of_structure(structure: Structure) -> Report:
     outcome = Outcome(not structure.faults, 0, 0, 0, 0, 0, 0)
     about = _about(structure, _structure_in_short(structure))
     faults = [faults_section(structure)] if structure.faults else []
-    sections = (about, *_counted(structure), *faults, solving_section(structure, None), drivers_section(structure, None))
-    return Report(structure.mechanism.title, sections, outcome)
+    solving = solving_section(structure, None), drivers_section(structure, None)
+    return Report(structure.mechanism.title, (about, *_counted(structure), *faults, *solving), outcome)
 
 
 def _counted(structure: Structure, design: int = 0) -> tuple[Section, ...]:
-    return (links_section(structure, design), pairs_section(structure), mobility_section(structure), loops_section(structure))
+    parts = links_section(structure, design), pairs_section(structure)
+    return (*parts, mobility_section(structure), loops_section(structure))
 
 
 def _of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
     motion, design = sample.motion, sample.design
     structure, mechanism = motion.structure, motion.mechanism
     # outputs first: an unknown name is said before the slower work is done
-    moving = outputs_section(sample, outputs or default_outputs(mechanism))
+    named = outputs or [name for name in default_outputs(mechanism) if order_of(name) <= motion.order]
+    moving = outputs_section(sample, named)
     check, missing, published = verify(motion), _gaps(sample), comparisons(structure)
     outcome = _outcome(motion, check, published)
     return Report(
@@ -111,7 +113,8 @@ def _about(structure: Structure, in_short: str, more: str = "") -> Section:
 
 def _design_of(sample: Sample) -> str:
     designs = sample.motion.inputs.designs
-    return f"Shown is design {sample.design} of {designs:,} (counted from 0); the checks cover all." if designs > 1 else ""
+    text = f"Shown is design {sample.design} of {designs:,} (counted from 0); the checks cover all."
+    return text if designs > 1 else ""
 
 
 def _structure_in_short(structure: Structure) -> str:
@@ -123,20 +126,18 @@ def _structure_in_short(structure: Structure) -> str:
 
 
 def _motion_in_short(outcome: Outcome) -> str:
-    parts = list(_results(outcome))
-    return f"{'; '.join(parts)}."
+    return f"{'; '.join(_results(outcome))}."
 
 
 def _results(outcome: Outcome) -> Iterator[str]:
-    some = outcome.assembled < outcome.poses
-    yield f"{outcome.assembled:,} of {counted(outcome.poses, 'pose')} assembled" if some else (
-        f"All {counted(outcome.poses, 'pose')} assembled" if outcome.poses > 1 else "The pose is assembled")
+    if outcome.assembled < outcome.poses:
+        yield f"{outcome.assembled:,} of {counted(outcome.poses, 'pose')} assembled"
+    else:
+        yield f"All {counted(outcome.poses, 'pose')} assembled" if outcome.poses > 1 else "The pose is assembled"
     failed = outcome.checks - outcome.checks_passed
     yield f"{failed} of {outcome.checks} checks FAILED" if failed else f"all {outcome.checks} checks passed"
-    if outcome.published:
-        wrong = outcome.published - outcome.published_passed
-        yield (f"{wrong} of {counted(outcome.published, 'published number')} NOT reproduced" if wrong
-               else f"all {counted(outcome.published, 'published number')} reproduced")  # fmt: skip
-
-
-__all__ = ["Block", "Mechanism", "report"]
+    wrong = outcome.published - outcome.published_passed
+    if wrong:
+        yield f"{wrong} of {counted(outcome.published, 'published number')} NOT reproduced"
+    elif outcome.published:
+        yield f"{outcome.published} of {counted(outcome.published, 'published number')} reproduced"

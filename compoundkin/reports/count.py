@@ -76,7 +76,8 @@ def loops_section(structure: Structure) -> Section:
     euler = Formula(f"L = p - n + 1 = {pairs} - {links} + 1 = {pairs - links + 1}")
     blocks: list[Block] = [euler]
     if count.loops != pairs - links + 1:
-        blocks.append(Paragraph(f"The links fall into separate pieces, so that there are {counted(count.loops, 'loop')}."))
+        text = f"The links fall into separate pieces, so that there are {counted(count.loops, 'loop')}."
+        blocks.append(Paragraph(text))
     rows = tuple((k, str(loop)) for k, loop in enumerate(structure.loops[:MOST_LOOPS], 1))
     if rows:
         blocks.append(Table((Column("loop", style="each"), Column("chain: link -pair- link")), rows))
@@ -86,9 +87,10 @@ def loops_section(structure: Structure) -> Section:
 
 
 def _equations(count: EquationCount) -> tuple[Block, ...]:
-    unknowns = f"unknowns:  {_sum(((count.angles, 'link angle'), (count.displacements, 'displacement')), count.unknowns)}"
-    terms = ((2 * count.loops, "for loops (x and y)"), (count.auxiliary, "auxiliary"), (count.drivers, "for drivers"))
-    equations = f"equations: {_sum(terms, count.equations)}"
+    terms = (count.angles, "link angle"), (count.displacements, "displacement")
+    unknowns = f"unknowns:  {_sum(terms, count.unknowns)}"
+    wanted = (2 * count.loops, "for loops (x and y)"), (count.auxiliary, "auxiliary"), (count.drivers, "for drivers")
+    equations = f"equations: {_sum(wanted, count.equations)}"
     return Formula(f"{unknowns}\n{equations}"), *_verdict(count)
 
 
@@ -102,5 +104,7 @@ def _verdict(count: EquationCount) -> tuple[Block, ...]:
     auxiliary = " An auxiliary equation says that a block turns with its guide." if count.auxiliary else ""
     if count.equations == count.unknowns:
         return (Paragraph(f"As many equations as unknowns.{auxiliary}"),)
-    side = "more" if count.equations > count.unknowns else "fewer"
-    return (Paragraph(f"There are {abs(count.equations - count.unknowns)} equations {side} than unknowns.{auxiliary}"),)
+    gap = abs(count.equations - count.unknowns)
+    there = f"{'There is' if gap == 1 else 'There are'} {counted(gap, 'equation')}"
+    side = "too many" if count.equations > count.unknowns else "too few"
+    return (Paragraph(f"{there} {side} for the unknowns.{auxiliary}"),)

@@ -61,10 +61,12 @@ def checks_section(sample: Sample, check: Check) -> Section:
 
 
 def _where(sample: Sample, name: str, pose: tuple[int, ...]) -> str:
+    """The pair or link and the pose at which a residual is worst: "A, crank 35"."""
     if not name:
         return ""
-    at = []
-    for driver, drive in sample.motion.drives.items():
-        value = float(np.asarray(drive.value)[pose])
-        at.append(f"{driver} {number(degrees(value) if drive.is_angle else value)}")
-    return f"{name}, {', '.join(at)}" if at else name
+    motion = sample.motion
+    designs, number_of_pose = motion.inputs.designs, pose[-1] if pose else 0
+    design = int(np.ravel_multi_index(pose[:-1], motion.shape[:-1])) if len(pose) > 1 else 0
+    column, values = Sample(motion, design).places
+    at = f"{column.name} {number(float(values[number_of_pose]))}"
+    return f"{name}, design {design}, {at}" if designs > 1 else f"{name}, {at}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import singledispatch
 
 from compoundkin.reports.model import Alert, Column, Formula, Paragraph, Report, Section, Step, Table
@@ -60,13 +60,13 @@ def _(block: Step) -> str:
 
 @_block.register
 def _(block: Table) -> str:
-    columns = [written(column, cells) for column, cells in zip(block.columns, zip(*block.shown_rows, strict=True), strict=False)]
-    rows = zip(*columns, strict=True)
-    lines = [_line(_heading(column) for column in block.columns), _line("---:" if c.is_number else "---" for c in block.columns)]
-    return "\n".join([*lines, *(_line(map(_plain, row)) for row in rows)])
+    rows = block.shown_rows
+    cells = [written(column, [row[k] for row in rows]) for k, column in enumerate(block.columns)]
+    lines = [map(_heading, block.columns), ("---:" if column.is_number else "---" for column in block.columns)]
+    return "\n".join(map(_line, [*lines, *(map(_plain, row) for row in zip(*cells, strict=True))]))
 
 
-def _line(cells: Iterator[str]) -> str:
+def _line(cells: Iterable[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-Cell: TypeAlias = str | int | float | bool | None | tuple[float, ...]
+Cell: TypeAlias = str | int | float | bool | tuple[float, ...] | None
 
 # How the cells of a column are written.
 #   text    words, aligned left
@@ -32,12 +32,16 @@ class Formula:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table; numbers not above `floor` in size are rounding and are written as zero."""
+    """A column of a table; numbers not above `floor` in size are rounding and are written as zero.
+
+    `follows` keeps it beside the column before it where a table is split.
+    """
 
     name: str
     unit: str = ""
     style: Style = "text"
     floor: float = 0.0
+    follows: bool = False
 
     @property
     def is_number(self) -> bool:

@@ -18,9 +18,9 @@ ROUNDING = 1e-12
 
 def links_section(structure: Structure, design: int = 0) -> Section:
     """The links: what each is called by its number of pairs, its points in its own frame, its pairs."""
-    pairs = _pairs_by_link(structure)
+    pairs, floor = _pairs_by_link(structure), ROUNDING * structure.mechanism.geometry.size
     rows = tuple(
-        (name, kind_of_link(count), _points(structure, name, design), ", ".join(pairs[name]))
+        (name, kind_of_link(count), _points(structure, name, floor, design), ", ".join(pairs[name]))
         for name, count in pair_counts(structure).items()
     )
     columns = (Column("link"), Column("kind"), Column("points, in the link's own frame"), Column("pairs"))
@@ -32,10 +32,9 @@ def _by_kind(structure: Structure) -> str:
     return f"{counted(len(structure.mechanism.links), 'link')}, the frame among them: {listed(kinds)}."
 
 
-def _points(structure: Structure, link: str, design: int) -> str:
-    geometry = structure.mechanism.geometry
-    floor = ROUNDING * geometry.size
-    return "  ".join(f"{name} {_place(p, floor, design)}" for name, p in geometry.points[link].items())
+def _points(structure: Structure, link: str, floor: float, design: int) -> str:
+    points = structure.mechanism.geometry.points[link]
+    return "  ".join(f"{name} {_place(p, floor, design)}" for name, p in points.items())
 
 
 def _place(point: Number, floor: float, design: int) -> str:
@@ -79,8 +78,8 @@ def driven_pairs(structure: Structure) -> dict[str, DrivenPair]:
 def _multiple_pins(structure: Structure) -> Iterator[Block]:
     for letter, links in structure.mechanism.pins.items():
         if len(links) > 2:
-            text = f"{letter} joins {listed(links)}: a multiple pin of {len(links)} links, counted as {len(links) - 1} pairs."
-            yield Paragraph(text)
+            text = f"{letter} joins {listed(links)}: a multiple pin of {len(links)} links"
+            yield Paragraph(f"{text}, counted as {len(links) - 1} pairs.")
 
 
 def faults_section(structure: Structure) -> Section:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.errors import NotAssembled, Problem, UnassembledPoses, UnknownName
+from compoundkin.errors import NotAssembled, UnassembledPoses, UnknownName
 from compoundkin.mechanism import Expectation
 from compoundkin.motion import Motion, solve
 from compoundkin.quantities import HIGHEST_ORDER, quantity
@@ -37,8 +37,9 @@ class Comparison:
 
     @cached_property
     def difference(self) -> float:
-        """How far they are apart."""
-        return abs(self.found - self.expectation.value)
+        """How far they are apart; of a vector the component that is farther, for a book rounds each."""
+        gap = self.found - self.expectation.value
+        return max(abs(gap.real), abs(gap.imag)) if isfinite(abs(gap)) else float("nan")
 
     @property
     def passed(self) -> bool:
@@ -47,10 +48,11 @@ class Comparison:
 
     @property
     def closeness(self) -> float:
-        """The difference in tolerances."""
+        """The difference in tolerances, to a hundredth: which of two roundings is greater means nothing."""
         if not isfinite(self.difference):
             return float("inf")
-        return self.difference / self.expectation.tolerance if self.expectation.tolerance else self.difference
+        tolerance = self.expectation.tolerance
+        return round(self.difference / tolerance, 2) if tolerance else self.difference
 
 
 def comparisons(structure: Structure) -> tuple[Comparison, ...]:
@@ -76,7 +78,7 @@ def comparisons(structure: Structure) -> tuple[Comparison, ...]:
 def _solved(structure: Structure, at: Mapping[str, float]) -> Motion | None:
     """The single pose at given driver values and rates; what is not given is the driver's own, the first of several."""
     values: dict[str, float] = {}
-    rates: dict[str, dict[str, float]] = {rate: {} for rate in RATES}
+    rates: dict[str, Any] = {rate: {} for rate in RATES}
     for drive in structure.mechanism.drives:
         values[drive.name] = at.get(drive.name, 0.0 if drive.values is None else _first(drive.values))
         for rate, given in rates.items():

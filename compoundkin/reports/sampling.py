@@ -68,6 +68,13 @@ class Sample:
         return tuple(d for d in self.drivers if self.poses == 1 or np.ptp(d.values) > 0)
 
     @cached_property
+    def places(self) -> tuple[Column, Any]:
+        """What tells poses apart: the value of the only driver that changes, else their numbers, from 0."""
+        if len(self.varying) == 1:
+            return self.driver_column(self.varying[0]), self.varying[0].values
+        return Column("pose", style="each"), np.arange(self.poses)
+
+    @cached_property
     def every(self) -> int:
         """A table shows every k-th pose: this is k."""
         return max(1, -(-(self.poses - 1) // (ROWS - 1)))

@@ -38,11 +38,12 @@ def solving_section(structure: Structure, motion: Motion | None, design: int = 0
 
 
 def _summary(structure: Structure) -> str:
-    groups = counted(len(structure.groups), "group") if structure.groups else "no group"
     if not structure.groups:
-        return "The driven links are all there is."
+        return "No part of it can be solved." if structure.faults else "The driven links are all there is."
     highest = roman(max(group.class_ for group in structure.groups))
-    return f"{groups} after the driven links; the mechanism is of class {highest}."
+    if structure.faults:
+        return f"{counted(len(structure.groups), 'group')} can be solved in what is determined."
+    return f"{counted(len(structure.groups), 'group')} after the driven links; the mechanism is of class {highest}."
 
 
 def _letters(structure: Structure, links: Iterable[str]) -> dict[str, None]:
@@ -71,7 +72,8 @@ def _facts(structure: Structure, group: Group, new: list[str]) -> Iterator[tuple
     yield "pairs", f"outer {', '.join(pair.name for pair in group.outer)}{inner}"
     for body in group.bodies:
         if body.driven:
-            yield "driven", f"{listed(body.links)} are one link of changing shape; {'; '.join(map(_driven, body.driven))}"
+            yield "driven", "; ".join(map(_driven, body.driven))
+            yield "body", f"{listed(body.links)} are one link of changing shape"
     yield "uses", "; ".join(_used(structure, group))
     yield "yields", _yields(group.links, new)
 

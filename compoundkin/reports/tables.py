@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import degrees
 from typing import Any
 
 import numpy as np
 
+from compoundkin.inputs import FULL_TURN
 from compoundkin.mechanism import FRAME, Drive, Mechanism
 from compoundkin.quantities import PER_SECOND, Quantity
 from compoundkin.reports.model import Block, Cell, Column, Paragraph, Section, Table
 from compoundkin.reports.parts import driven_pairs
-from compoundkin.reports.sampling import Sample
+from compoundkin.reports.sampling import ROUNDING, Sample
 from compoundkin.reports.wording import counted, listed, ordinal
 from compoundkin.structure import Structure
 
@@ -31,7 +33,8 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
     if mechanism.outputs:
         return mechanism.outputs
     used = {letter for pair in mechanism.written_pairs for letter in pair.letters}
-    tracers = [k for k, links in mechanism.carriers.items() if links != (FRAME,) and k not in mechanism.pins and k not in used]
+    free = {k: links for k, links in mechanism.carriers.items() if k not in used and len(links) == 1}
+    tracers = [letter for letter, links in free.items() if links != (FRAME,)]
     driven = {drive.link for drive in mechanism.drives}
     turning = [name for name in mechanism.links if name != FRAME and name not in driven]
     chosen = [*(f"{name}.position" for name in tracers), *(f"{name}.angle" for name in turning)]
@@ -39,29 +42,33 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
-    """Each driver with its range, its number of poses and its rates."""
-    numbers = [Column(name, style="each") for name in ("from", "to", "poses", "speed", "acceleration")]
-    columns = (Column("driver"), Column("drives"), *numbers[:3], Column("unit"), *numbers[3:], Column("rate unit"))
-    rows = tuple(_driver_row(structure, drive, sample) for drive in structure.mechanism.drives)
-    if not any(row[7] for row in rows):
-        columns, rows = columns[:7] + columns[8:], tuple(row[:7] + row[8:] for row in rows)
-    blocks: tuple[Block, ...] = (Table(columns, rows),) if rows else (Paragraph("There is no driver."),)
-    return Section("drivers", "Drivers", blocks)
+    """Each driver with its range, its number of poses and its rates; angles and lengths in tables of their own."""
+    steps = driven_pairs(structure)
+    kinds: dict[bool, list[tuple[Cell, ...]]] = {}
+    for drive in structure.mechanism.drives:
+        step = steps.get(drive.name)
+        is_angle = step is None or step.pair.free_is_angle
+        what = f"{drive.link} on {drive.on}" + (f", {step.pair.name}" if step else "")
+        kinds.setdefault(is_angle, []).append((drive.name, what, *_span(drive, sample, is_angle)))
+    tables = tuple(_driver_table(structure, is_angle, rows) for is_angle, rows in kinds.items())
+    return Section("drivers", "Drivers", tables or (Paragraph("There is no driver."),))
 
 
-def _driver_row(structure: Structure, drive: Drive, sample: Sample | None) -> tuple[Cell, ...]:
-    step = driven_pairs(structure).get(drive.name)
-    is_angle = step is None or step.pair.free_is_angle
-    unit = "deg" if is_angle else structure.mechanism.unit or "length"
-    rate = ("rad" if is_angle else unit) + PER_SECOND[1]
+def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, ...]]) -> Table:
+    unit, rate = ("deg", "rad") if is_angle else (structure.mechanism.unit or "length",) * 2
+    rates = Column("speed", rate + PER_SECOND[1], "each"), Column("acceleration", rate + PER_SECOND[2], "each")
+    span = Column("from", unit, "each"), Column("to", unit, "each"), Column("poses", style="each")
+    return Table((Column("driver"), Column("drives"), *span, *rates), tuple(rows))
+
+
+def _span(drive: Drive, sample: Sample | None, is_angle: bool) -> tuple[Cell, ...]:
+    """From, to, poses, speed, acceleration."""
     values, speed, acceleration = _given(drive, sample)
-    what = f"{drive.link} on {drive.on}" + (f", {step.pair.name}" if step else "")
-    if values is None:
-        span: tuple[Cell, ...] = (0.0, 360.0, 73) if is_angle else (None, None, None)
-    else:
-        ends = (float(values[0]), float(values[-1]))
-        span = (*(map(degrees, ends) if is_angle else ends), len(values))
-    return drive.name, what, *span, unit, speed, acceleration, rate
+    if values is None and not is_angle:
+        return None, None, None, speed, acceleration
+    values = FULL_TURN if values is None else values
+    ends = float(values[0]), float(values[-1])
+    return (*(map(degrees, ends) if is_angle else ends), len(values), speed, acceleration)
 
 
 def _given(drive: Drive, sample: Sample | None) -> tuple[Any, Cell, Cell]:
@@ -82,11 +89,13 @@ def _shaped(sample: Sample, value: Any) -> Any:
 def outputs_section(sample: Sample, outputs: Sequence[str]) -> Section:
     """The outputs over the cycle, and where each is least and greatest."""
     found = [sample.quantity(name) for name in outputs]
-    columns = [column for one in found for column in _columns(sample, one)]
-    keys = [(sample.driver_column(driver), driver.values) for driver in sample.varying]
-    rows = tuple(tuple(_cell(values[pose]) for _, values in [*keys, *columns]) for pose in sample.rows)
-    table = Table(tuple(column for column, _ in [*keys, *columns]), rows, keys=len(keys))
-    blocks = (Paragraph(_introduction(sample)), table) if columns else (Paragraph("No outputs are named."),)
+    drivers = [(sample.driver_column(driver), driver.values) for driver in sample.varying]
+    # several drivers are columns like any other, and the poses are numbered
+    first = drivers if len(drivers) == 1 else [sample.places, *drivers]
+    columns = [*first, *(column for one in found for column in _columns(sample, one))]
+    rows = tuple(tuple(_cell(values[pose]) for _, values in columns) for pose in sample.rows)
+    table = Table(tuple(column for column, _ in columns), rows, keys=1)
+    blocks = (Paragraph(_introduction(sample)), table) if found else (Paragraph("No outputs are named."),)
     return Section("outputs", "Outputs over the cycle", (*blocks, *_extremes(sample, found)))
 
 
@@ -104,17 +113,16 @@ def _columns(sample: Sample, found: Quantity) -> Iterator[tuple[Column, Any]]:
     floor = sample.floor(found)
     parts = ((".x", found.values.real), (".y", found.values.imag)) if found.is_vector else (("", found.values),)
     for suffix, values in parts:
-        yield Column(found.name + suffix, found.unit, "fixed", floor), values
+        yield Column(found.name + suffix, found.unit, "fixed", floor, follows=suffix == ".y"), values
 
 
 def _extremes(sample: Sample, found: Sequence[Quantity]) -> Iterator[Block]:
     """The least and the greatest value of each output over all poses, and at which driver value."""
     if sample.poses < 2 or not sample.assembled.any() or not found:
         return
-    at = "at " + ", ".join(driver.name for driver in sample.varying)
-    unit = ", ".join(dict.fromkeys(driver.unit for driver in sample.varying))
-    columns = (Column("output"), Column("unit"), Column("least", style="each"), Column(at, unit, "each"),
-               Column("greatest", style="each"), Column(at, unit, "each"))  # fmt: skip
+    at = replace(sample.places[0], name=f"at {sample.places[0].name}", style="each")
+    ends = Column("least", style="each"), at, Column("greatest", style="each"), at
+    columns = (Column("output"), Column("unit"), *ends)
     yield Paragraph(f"Extremes over the {counted(sample.poses, 'pose')} (not interpolated):")
     yield Table(columns, tuple(row for one in found for row in _extreme_rows(sample, one)))
 
@@ -124,16 +132,20 @@ def _extreme_rows(sample: Sample, found: Quantity) -> Iterator[tuple[Cell, ...]]
     if found.is_vector and found.order:
         parts.append((Column(f"|{found.name}|", found.unit, floor=sample.floor(found)), np.abs(found.values)))
     for column, values in parts:
-        if not np.isfinite(values).any():
-            continue
-        ends = int(np.nanargmin(values)), int(np.nanargmax(values))
-        low, high = (_rounded(values[k], column.floor) for k in ends)
-        places = [tuple(float(d.values[k]) for d in sample.varying) for k in ends]
-        yield column.name, column.unit, low, places[0], high, places[1]
+        if np.isfinite(values).any():
+            yield column.name, column.unit, *_extreme(sample, values, column.floor)
 
 
-def _rounded(value: float, floor: float) -> float:
-    return 0.0 if abs(value) <= floor else float(value)
+def _extreme(sample: Sample, values: Any, floor: float) -> tuple[Cell, ...]:
+    """The least value and where it is first taken, the greatest and where; differences by rounding are none."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    slack = max(floor, ROUNDING * max(abs(low), abs(high)))
+    shown = [0.0 if abs(value) <= floor else value for value in (low, high)]
+    if high - low <= slack:
+        return shown[0], "always", shown[1], "always"
+    places = sample.places[1]
+    first, second = places[np.argmax(values <= low + slack)], places[np.argmax(values >= high - slack)]
+    return shown[0], float(first), shown[1], float(second)
 
 
 def _cell(value: Any) -> float | None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import singledispatch
+from typing import Literal
 
 from rich.box import Box
 from rich.console import Console, RenderableType
@@ -99,19 +100,35 @@ def _(block: Table, width: int) -> Iterator[RenderableType]:
 def _panels(block: Table, heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> list[list[int]]:
     """Which columns go side by side: a table of numbers too wide is split, its first columns repeated."""
     keys = list(range(block.keys))
-    wide = [max(len(line) for text in (head, *column) for line in text.split("\n")) + GAP for head, column in zip(heads, cells, strict=True)]
+    wide = [_width((head, *column)) + GAP for head, column in zip(heads, cells, strict=True)]
     panels: list[list[int]] = [[*keys]]
-    for k in range(block.keys, len(heads)):
-        if block.keys and len(panels[-1]) > len(keys) and sum(wide[j] for j in [*panels[-1], k]) > width:
+    for part in _inseparable(block):
+        if keys and len(panels[-1]) > len(keys) and sum(wide[j] for j in [*panels[-1], *part]) > width:
             panels.append([*keys])
-        panels[-1].append(k)
+        panels[-1] += part
     return panels
 
 
+def _inseparable(block: Table) -> list[list[int]]:
+    """The columns after the first ones, those that follow one another together."""
+    parts: list[list[int]] = []
+    for k, column in enumerate(block.columns[block.keys :], block.keys):
+        if column.follows and parts:
+            parts[-1].append(k)
+        else:
+            parts.append([k])
+    return parts
+
+
+def _width(texts: Iterable[str]) -> int:
+    return max(len(line) for text in texts for line in text.split("\n"))
+
+
 def _grid(columns: Sequence[Column], heads: Sequence[str], cells: Sequence[Sequence[str]]) -> Grid:
-    grid = Grid(box=RULE, padding=(0, GAP, 0, 0), pad_edge=False, show_edge=False, header_style="bold")
+    grid = Grid(box=RULE, padding=(0, GAP - 1, 0, 0), pad_edge=False, show_edge=False, header_style="bold")
     for column, head in zip(columns, heads, strict=True):
-        grid.add_column(Text(head), justify="right" if column.is_number else "left", vertical="top", no_wrap=column.is_number)
+        side: Literal["left", "right"] = "right" if column.is_number else "left"
+        grid.add_column(Text(head), justify=side, no_wrap=column.is_number, overflow="fold")
     for row in zip(*cells, strict=True):
         grid.add_row(*(Text(cell, STYLES.get(cell, "")) for cell in row))
     return grid

@@ -127,7 +127,7 @@ def close(
     kind: type[Dyad], case: Case, sign: float | np.ndarray, root: Root = clipped_root
 ) -> tuple[tuple[Pose, Pose], np.ndarray]:
     with np.errstate(all="ignore"):
-        return kind.close(*case.arguments, sign, root)
+        return kind.close(*case.arguments, sign, root)[:2]
 
 
 def finite(poses: tuple[Pose, Pose]) -> np.ndarray:

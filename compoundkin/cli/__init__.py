@@ -1,0 +1,97 @@
+"""The command line: one file per verb, each loaded when it is called."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+import click
+
+from compoundkin.cli.shell import guarded
+
+# Each verb with its one-line help, so that neither `--help` nor completion has to load them.
+VERBS = {
+    "report": "Everything about a mechanism: structure, motion, checks.",
+    "structure": "Take a mechanism apart: links, pairs, mobility, loops, groups.",
+    "solve": "Positions, velocities, accelerations as a table.",
+    "catalog": "List, show or copy the shipped mechanisms.",
+    "new": "Write a commented mechanism file to start from.",
+    "schema": "The JSON Schema of mechanism files.",
+    "completion": "The script that completes commands in your shell.",
+}
+
+EPILOG = """\b
+Examples:
+  compoundkin report six-bar
+  compoundkin new linkage.toml
+  compoundkin structure linkage.toml
+  compoundkin solve linkage.toml --from 0 --to 90 --step 1 -o linkage.csv
+
+\b
+Exit codes:
+  0  all is well
+  2  wrong input: a file, an option, a mechanism that cannot be solved
+  3  some poses cannot be assembled
+  4  a check failed, or a published number was not reproduced
+"""
+
+
+class Verbs(click.Group):
+    """The commands by name, imported one at a time."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The verbs, in the order of a newcomer's interest."""
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of a verb."""
+        if cmd_name not in VERBS:
+            return None
+        command: click.Command = import_module(f"compoundkin.cli.{cmd_name}").command
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that the arguments name; an unknown one is told the nearest."""
+        if args and args[0] not in VERBS and not args[0].startswith("-"):
+            from compoundkin.errors import nearest
+
+            raise click.UsageError(f"there is no command {args[0]!r}; {nearest(args[0], list(VERBS))}", ctx)
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The list of verbs, none of them loaded."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(VERBS.items()))
+
+    def main(self, *args: Any, **extra: Any) -> Any:
+        """Run, and turn whatever goes wrong into a message and an exit code."""
+        if extra.get("standalone_mode") is False:
+            return super().main(*args, **extra)
+        return guarded(lambda: super(Verbs, self).main(*args, **{**extra, "standalone_mode": False}))
+
+
+def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted and not ctx.resilient_parsing:
+        from compoundkin import __version__
+
+        click.echo(f"compoundkin {__version__}")
+        ctx.exit()
+
+
+SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+
+
+@click.group(cls=Verbs, epilog=EPILOG, context_settings=SETTINGS)
+@click.option("--version", is_flag=True, expose_value=False, is_eager=True, callback=_version, help="Show the version.")
+def cli() -> None:
+    """Takes compound planar mechanisms apart into Assur groups and solves them group by group.
+
+    Wherever a FILE is expected, the name of a shipped mechanism does too; `compoundkin catalog` lists them.
+    """
+
+
+def main() -> None:
+    """The command `compoundkin`."""
+    cli.main(prog_name="compoundkin")

@@ -1,0 +1,98 @@
+"""`compoundkin new`: a commented mechanism file to start from."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from compoundkin.cli.shell import say
+
+TEMPLATE = """\
+# A mechanism for compoundkin. See it with:  compoundkin report @FILE@
+format = 1
+title = @TITLE@
+unit = "mm"                     # the unit of all lengths; any word
+source = ""                     # where the dimensions come from
+description = ""                # what to look at
+outputs = ["P.position", "P.velocity", "rocker.angle"]     # what a report tabulates
+
+# A point is written in its own link's frame, [x, y] or { polar = [radius, degrees] }.
+# Two links that have a point of the same name are pinned there.
+# The link called "frame" stands still.
+
+[links.frame]
+points = { A = [0, 0], D = [80, 0] }
+
+[links.crank]
+points = { A = [0, 0], B = [25, 0] }
+
+[links.coupler]
+points = { B = [0, 0], C = [70, 0], P = [35, 30] }         # P is on no other link: it is traced
+
+[links.rocker]
+points = { D = [0, 0], C = [50, 0] }
+
+# A driver turns a link about its pin, in degrees; speed in rad/s, or { rpm = 60 }.
+[[drives]]
+link = "crank"
+values = { from = 0, to = 360, step = 5 }
+speed = 1
+
+# Points roughly as drawn, in one pose: they choose between the ways to assemble the links.
+[drawn]
+B = [25, 0]
+C = [78, 46]
+
+# A block that slides would be a link with one point, and a slide:
+#
+#   [links.block]
+#   points = { Q = [0, 0] }
+#
+#   [[slides]]
+#   link = "block"
+#   on = "rocker"             # the link with the guide
+#   through = "D"             # a point of that link on the guide
+#   angle = 0                 # the guide's direction, from that link's x axis
+#
+# Published numbers are checked by every report:
+#
+#   [[expected]]
+#   at = { crank = 0 }
+#   quantity = "rocker.angle"
+#   value = 92.0
+#   tolerance = 0.5
+"""
+
+
+@click.command(epilog="""\b
+Examples:
+  compoundkin new
+  compoundkin new linkage.toml
+""")
+@click.argument("path", type=click.Path(), default="mechanism.toml")
+@click.option("--force", is_flag=True, help="Replace a file that is there.")
+def command(path: str, force: bool) -> int:
+    """Write a commented mechanism file (a four-bar linkage) to PATH, to be changed into your own."""
+    from compoundkin.cli.files import write_new
+    from compoundkin.errors import InvalidInput, Problem
+
+    target = Path(path)
+    target = target / "mechanism.toml" if target.is_dir() else target
+    if target.suffix.lower() != ".toml":
+        raise InvalidInput(Problem(path, "only TOML files have comments", "choose a name that ends in .toml"))
+    write_new(target, starting_file(target).encode("utf-8"), force)
+    say(f"Wrote {target}; see it with: compoundkin report {target}")
+    return 0
+
+
+def starting_file(target: Path) -> str:
+    """The text of the file, its title the file's name.
+
+    >>> "title = \\"My linkage\\"" in starting_file(Path("my-linkage.toml"))
+    True
+    """
+    words = target.stem.replace("-", " ").replace("_", " ").strip()
+    title = json.dumps(words[:1].upper() + words[1:] or "Mechanism", ensure_ascii=False)
+    return TEMPLATE.replace("@FILE@", target.name).replace("@TITLE@", title)

@@ -1,0 +1,48 @@
+"""`compoundkin report`: everything there is to say about a mechanism."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from compoundkin.cli.driving import drive_options, solved
+from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.output import put_report, report_options
+from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
+from compoundkin.cli.structure import unsolvable
+
+
+@click.command(epilog="""\b
+Examples:
+  compoundkin report six-bar
+  compoundkin report six-bar --output G.speed --output rocker.angle
+  compoundkin report six-bar --from 0 --to 90 --step 5 -o six-bar.md
+  compoundkin report linkage.toml --format json
+""")
+@mechanism_argument
+@drive_options
+@click.option("--design", default=0, show_default=True, metavar="INDEX", help="Which one, where dimensions are arrays.")
+@report_options
+def command(file: str, design: int, form: str | None, path: str | None, **asked: Any) -> int:
+    """Report a mechanism: its structure, its motion over the cycle, the checks, and published numbers.
+
+    Angles are in degrees and lengths in the unit of the file. Exit code 3: some poses cannot be assembled;
+    4: a check failed or a published number was not reproduced.
+    """
+    from compoundkin.cli.progress import working
+    from compoundkin.reports import report
+    from compoundkin.structure import decompose
+
+    structure = decompose(loaded(file))
+    if structure.faults:
+        put_report(report(structure), form, path)
+        return unsolvable(len(structure.faults))
+    motion = solved(structure, asked)
+    with working("checking and reporting"):
+        made = report(motion, asked["outputs"], design)
+    put_report(made, form, path)
+    if not made.outcome.passed:
+        say("A check or a published number FAILED; the report says which.")
+        return FAILED
+    return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0

@@ -1,0 +1,63 @@
+"""`compoundkin solve`: a motion as a table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from compoundkin.cli.driving import drive_options, solved
+from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.shell import NOT_ASSEMBLED, put, say
+
+if TYPE_CHECKING:
+    from compoundkin.motion import Motion
+
+
+@click.command(epilog="""\b
+Examples:
+  compoundkin solve six-bar --at 35 --output G.velocity,bar.angle
+  compoundkin solve six-bar --from 0 --to 360 --step 1 -o six-bar.csv
+  compoundkin solve six-bar --speed 300rpm --order 3 -o six-bar.parquet
+  compoundkin solve five-bar --drive left=0:90:10 --drive right=90:0:-10
+  compoundkin solve crank-rocker --mode coupler=-1 | head -3
+""")
+@mechanism_argument
+@drive_options
+@click.option("-o", "--to-file", "path", metavar="PATH", help="Write a table here: .csv, .json, .npz or .parquet.")
+def command(file: str, path: str | None, **asked: Any) -> int:
+    """Solve a mechanism and print a table: a row per pose, a column per quantity (CSV).
+
+    Without --output, everything there is. Angles are in degrees in CSV and JSON, in radians in NPZ and Parquet.
+    Where a pose cannot be assembled its numbers are nan (null in JSON); stderr says why, and the exit code is 3.
+    """
+    from compoundkin.cli import table
+    from compoundkin.structure import decompose
+
+    write = table.writer(path) if path else None
+    structure = decompose(loaded(file))
+    motion = solved(structure, asked)
+    found = table.columns(motion, asked["outputs"])
+    if write is None:
+        put(table.csv_bytes(found))
+    else:
+        write(found)
+        rows = len(found[0].values)
+        say(f"Wrote {rows:,} {'row' if rows == 1 else 'rows'} of {len(found)} columns to {path}.")
+    return 0 if motion.assembled.all() else _explained(motion)
+
+
+def _explained(motion: Motion) -> int:
+    """Say which poses cannot be assembled, and why; the exit code for that."""
+    from compoundkin.gaps import gaps
+    from compoundkin.reports.findings import MOST_GAPS, gap_sentence
+    from compoundkin.reports.sampling import Sample
+
+    found = gaps(motion)
+    sample = Sample(motion)
+    for gap in found[:MOST_GAPS]:
+        design = f"Design {', '.join(map(str, gap.design))}: " if gap.design else ""
+        say(f"  {design}{gap_sentence(sample, gap)}")
+    if len(found) > MOST_GAPS:
+        say(f"  ... and {len(found) - MOST_GAPS:,} more.")
+    return NOT_ASSEMBLED

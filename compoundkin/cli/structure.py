@@ -1,0 +1,38 @@
+"""`compoundkin structure`: what a mechanism is made of."""
+
+from __future__ import annotations
+
+import click
+
+from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.output import put_report, report_options
+from compoundkin.cli.shell import say
+
+
+@click.command(epilog="""\b
+Examples:
+  compoundkin structure six-bar
+  compoundkin structure linkage.toml --format markdown
+""")
+@mechanism_argument
+@report_options
+def command(file: str, form: str | None, path: str | None) -> int:
+    """Take a mechanism apart: links, pairs, mobility, loops, Assur groups in solving order.
+
+    Nothing is solved. What keeps a mechanism from being solved is named with its remedies (exit code 2).
+    """
+    from compoundkin.reports import report
+    from compoundkin.structure import decompose
+
+    structure = decompose(loaded(file))
+    put_report(report(structure), form, path)
+    return unsolvable(len(structure.faults)) if structure.faults else 0
+
+
+def unsolvable(faults: int) -> int:
+    """Say on stderr that a structure cannot be solved; the exit code for that."""
+    from compoundkin.errors import NotDetermined
+    from compoundkin.reports.wording import counted
+
+    say(f"The mechanism cannot be solved: {counted(faults, 'fault')}, explained in the report.")
+    return NotDetermined.exit_code
