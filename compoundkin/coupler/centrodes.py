@@ -167,7 +167,7 @@ def _leading(seen: Relative) -> tuple[Number, Number]:
     noise = SMALL * seen.scale(2)
     still = seen.resting & (np.abs(weight[1]) <= noise) & (np.abs(number[1]) <= noise * seen.reach)
     second = np.where(np.abs(weight[1]) > noise, weight[1], 0.0)
-    return seen.masked(np.where(seen.resting, number[0], number[0]), ~still), np.where(seen.resting, second, weight[0])
+    return seen.masked(np.where(seen.resting, number[1], number[0]), ~still), np.where(seen.resting, second, weight[0])
 
 
 def _moving(seen: Relative) -> Series:
