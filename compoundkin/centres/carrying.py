@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 SAMPLES = 2
 # What a sample is moved by, for an error of one rounding: far above rounding, and linear up to a spread of 1e7.
 MOVED = 1e-9
+# Samples that differ by more than this part say no more than that the error is large.
+LINEAR = 0.1
 
 
 class Carried:
@@ -108,3 +110,12 @@ def carry(
         else:
             carried.turn(move, points[couple(move.i, move.k)], np.ones(1))
     return carried
+
+
+def measured(difference: Number) -> Number:
+    """The magnification of errors from the largest relative difference between the samples.
+
+    >>> measured(np.array([2e-9, 0.5])).tolist()
+    [2.0, inf]
+    """
+    return np.where(difference < LINEAR, difference / MOVED, np.inf)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compoundkin.centres.carrying import MOVED, Carried, carry
+from compoundkin.centres.carrying import Carried, carry, measured
 from compoundkin.centres.derivation import Derivation
 from compoundkin.centres.diagram import Couple, couple
 from compoundkin.centres.homogeneous import apart, cross, dot, norm
@@ -80,7 +80,7 @@ class Evaluation:
             twists = (carried.relative(i, j) * values).sum(axis=1)
             exact = twists[:, 0] / norm(twists[:, 0])
             moved = np.max(apart(exact[:, None], twists[:, 1:]), axis=0)
-            self.keep((i, j), exact, np.hypot(1.0, moved / MOVED))
+            self.keep((i, j), exact, np.hypot(1.0, measured(moved)))
 
     def _values(self, trial: Trial, carried: Carried) -> Number:
         """The trial values that bring each locus onto its line, a unit vector (values + 1, samples, poses)."""

@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from compoundkin.centres.carrying import MOVED, carry
+from compoundkin.centres.carrying import carry, measured
 from compoundkin.centres.derivation import Derivation
 from compoundkin.centres.diagram import Couple, couple
 from compoundkin.centres.growth import pair_amplitudes
@@ -45,11 +45,12 @@ class Rates:
         carried = carry(self.derivation.moves, self.derivation, self.points, self.spread, units, given)
         poses = np.broadcast_shapes(*[unit.shape[1:] for unit in units])
         alone = {b: sum(1 for o in carried.member.values() if o == m) == 1 for b, m in carried.member.items()}
+        self.twists = {b: np.array(np.broadcast_to(t[:, 0, 0], (3, *poses))) for b, t in carried.twists.items()}
+        scale = self.fastest()
         for b, twist in carried.twists.items():
-            exact = twist[:, 0, 0]
-            moved = np.max(norm(twist[:, 0, 1:] - exact[:, None]), axis=0) / MOVED
-            self.twists[b] = np.array(np.broadcast_to(exact, (3, *poses)))
-            self.errors[b] = np.array(np.broadcast_to(np.inf if alone[b] else known(moved), poses))
+            moved = np.max(norm(twist[:, 0, 1:] - twist[:, 0, :1]), axis=0)
+            error = np.inf if alone[b] else measured(moved / scale) * scale
+            self.errors[b] = np.array(np.broadcast_to(error, poses))
         self._improve()
 
     def relative(self, i: int, j: int) -> tuple[Number, Number]:

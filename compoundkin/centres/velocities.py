@@ -52,7 +52,8 @@ class Velocities:
 class VelocityCheck:
     """Solved velocities against those from centres, relative to the fastest link, by link and by point.
 
-    A link's is the larger of those of its angular velocity and of the velocity of its frame's origin. NaN where the comparison is not made: at poses without rates, and where conditioning is below POOR.
+    A link's is the larger of those of its angular velocity and of the velocity of its frame's origin. NaN where the
+    comparison is not made: at poses without rates, and where conditioning is below POOR.
     """
 
     links: Mapping[str, Number]
