@@ -248,9 +248,7 @@ def _convolved(a: Sequence[Number], b: Sequence[Number], product: Callable[[Numb
     return product(a[0], b[-1]) + _convolved(a[1:], b[:-1], product)
 
 
-def _folded(
-    a: Sequence[Number], b: Sequence[Number], k: int, product: Callable[[Number, Number], Number]
-) -> Number:
+def _folded(a: Sequence[Number], b: Sequence[Number], k: int, product: Callable[[Number, Number], Number]) -> Number:
     """The k-th coefficient of a product in which a[i] b[j] and a[j] b[i] are the same."""
     half = (k + 1) // 2
     if k == 0:

@@ -85,7 +85,14 @@ def velocities_of(centres: Centres) -> Velocities:
             twist, error = rates.relative(body[numbers[FRAME]], body[k])
             twists[name] = twist * factor
             conditioning[name] = np.where(np.isfinite(error), scale / np.maximum(error, scale), 0.0)
-    return Velocities(centres, twists, conditioning, np.broadcast_to(scale * np.abs(factor), scale.shape))
+    # a mechanism of one body has constants where others have a value a pose
+    count = centres.motion.inputs.designs * centres.motion.inputs.poses
+    return Velocities(
+        centres,
+        {name: np.broadcast_to(twist, (3, count)) for name, twist in twists.items()},
+        {name: np.broadcast_to(value, (count,)) for name, value in conditioning.items()},
+        np.broadcast_to(scale * np.abs(factor), (count,)),
+    )
 
 
 def velocity_check(centres: Centres, motion: Motion, poor: float) -> VelocityCheck:

@@ -1,4 +1,4 @@
-"""The independent verification of a motion: residuals from the pairs' own equations.
+"""Residuals of a motion in the pairs' own equations.
 
 Positions: what a pair holds must be zero. Velocities: the pair's Jacobian times the links' velocities must
 be zero. Accelerations: so must the second derivative of what it holds. Links: orientations must stay unit
@@ -8,11 +8,11 @@ vectors in every derivative. Drivers: the driven coordinate must be the one aske
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import factorial
 
 import numpy as np
 
+from compoundkin.checks.model import Finding, worst
 from compoundkin.motion import Motion
 from compoundkin.pairs import Pair
 from compoundkin.series import Number
@@ -25,55 +25,14 @@ ORDERS = ("closure", "velocity", "acceleration", "jerk")
 SLOWEST = 1e-6
 
 
-@dataclass(frozen=True)
-class Finding:
-    """One check: its worst value relative to the mechanism's size and speed, the limit, and where it is worst.
-
-    `pose` is the index into the motion's shape; a value that is not a number does not pass.
-    """
-
-    name: str
-    value: float
-    limit: float
-    pair: str
-    pose: tuple[int, ...]
-
-    @property
-    def passed(self) -> bool:
-        """Whether the value is within its limit."""
-        return self.value <= self.limit
-
-
-@dataclass(frozen=True)
-class Check:
-    """All findings about a motion; `poses` of them were checked, `singular` had no rates to check."""
-
-    findings: tuple[Finding, ...]
-    poses: int
-    singular: int
-
-    @property
-    def passed(self) -> bool:
-        """Whether every finding passed, and there was something to check."""
-        return self.poses > 0 and all(finding.passed for finding in self.findings)
-
-
-def verify(motion: Motion) -> Check:
-    """Check every pair, link and driver of a motion in position and all its derivatives.
-
-    Poses that cannot be assembled are left out; at limit positions, where rates are infinite, only the
-    position is checked.
-
-    >>> from compoundkin.mechanism import Mechanism, drive, link
-    >>> from compoundkin.motion import solve
-    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
-    >>> verify(solve(crank)).passed
-    True
-    """
-    with np.errstate(all="ignore"):
-        found = tuple(_worst(motion, name, k, part) for k in range(motion.order + 1) for name, part in _parts(motion, k))
-    closed = int(np.count_nonzero(motion.failed == 0))
-    return Check(found, closed, closed - int(np.count_nonzero(motion.regular)))
+def residuals(motion: Motion) -> Iterator[Finding]:
+    """The worst residual of pairs, links and drivers in each order, relative to size and speed."""
+    for k in range(motion.order + 1):
+        counted = motion.failed == 0 if k == 0 else motion.regular
+        scale = _scale(motion, k, counted)
+        for name, parts in _parts(motion, k):
+            relative = {label: residual / scale for label, residual in parts.items()}
+            yield worst(motion, name, TOLERANCE, relative, counted)
 
 
 def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
@@ -119,22 +78,6 @@ def _largest(values: list[Number]) -> Number:
     for value in values[1:]:
         out = np.maximum(out, np.abs(value))
     return out
-
-
-def _worst(motion: Motion, name: str, k: int, part: dict[str, Number]) -> Finding:
-    """The worst residual of one order over all pairs and poses."""
-    shape = (motion.inputs.designs, motion.inputs.poses)
-    counted = np.broadcast_to(motion.failed == 0, shape) if k == 0 else motion.regular
-    scale = _scale(motion, k, counted)
-    worst = Finding(name, 0.0, TOLERANCE, "", ())
-    for label, residual in part.items():
-        relative = np.where(counted, np.broadcast_to(residual / scale, shape), 0.0)
-        at = int(np.argmax(np.where(np.isnan(relative), np.inf, relative)))
-        value = float(relative.flat[at])
-        if not value <= worst.value:
-            pose = tuple(int(i) for i in np.unravel_index(at, motion.shape)) if motion.shape else ()
-            worst = Finding(name, value, TOLERANCE, label, pose)
-    return worst
 
 
 def _scale(motion: Motion, k: int, counted: Number) -> Number:

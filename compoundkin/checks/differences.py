@@ -1,0 +1,97 @@
+"""The derivatives of a motion against differences of its positions, solved again at neighbouring driver values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import factorial
+
+import numpy as np
+
+from compoundkin.checks.model import Finding, worst
+from compoundkin.motion import Motion
+from compoundkin.poses import Pose
+from compoundkin.series import Number
+
+# Central differences on eight neighbours: their error is of eighth, eighth and sixth order in the step.
+OFFSETS = np.arange(-4, 5)
+# The step, as a part of the time scale of the series: truncation is then below 1e-10, and rounding, 1e-16, is
+# divided by this to the power of the derivative.
+STEP = 0.008
+NAMES = ("", "velocity", "acceleration", "jerk")
+LIMITS = (0.0, 1e-9, 1e-7, 1e-5)
+
+
+def difference_findings(motion: Motion) -> Iterator[Finding]:
+    """Velocity, acceleration and jerk of every link against differences, outside change points and limits."""
+    counted = motion.regular & _away_from_change_points(motion)
+    if motion.order < 1 or not counted.any():
+        return
+    step = STEP * _own_time(motion)
+    counted = counted & np.isfinite(step)
+    stencils = [_positions(motion, step * j) for j in OFFSETS]
+    for k in range(1, motion.order + 1):
+        weights = _weights(k)
+        parts = {}
+        for link, pose in motion.poses.items():
+            for what, size in (("z", motion.size), ("u", 1.0)):
+                series = getattr(pose, what)
+                found = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights, stencils, strict=True))
+                own = series.derivative(k) * step**k
+                # relative to the largest derivative the series' own time allows
+                parts[f"{link}"] = np.maximum(parts.get(link, 0.0), np.abs(found - own) / (STEP**k * size))
+        yield worst(motion, f"{NAMES[k]} against differences", LIMITS[k], parts, counted)
+
+
+def _weights(k: int) -> Number:
+    """Central-difference weights of the k-th derivative at unit step."""
+    powers = np.vander(OFFSETS.astype(float), increasing=True).T
+    right = np.zeros(len(OFFSETS))
+    right[k] = factorial(k)
+    return np.linalg.solve(powers, right)
+
+
+def _own_time(motion: Motion) -> Number:
+    """The time scale of the motion at each pose, which no step may exceed.
+
+    The least over derivatives of (1 / c[k])^(1/k), and of c[k] / c[k + 1], which near a limit position is the time
+    to it; c[k] being the largest k-th coefficient of any link.
+    """
+    largest = [_largest(motion, k) for k in range(1, motion.order + 1)]
+    fastest: Number = np.zeros(motion.failed.shape)
+    for k, c in enumerate(largest, start=1):
+        fastest = np.maximum(fastest, c ** (1.0 / k))
+    for c, after in zip(largest, largest[1:], strict=False):
+        fastest = np.maximum(fastest, after / c)
+    return 1.0 / fastest
+
+
+def _largest(motion: Motion, k: int) -> Number:
+    """The largest k-th coefficient of any link's pose, lengths in parts of the mechanism's size."""
+    found: Number = np.zeros(motion.failed.shape)
+    for pose in motion.poses.values():
+        for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
+            if series.order >= k:
+                found = np.maximum(found, np.abs(series.c[k]) / size)
+    return found
+
+
+def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
+    """The poses at a time (designs x poses) from those of the motion, the drivers following their rates."""
+    given = motion.inputs
+    drives = {}
+    for name, values in given.drives.items():
+        moved: Number = values[0]
+        for k, rate in enumerate(values[1:], start=1):
+            moved = moved + rate * time**k / factorial(k)
+        drives[name] = (moved,)
+    places, designs = np.arange(given.poses, dtype=float)[None], np.arange(given.designs)[:, None]
+    return dict(motion.tracker.run(given.driven(drives), 0, places, designs).world)
+
+
+def _away_from_change_points(motion: Motion) -> Number:
+    """Poses whose neighbours lie on the same side of every change point."""
+    good: Number = np.ones(motion.failed.shape, dtype=bool)
+    places = np.arange(motion.inputs.poses, dtype=float)
+    for flips in motion.tracker.flips.values():
+        good = good & (np.abs(flips[:, :, None] - places).min(axis=1) > 1.0)
+    return good

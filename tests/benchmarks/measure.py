@@ -1,0 +1,40 @@
+"""Times taken side by side: machines are noisy, ratios measured in one run much less so."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping
+from statistics import median
+from typing import Any
+
+Times = dict[str, list[float]]
+
+
+def interleaved(subjects: Mapping[str, Callable[[], Any]], rounds: int) -> Times:
+    """The seconds of each subject, one call of each in every round, after one that is not counted."""
+    times: Times = {name: [] for name in subjects}
+    for run in range(rounds + 1):
+        for name, call in subjects.items():
+            start = time.perf_counter()
+            result = call()
+            seconds = time.perf_counter() - start
+            del result
+            if run:
+                times[name].append(seconds)
+    return times
+
+
+def ratio(times: Times, one: str, other: str) -> float:
+    """How many times as long `one` takes as `other`: the median over the rounds."""
+    return median(a / b for a, b in zip(times[one], times[other], strict=True))
+
+
+def commands(codes: Mapping[str, list[str]], rounds: int) -> Times:
+    """The seconds of Python with these arguments, started anew, interleaved."""
+
+    def start(arguments: list[str]) -> Callable[[], Any]:
+        return lambda: subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
+
+    return interleaved({name: start(arguments) for name, arguments in codes.items()}, rounds)

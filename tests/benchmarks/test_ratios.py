@@ -1,0 +1,87 @@
+"""That all ways of solving agree, and that the goals for speed hold; `python -m tests.benchmarks` prints the ratios."""
+
+from __future__ import annotations
+
+from statistics import median
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from tests.benchmarks import four_bar, six_bar
+from tests.benchmarks.measure import commands, interleaved, ratio
+
+MANY = 36_000
+TURN = np.linspace(0.0, 2 * np.pi, MANY)
+# Goals are for a quiet machine; this much is left to noise.
+NOISE = 1.25
+
+
+def agree(one: six_bar.Answer, other: six_bar.Answer, tolerance: float) -> None:
+    assert one.keys() == other.keys()
+    for name in one:
+        for k, (x, y) in enumerate(zip(one[name], other[name], strict=True)):
+            scale = max(1.0, six_bar.SPEED**k, float(np.max(np.abs(y))))
+            assert np.max(np.abs(x - y)) < tolerance * scale, (name, k)
+
+
+def test_all_ways_agree() -> None:
+    crank = TURN[::100]
+    hand = six_bar.by_hand(crank)
+    agree(six_bar.asked(ck.solve(six_bar.mechanism(), {"crank": crank}, speed=six_bar.SPEED)), hand, 1e-13)
+    agree(six_bar.by_fsolve(crank), hand, 1e-11)
+
+
+def test_by_hand_is_the_reference(reference_rows: list[dict[str, object]]) -> None:
+    angles = np.deg2rad([row["crank_deg"] for row in reference_rows])
+    hand = six_bar.by_hand(angles)
+    for name in ("A", "C", "G"):
+        for k, rate in enumerate(("position", "velocity", "acceleration")):
+            expected = np.array([row[name][rate] for row in reference_rows]) @ [1, 1j]  # type: ignore[index]
+            assert np.max(np.abs(hand[name][k] - expected)) < 1e-12 * np.max(np.abs(expected))
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_pylinkage_agrees_and_is_slower(order: int) -> None:
+    pytest.importorskip("numba")
+    pytest.importorskip("pylinkage")
+    kernel = four_bar.by_pylinkage(order)
+    crank, plan = np.arange(1, MANY + 1) * (2 * np.pi / MANY), four_bar.mechanism()
+
+    def asked() -> dict[str, tuple[np.ndarray, ...]]:
+        return four_bar.asked(ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED, order=order), order)
+
+    theirs, ours = kernel(MANY), asked()
+    for name in ours:
+        for x, y in zip(theirs[name], ours[name], strict=True):
+            assert np.max(np.abs(x - y)) < 1e-9 * np.max(np.abs(y))  # it steps, and rounding adds up
+    times = interleaved({"theirs": lambda: kernel(MANY), "ours": asked}, 15)
+    assert ratio(times, "theirs", "ours") > 1.0
+
+
+def test_six_bar_by_hand_and_by_loop() -> None:
+    plan, some = six_bar.mechanism(), TURN[::360]
+
+    def solved() -> ck.Motion:
+        return ck.solve(plan, {"crank": TURN}, speed=six_bar.SPEED)
+
+    fast = interleaved(
+        {"hand": lambda: six_bar.by_hand(TURN), "solved": solved, "asked": lambda: six_bar.asked(solved())}, 25
+    )
+    assert ratio(fast, "solved", "hand") < ratio(fast, "asked", "hand")
+    assert ratio(fast, "asked", "hand") < 2.0 * NOISE
+    loop = interleaved({"loop": lambda: six_bar.by_fsolve(some)}, 2)
+    assert min(loop["loop"]) / len(some) > 100 * max(fast["asked"]) / MANY
+
+
+def test_small_tasks() -> None:
+    plan, crank = six_bar.mechanism(), TURN[::100]
+    times = interleaved({"it": lambda: ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)}, 100)
+    assert min(times["it"]) < 1e-3
+    starts = commands({"numpy": ["-c", "import numpy"], "ours": ["-c", "import compoundkin"]}, 7)
+    assert median(b - a for a, b in zip(starts["numpy"], starts["ours"], strict=True)) < 0.2 * NOISE
+
+
+def test_solve(benchmark) -> None:  # type: ignore[no-untyped-def]
+    plan = six_bar.mechanism()
+    benchmark(lambda: ck.solve(plan, {"crank": TURN}, speed=six_bar.SPEED))
