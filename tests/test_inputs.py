@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.inputs import FULL_TURN, fit, inputs
-from compoundkin.plan import Plan, blocks, rates
+from compoundkin.motion.inputs import FULL_TURN, fit, inputs
+from compoundkin.motion.plan import Plan, blocks, rates
 
 
 def arm(**words: Any) -> ck.Mechanism:

@@ -21,9 +21,10 @@ MOST_LINKS = 40
 def centre_findings(motion: Motion) -> Iterator[Finding]:
     """Velocities from centres, and the theorem itself, at poses where they are well conditioned.
 
-    Nothing for a motion without velocities, with more than MOST_LINKS links, or that never moves.
+    Nothing for a motion without velocities, without drivers, or of more than MOST_LINKS links.
     """
-    if motion.order < 1 or len(motion.mechanism.links) > MOST_LINKS or not motion.regular.any():
+    still = motion.order < 1 or not motion.inputs.drives or not motion.regular.any()
+    if still or len(motion.mechanism.links) > MOST_LINKS:
         return
     try:
         centres = instant_centres(motion)

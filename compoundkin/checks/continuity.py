@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from compoundkin.checks.model import Finding, worst
-from compoundkin.inputs import Inputs
 from compoundkin.motion import Motion
-from compoundkin.plan import Run
+from compoundkin.motion.inputs import Inputs
+from compoundkin.motion.plan import Run
 from compoundkin.series import Number
 
 # A step may differ by this much (radians, or parts of the size) from the mean of the slopes at its ends: other
@@ -39,7 +39,7 @@ def _slopes(motion: Motion, part: Inputs, s: Number) -> dict[str, Number]:
     shape = motion.failed.shape
     found = {}
     for link, pose in run.world.items():
-        rate = pose.u.c[0].conj() * pose.u.c[1] if pose.u.order else np.zeros(shape)
+        rate = np.conj(pose.u.c[0]) * pose.u.c[1] if pose.u.order else np.zeros(shape)
         found[link] = np.broadcast_to(np.imag(rate), shape)
     return found
 

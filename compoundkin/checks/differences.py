@@ -31,14 +31,14 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
     stencils = [_positions(motion, step * j) for j in OFFSETS]
     for k in range(1, motion.order + 1):
         weights = _weights(k)
-        parts = {}
+        parts: dict[str, Number] = {}
         for link, pose in motion.poses.items():
             for what, size in (("z", motion.size), ("u", 1.0)):
                 series = getattr(pose, what)
                 found = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights, stencils, strict=True))
                 own = series.derivative(k) * step**k
                 # relative to the largest derivative the series' own time allows
-                parts[f"{link}"] = np.maximum(parts.get(link, 0.0), np.abs(found - own) / (STEP**k * size))
+                parts[link] = np.maximum(parts.get(link, 0.0), np.abs(found - own) / (STEP**k * size))
         yield worst(motion, f"{NAMES[k]} against differences", LIMITS[k], parts, counted)
 
 

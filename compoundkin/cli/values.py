@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.formats.quantities import MOST_VALUES, RPM, spaced
-from compoundkin.inputs import FULL_TURN
+from compoundkin.motion.inputs import FULL_TURN
 from compoundkin.quantities import degrees
 from compoundkin.reports.parts import driven_pairs
 from compoundkin.series import Number

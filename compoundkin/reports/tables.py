@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.inputs import FULL_TURN
 from compoundkin.mechanism import FRAME, Drive, Mechanism
+from compoundkin.motion.inputs import FULL_TURN
 from compoundkin.quantities import PER_SECOND, Quantity
 from compoundkin.reports.model import Block, Cell, Column, Paragraph, Section, Table
 from compoundkin.reports.parts import driven_pairs

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compoundkin.groups.general import General, Setting
-from compoundkin.inputs import Inputs
+from compoundkin.motion.inputs import Inputs
 from compoundkin.series import Number
 
 if TYPE_CHECKING:
-    from compoundkin.tracking import Tracker
+    from compoundkin.motion.tracking import Tracker
 
 # The longest step of the continuation: no body may turn farther than this (radians) or move farther than
 # this part of the mechanism's size. Newton converges from there unless a limit position is near.

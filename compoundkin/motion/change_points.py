@@ -11,12 +11,12 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from compoundkin.continuation import CLOSE
-from compoundkin.inputs import Inputs
-from compoundkin.plan import DyadStep, blocks
+from compoundkin.motion.continuation import CLOSE
+from compoundkin.motion.inputs import Inputs
+from compoundkin.motion.plan import DyadStep, blocks
+from compoundkin.motion.tracking import Tracker
 from compoundkin.poses import Pose
 from compoundkin.series import Number
-from compoundkin.tracking import Tracker
 
 # Margins (squared sines) below this between poses five degrees apart may have a zero between them.
 NEAR = 0.05

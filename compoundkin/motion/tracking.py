@@ -6,15 +6,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from compoundkin.continuation import CLOSE, Path, track
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.groups.contract import clipped_root, double_root, nearest_root
-from compoundkin.home import approach
-from compoundkin.inputs import Inputs
 from compoundkin.mechanism import vector
-from compoundkin.plan import DyadStep, Plan, Run
+from compoundkin.motion.continuation import CLOSE, Path, track
+from compoundkin.motion.home import approach
+from compoundkin.motion.inputs import Inputs
+from compoundkin.motion.plan import DyadStep, Plan, Run
+from compoundkin.motion.starting import distance, first_state, shown
 from compoundkin.series import Number
-from compoundkin.starting import distance, first_state, shown
 
 
 class Tracker:

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from compoundkin.continuation import CLOSE
-from compoundkin.inputs import Inputs
-from compoundkin.plan import Plan
+from compoundkin.motion.continuation import CLOSE
+from compoundkin.motion.inputs import Inputs
+from compoundkin.motion.plan import Plan
 from compoundkin.poses import Pose
 from compoundkin.series import Number, constant
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.mechanism import Drive, Mechanism
-from compoundkin.plan import Plan, rates
+from compoundkin.motion.plan import Plan, rates
 from compoundkin.poses import End
 from compoundkin.series import Number, Series
 

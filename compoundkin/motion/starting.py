@@ -8,8 +8,8 @@ import numpy as np
 
 from compoundkin.errors import NotAssembled, Problem
 from compoundkin.geometry import fitted_pose
-from compoundkin.home import column, first_of
-from compoundkin.plan import DyadStep, GeneralStep, Plan, Run
+from compoundkin.motion.home import column, first_of
+from compoundkin.motion.plan import DyadStep, GeneralStep, Plan, Run
 from compoundkin.poses import Pose
 from compoundkin.series import Number
 

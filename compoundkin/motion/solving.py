@@ -1,0 +1,139 @@
+"""Solving: from a mechanism and driver values to a motion with every derivative asked for."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from compoundkin.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses
+from compoundkin.mechanism import Mechanism
+from compoundkin.motion.change_points import NEAR, pass_through, rates_at
+from compoundkin.motion.gathering import Gathering
+from compoundkin.motion.inputs import Inputs, inputs
+from compoundkin.motion.model import HIGHEST_ORDER, Motion
+from compoundkin.motion.plan import Plan, Run, blocks
+from compoundkin.motion.tracking import Tracker, read_hint
+from compoundkin.series import Number
+from compoundkin.structure import decompose
+from compoundkin.structure.model import Structure
+
+# Up to so many poses are solved at once: gathering blocks would copy more than the caches save.
+WHOLE = 65536
+# Longer motions are solved in blocks of so many poses: their arrays stay in a second-level cache of 2 MB, and the
+# calls take far less time than the work.
+BLOCK = 16384
+
+
+def solve(
+    mechanism: Mechanism | Structure,
+    values: Mapping[str, Any] | None = None,
+    *,
+    speed: Any = None,
+    acceleration: Any = None,
+    jerk: Any = None,
+    order: int = 2,
+    modes: Mapping[str, int] | None = None,
+    hint: Mapping[str, Any] | None = None,
+) -> Motion:
+    """Solve a mechanism group by group, for position and all derivatives up to `order` (0 to 3).
+
+    `values` gives each driver's coordinate (radians or lengths; arrays, the last axis the motion); `speed`,
+    `acceleration`, `jerk` its rates, a number for a single driver or a mapping by name. What is not given
+    comes from the mechanism's drives; a driver of a pin without values makes a full turn.
+
+    The assembly mode of each group is that of `modes` (a link of the group: +1 or -1), else the one nearest
+    to `hint` (points near their places at the first pose), else nearest to the mechanism's drawing, else +1.
+
+    Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
+    NotAssembled where a group has no pose at all; warns UnassembledPoses where some poses do not close.
+
+    >>> from compoundkin.mechanism import drive, link
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> solve(crank, {"crank": [0.0, np.pi / 2]}, speed=3.0).points["B"].velocity.xy.round(12).tolist()
+    [[0.0, 6.0], [-6.0, 0.0]]
+    """
+    if isinstance(order, bool) or order not in range(HIGHEST_ORDER + 1):
+        raise InvalidInput(Problem("order", f"{order!r} is not an order", "0 position, 1 velocity, 2 acceleration, 3 jerk"))
+    plan = _plan_of(mechanism)
+    with np.errstate(all="ignore"):
+        given = inputs(plan, values, speed, acceleration, jerk)
+        tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint))
+        motion = _settled(plan, given, tracker, order)
+    missing = int(np.count_nonzero(motion.failed))
+    if missing:
+        text = f"{missing} of {motion.failed.size} poses cannot be assembled; Motion.assembled masks them, gaps(motion) explains them"
+        warnings.warn(text, UnassembledPoses, stacklevel=2)
+    return motion
+
+
+def _plan_of(mechanism: Mechanism | Structure) -> Plan:
+    """The plan of a mechanism, made once and kept with it."""
+    owner = mechanism.mechanism if isinstance(mechanism, Structure) else mechanism
+    plan: Plan | None = owner.__dict__.get("_plan")
+    if plan is None:
+        structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
+        if structure.faults:
+            problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
+            raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved")
+        plan = owner.__dict__["_plan"] = Plan(structure)
+    return plan
+
+
+def _signs(plan: Plan, modes: Mapping[str, int] | None) -> dict[int, int]:
+    """The modes chosen by sign, by group; those of the call go before those of the mechanism."""
+    mechanism = plan.structure.mechanism
+    called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
+    return {**_by_group(plan, written), **_by_group(plan, called)}
+
+
+def _by_group(plan: Plan, modes: Mapping[str, int]) -> dict[int, int]:
+    signs: dict[int, int] = {}
+    where = {link: k for k, step in enumerate(plan.steps) for link in step.group.links}
+    for name, sign in modes.items():
+        plan.structure.mechanism.link(name)
+        if sign not in (1, -1):
+            raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
+        if name not in where:
+            raise InvalidInput(Problem(f"modes.{name}", "this link is driven or fixed: it has no assembly mode"))
+        if signs.setdefault(where[name], sign) != sign:
+            raise InvalidInput(Problem(f"modes.{name}", "another link of its group has the opposite mode"))
+    return signs
+
+
+def _settled(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> Motion:
+    """Solve; again where a group is found to pass through a change point, from which its mode changes sign."""
+    lead = tracker.lead_run()
+    while True:
+        motion, near = _run(plan, given, tracker, order)
+        near |= _near(lead) if lead else set()
+        if not near or not pass_through(given, tracker, near):
+            return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
+
+
+def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
+    """Solve block by block and gather; also the groups that come near a limit position."""
+    designs, poses = given.designs, given.poses
+    near: set[int] = set()
+    parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
+    if len(parts) == 1:
+        run = tracker.run(given, order, *_places(slice(0, designs), slice(0, poses)))
+        failed = np.broadcast_to(run.failed, (designs, poses))
+        return Motion(plan.structure, order, given, dict(run.world), failed, tracker), _near(run)
+    store = Gathering(designs, poses)
+    for d, m in parts:
+        run = tracker.run(given.cut(d, m), order, *_places(d, m))
+        store.take(run.world, run.failed, d, m)
+        near |= _near(run)
+    return Motion(plan.structure, order, given, store.poses(), store.failed, tracker), near
+
+
+def _near(run: Run) -> set[int]:
+    return {k for k, margin in run.margins.items() if np.any(margin < NEAR)}
+
+
+def _places(d: slice, m: slice) -> tuple[Number, Number]:
+    """The places along the motion (a row) and the design indices (a column) of a block."""
+    return np.arange(m.start, m.stop, dtype=float)[None], np.arange(d.start, d.stop)[:, None]
