@@ -66,7 +66,18 @@ def gaps(motion: Motion) -> tuple[Gap, ...]:
         group = motion.structure.groups[int(motion.failed[d, middle[k]]) - 1]
         design = tuple(int(i) for i in np.unravel_index(d, axes)) if axes else ()
         found.append(
-            Gap(design, a, b, _at(begin, k), _at(end, k), a == 0, b == motion.inputs.poses - 1, group.links, group.name, reasons[k])
+            Gap(
+                design,
+                a,
+                b,
+                _at(begin, k),
+                _at(end, k),
+                a == 0,
+                b == motion.inputs.poses - 1,
+                group.links,
+                group.name,
+                reasons[k],
+            )
         )
     return tuple(found)
 

@@ -135,7 +135,11 @@ def link(name: str, *letters: str, **points: Any) -> Link:
     both = [letter for letter in letters if letter in points]
     if both or (letters and points) or len(set(letters)) < len(letters):
         raise InvalidMechanism(
-            Problem(f"links.{name}", "points are given twice, or partly as drawn", "give all by letters or all by coordinates")
+            Problem(
+                f"links.{name}",
+                "points are given twice, or partly as drawn",
+                "give all by letters or all by coordinates",
+            )
         )
     placed = _points(f"links.{name}.points", points)
     return Link(name, placed if placed else dict.fromkeys(letters))
@@ -188,7 +192,9 @@ def expect(quantity: str, value: Any, tolerance: float, **at: float) -> Expectat
     >>> expect("block.angle", 0.5, 1e-3, crank=1.0).at
     (('crank', 1.0),)
     """
-    return Expectation(quantity, complex(vector("expected", value)), float(_real("expected.tolerance", tolerance)), tuple(at.items()))
+    return Expectation(
+        quantity, complex(vector("expected", value)), float(_real("expected.tolerance", tolerance)), tuple(at.items())
+    )
 
 
 class Mechanism:
@@ -345,7 +351,9 @@ def vector(where: str, value: Any) -> Number:
         else:
             out = np.asarray(value, dtype=complex)
     except (TypeError, ValueError):
-        raise InvalidMechanism(Problem(where, f"{value!r} is not a point", "write (x, y) or a complex number")) from None
+        raise InvalidMechanism(
+            Problem(where, f"{value!r} is not a point", "write (x, y) or a complex number")
+        ) from None
     return complex(out) if out.ndim == 0 else _frozen(out)
 
 

@@ -36,14 +36,20 @@ def _words(mechanism: Mechanism) -> Iterator[Problem]:
 
     for index, item in enumerate(mechanism.items):
         if not isinstance(item, Item):
-            yield Problem(f"items[{index}]", f"{item!r} is not a word", "known: link, slide, drive, drawn, mode, expect")
+            yield Problem(
+                f"items[{index}]", f"{item!r} is not a word", "known: link, slide, drive, drawn, mode, expect"
+            )
 
 
 def _names(mechanism: Mechanism) -> Iterator[Problem]:
     from compoundkin.mechanism import FRAME
 
     if FRAME not in mechanism.links:
-        yield Problem("links", f"no link is called {FRAME!r}", f"call the fixed link {FRAME!r}; {nearest(FRAME, list(mechanism.links))}")
+        yield Problem(
+            "links",
+            f"no link is called {FRAME!r}",
+            f"call the fixed link {FRAME!r}; {nearest(FRAME, list(mechanism.links))}",
+        )
     seen: set[tuple[str, str]] = set()
     for where, kind, name in _named(mechanism):
         if not _is_name(name):
@@ -53,7 +59,11 @@ def _names(mechanism: Mechanism) -> Iterator[Problem]:
         seen.add((kind, name))
     for letter in mechanism.carriers:
         if not _is_name(letter):
-            yield Problem(f"points.{letter}", f"{letter!r} is not a name", "use printable text without dots, commas or outer blanks")
+            yield Problem(
+                f"points.{letter}",
+                f"{letter!r} is not a name",
+                "use printable text without dots, commas or outer blanks",
+            )
         if letter in mechanism.links:
             yield Problem(f"links.{letter}", "a link and a point have the same name", "rename one of them")
 
@@ -113,7 +123,11 @@ def _lengths(mechanism: Mechanism, name: str, size: float) -> Iterator[Problem]:
     for i, (a, p) in enumerate(pinned):
         for b, q in pinned[i + 1 :]:
             if np.any(np.abs(p - q) <= ZERO_LENGTH * size):
-                yield Problem(f"links.{name}.points.{b}", f"{a} and {b} coincide: a link of zero length", "move one of them or give both one letter")
+                yield Problem(
+                    f"links.{name}.points.{b}",
+                    f"{a} and {b} coincide: a link of zero length",
+                    "move one of them or give both one letter",
+                )
 
 
 def _size(mechanism: Mechanism) -> float:
@@ -133,7 +147,7 @@ def _pairs(mechanism: Mechanism) -> Iterator[Problem]:
                 yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite")
         shared = [k for k, names in mechanism.pins.items() if set(pair.members) <= set(names)]
         if shared and len(set(pair.members)) == 2:
-            yield Problem(where, f"{pair.members[1]!r} and {pair.members[0]!r} are also pinned at {shared[0]}, which blocks this pair",
+            yield Problem(where, f"{pair.members[1]!r} and {pair.members[0]!r} are also pinned at {shared[0]}",
                           "give the two points different letters")  # fmt: skip
 
 
@@ -174,7 +188,9 @@ def _drives(mechanism: Mechanism) -> Iterator[Problem]:
             # a multiple pin may be driven once between each two of its links
             place = choices[0] if choices else "", frozenset((drive.link, drive.on))
             if len(choices) == 1 and place in driven:
-                yield Problem(where, f"the pair {choices[0]!r} is driven already by {driven[place]!r}", "leave one of them out")
+                yield Problem(
+                    where, f"the pair {choices[0]!r} is driven already by {driven[place]!r}", "leave one of them out"
+                )
             if len(choices) == 1:
                 driven[place] = drive.name
         for key in ("values", "speed", "acceleration", "jerk"):
@@ -195,7 +211,9 @@ def _driven_pair(drive: Drive, choices: list[str], where: str) -> Iterator[Probl
     what = f"{drive.link!r} and {drive.on!r}"
     if not choices:
         named = f" called {drive.pair!r}" if drive.pair else ""
-        yield Problem(where, f"there is no pair{named} between {what} to drive", "drive a link against one it is paired with")
+        yield Problem(
+            where, f"there is no pair{named} between {what} to drive", "drive a link against one it is paired with"
+        )
     elif len(choices) > 1:
         yield Problem(f"{where}.pair", f"{what} share several pairs", f"name one: {', '.join(choices)}")
 
@@ -204,7 +222,9 @@ def _modes(mechanism: Mechanism) -> Iterator[Problem]:
     for index, mode in enumerate(mechanism.modes):
         for name in mode.links:
             if name not in mechanism.links:
-                yield Problem(f"modes[{index}].links", f"there is no link {name!r}", nearest(name, list(mechanism.links)))
+                yield Problem(
+                    f"modes[{index}].links", f"there is no link {name!r}", nearest(name, list(mechanism.links))
+                )
 
 
 def _expectations(mechanism: Mechanism) -> Iterator[Problem]:
@@ -236,9 +256,17 @@ def _shapes(mechanism: Mechanism) -> Iterator[Problem]:
         shapes += [(f"links.{name}.points.{k}", np.shape(p)) for k, p in link.points.items() if p is not None]
     shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
     for where, pair in _placed(mechanism.written_pairs):
-        shapes += [(f"{where}.{k.name}", np.shape(getattr(pair, k.name, 0.0))) for k in pair.keys if k.kind in ("length", "angle")]
+        shapes += [
+            (f"{where}.{k.name}", np.shape(getattr(pair, k.name, 0.0)))
+            for k in pair.keys
+            if k.kind in ("length", "angle")
+        ]
     for index, drive in enumerate(mechanism.drives):
-        shapes += [(f"drives[{index}].{k}", np.shape(getattr(drive, k))) for k in ("values", "speed", "acceleration", "jerk") if getattr(drive, k) is not None]
+        shapes += [
+            (f"drives[{index}].{k}", np.shape(getattr(drive, k)))
+            for k in ("values", "speed", "acceleration", "jerk")
+            if getattr(drive, k) is not None
+        ]
     total: tuple[int, ...] = ()
     for where, shape in shapes:
         if not shape:
@@ -246,4 +274,8 @@ def _shapes(mechanism: Mechanism) -> Iterator[Problem]:
         try:
             total = np.broadcast_shapes(total, shape)
         except ValueError:
-            yield Problem(where, f"shape {shape} does not broadcast with {total}", "give a new axis to designs: the last axis is the motion")
+            yield Problem(
+                where,
+                f"shape {shape} does not broadcast with {total}",
+                "give a new axis to designs: the last axis is the motion",
+            )

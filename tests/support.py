@@ -33,9 +33,7 @@ def random_real(rng: np.random.Generator, order: int, shape: tuple[int, ...], sp
     return Series(tuple(rng.standard_normal(shape) * spread / factorial(k) for k in range(order + 1)))
 
 
-def random_planar(
-    rng: np.random.Generator, order: int, shape: tuple[int, ...], spread: float = 1.0
-) -> Series:
+def random_planar(rng: np.random.Generator, order: int, shape: tuple[int, ...], spread: float = 1.0) -> Series:
     x, y = random_real(rng, order, shape, spread), random_real(rng, order, shape, spread)
     return Series(tuple(a + 1j * b for a, b in zip(x.c, y.c, strict=True)))
 
@@ -88,9 +86,7 @@ class Sketch:
             self.links[link].append(name)
         return name
 
-    def mechanism(
-        self, change: Callable[[complex], complex] = complex, title: str = "random"
-    ) -> ck.Mechanism:
+    def mechanism(self, change: Callable[[complex], complex] = complex, title: str = "random") -> ck.Mechanism:
         """It as a `Mechanism`, its points moved by `change`."""
         points = {k: change(p) for k, p in self.places.items()}
         items = [ck.link(name, *letters) for name, letters in self.links.items()]
@@ -115,9 +111,7 @@ class Sketch:
 KINDS_OF_DYAD = ("RRR", "RRP", "RPR", "PRP", "RPP")
 
 
-def random_sketch(
-    rng: np.random.Generator, kinds: Iterable[str], driver: str = "R", multiple: float = 0.3
-) -> Sketch:
+def random_sketch(rng: np.random.Generator, kinds: Iterable[str], driver: str = "R", multiple: float = 0.3) -> Sketch:
     """A crank or driven slide on the frame and dyads of the given kinds, each on random links before it.
 
     Every link's first two letters are well apart, so that its own axes are well defined; some pins are multiple.
@@ -137,9 +131,7 @@ def random_sketch(
         sketch.links.update({b: [] for b in bodies})
         around = [known[i] for i in rng.choice(len(known), 2, replace=False)]
         for code, body, outside in zip(kind[::2], bodies, around, strict=True):
-            _join(
-                sketch, rng, code, outside, body, multiple, taken={k for b in bodies for k in sketch.links[b]}
-            )
+            _join(sketch, rng, code, outside, body, multiple, taken={k for b in bodies for k in sketch.links[b]})
         _join(sketch, rng, kind[1], bodies[0], bodies[1], 0.0)
         for body in bodies:
             while len(sketch.links[body]) < 2:

@@ -15,6 +15,7 @@ from tests.support import differences, home
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
 
+
 def test_elliptic_trammel_has_the_circles_of_cardan() -> None:
     curves = coupler.centrodes(catalog("elliptic-trammel"), "rod")
     assert np.abs(curves.fixed) == pytest.approx(3.0, abs=1e-12)

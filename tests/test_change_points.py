@@ -35,7 +35,9 @@ RANGES = {
 @pytest.mark.parametrize("values", RANGES.values(), ids=RANGES.keys())
 def test_the_coupler_of_a_parallelogram_stays_parallel(values):
     speed = 2.0 if values[-1] >= values[0] else -2.0
-    motion = ck.solve(parallelogram(DRAWN), {"crank": ck.deg(values)}, speed=speed, acceleration=0.7, jerk=-0.3, order=3)
+    motion = ck.solve(
+        parallelogram(DRAWN), {"crank": ck.deg(values)}, speed=speed, acceleration=0.7, jerk=-0.3, order=3
+    )
     coupler, rocker = motion.links["coupler"], motion.links["rocker"]
     # a root loses digits near its zero, each derivative of it once more; at the zero itself none are lost
     height = np.abs(np.sin(motion.drives["crank"].value))

@@ -17,8 +17,8 @@ __all__ = ["Check", "Finding", "verify"]
 def verify(motion: Motion) -> Check:
     """Check a motion in ways that do not use the formulas that solved it.
 
-    Closure, velocities, accelerations and jerks in the pairs' own equations; velocities from instant centres, and
-    the collinearity of every three; derivatives against differences of positions; continuity from pose to pose. Poses that
+    Closure, velocities, accelerations and jerks in the pairs' own equations; velocities from centres, and
+    the collinearity of every three; derivatives against differences of positions; continuity. Poses that
     cannot be assembled are left out; at limit positions, where rates are infinite, only the position is checked.
 
     >>> from compoundkin.mechanism import Mechanism, drive, link
@@ -28,6 +28,11 @@ def verify(motion: Motion) -> Check:
     True
     """
     with np.errstate(all="ignore"):
-        found = [*residuals(motion), *centre_findings(motion), *difference_findings(motion), *continuity_findings(motion)]
+        found = [
+            *residuals(motion),
+            *centre_findings(motion),
+            *difference_findings(motion),
+            *continuity_findings(motion),
+        ]
     closed = int(np.count_nonzero(motion.failed == 0))
     return Check(tuple(found), closed, closed - int(np.count_nonzero(motion.regular)))

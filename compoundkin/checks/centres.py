@@ -31,9 +31,9 @@ def centre_findings(motion: Motion) -> Iterator[Finding]:
     except NotDetermined:
         return
     check = centres.velocity_check()
-    yield _finding(motion, "velocities from instant centres", {**check.links, **check.points})
+    yield _finding(motion, "velocities from centres", {**check.links, **check.points})
     triples = {" ".join(names): value for names, value in centres.collinearity().items()}
-    yield _finding(motion, "Kennedy: three centres on a line", triples)
+    yield _finding(motion, "Kennedy collinearity", triples)
 
 
 def _finding(motion: Motion, name: str, parts: dict[str, Number]) -> Finding:

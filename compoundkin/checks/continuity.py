@@ -31,7 +31,7 @@ def continuity_findings(motion: Motion) -> Iterator[Finding]:
         # infinite slopes at a limit position say nothing about a leap
         bounded = good & np.isfinite(leap) & (np.abs(first[:, :-1]) + np.abs(last[:, 1:]) < 2.0)
         parts[link] = np.pad(np.where(bounded, leap, 0.0), ((0, 0), (1, 0)))
-    yield worst(motion, "continuity from pose to pose", LIMIT, parts, motion.failed == 0)
+    yield worst(motion, "continuity", LIMIT, parts, motion.failed == 0)
 
 
 def _slopes(motion: Motion, part: Inputs, s: Number) -> dict[str, Number]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from math import factorial
 
 import numpy as np
@@ -39,7 +40,7 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
                 own = series.derivative(k) * step**k
                 # relative to the largest derivative the series' own time allows
                 parts[link] = np.maximum(parts.get(link, 0.0), np.abs(found - own) / (STEP**k * size))
-        yield worst(motion, f"{NAMES[k]} against differences", LIMITS[k], parts, counted)
+        yield worst(motion, f"{NAMES[k]}, differences", LIMITS[k], parts, counted)
 
 
 def _weights(k: int) -> Number:
@@ -60,7 +61,7 @@ def _own_time(motion: Motion) -> Number:
     fastest: Number = np.zeros(motion.failed.shape)
     for k, c in enumerate(largest, start=1):
         fastest = np.maximum(fastest, c ** (1.0 / k))
-    for c, after in zip(largest, largest[1:], strict=False):
+    for c, after in pairwise(largest):
         fastest = np.maximum(fastest, after / c)
     return 1.0 / fastest
 

@@ -14,6 +14,8 @@ VERBS = {
     "report": "Everything about a mechanism: structure, motion, checks.",
     "structure": "Take a mechanism apart: links, pairs, mobility, loops, groups.",
     "solve": "Positions, velocities, accelerations as a table.",
+    "centres": "All instant centres at one pose, primary ones first.",
+    "check": "Verify a motion: a table of all findings.",
     "catalog": "List, show or copy the shipped mechanisms.",
     "new": "Write a commented mechanism file to start from.",
     "schema": "The JSON Schema of mechanism files.",

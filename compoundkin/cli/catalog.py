@@ -11,12 +11,15 @@ from compoundkin.cli.mechanisms import complete_name
 from compoundkin.cli.shell import put, say
 
 
-@click.group(invoke_without_command=True, epilog="""\b
+@click.group(
+    invoke_without_command=True,
+    epilog="""\b
 Examples:
   compoundkin catalog
   compoundkin catalog show six-bar
   compoundkin catalog copy six-bar mine.toml
-""")
+""",
+)
 @click.pass_context
 def command(ctx: click.Context) -> int:
     """List, show or copy the shipped mechanisms; their names work wherever a file does."""

@@ -9,12 +9,14 @@ from compoundkin.cli.shell import put
 SHELLS = ("bash", "zsh", "fish")
 
 
-@click.command(epilog="""\b
+@click.command(
+    epilog="""\b
 Examples:
   eval "$(compoundkin completion bash)"      in ~/.bashrc
   eval "$(compoundkin completion zsh)"       in ~/.zshrc
   compoundkin completion fish > ~/.config/fish/completions/compoundkin.fish
-""")
+"""
+)
 @click.argument("shell", type=click.Choice(SHELLS))
 def command(shell: str) -> int:
     """Print the script that completes commands, options, files and catalog names in your shell."""

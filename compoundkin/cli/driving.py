@@ -59,11 +59,17 @@ def solved(structure: Structure, asked: Mapping[str, Any]) -> Motion:
     Raises InvalidInput for options that do not fit the mechanism, and whatever `solve` raises.
     """
     from compoundkin.cli import values
+
+    return solved_at(structure, values.of_drivers(structure, asked), asked)
+
+
+def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[str, Any]) -> Motion:
+    """As `solved`, at these values of the drivers."""
+    from compoundkin.cli import values
     from compoundkin.cli.progress import working
     from compoundkin.errors import UnassembledPoses
     from compoundkin.motion import solve
 
-    driven = values.of_drivers(structure, asked)
     rates = {what: values.of_rates(structure, f"--{what}", asked[f"{what}s"]) for what in ("speed", "acceleration")}
     modes = values.of_modes(structure, asked["modes"])
     with working("solving"), warnings.catch_warnings(record=True) as caught:

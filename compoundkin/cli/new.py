@@ -66,11 +66,13 @@ C = [78, 46]
 """
 
 
-@click.command(epilog="""\b
+@click.command(
+    epilog="""\b
 Examples:
   compoundkin new
   compoundkin new linkage.toml
-""")
+"""
+)
 @click.argument("path", type=click.Path(), default="mechanism.toml")
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 def command(path: str, force: bool) -> int:

@@ -13,13 +13,15 @@ from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
 from compoundkin.cli.structure import unsolvable
 
 
-@click.command(epilog="""\b
+@click.command(
+    epilog="""\b
 Examples:
   compoundkin report six-bar
   compoundkin report six-bar --output G.speed --output rocker.angle
   compoundkin report six-bar --from 0 --to 90 --step 5 -o six-bar.md
   compoundkin report linkage.toml --format json
-""")
+"""
+)
 @mechanism_argument
 @drive_options
 @click.option("--design", default=0, show_default=True, metavar="INDEX", help="Which one, where dimensions are arrays.")

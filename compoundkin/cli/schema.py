@@ -7,10 +7,12 @@ import click
 from compoundkin.cli.shell import put
 
 
-@click.command(epilog="""\b
+@click.command(
+    epilog="""\b
 Example:
   compoundkin schema > mechanism.schema.json
-""")
+"""
+)
 def command() -> int:
     """Print the JSON Schema of mechanism files; editors check and complete TOML and JSON with it."""
     import json

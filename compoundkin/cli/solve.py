@@ -14,14 +14,16 @@ if TYPE_CHECKING:
     from compoundkin.motion import Motion
 
 
-@click.command(epilog="""\b
+@click.command(
+    epilog="""\b
 Examples:
   compoundkin solve six-bar --at 35 --output G.velocity,bar.angle
   compoundkin solve six-bar --from 0 --to 360 --step 1 -o six-bar.csv
   compoundkin solve six-bar --speed 300rpm --order 3 -o six-bar.parquet
   compoundkin solve five-bar --drive left=0:90:10 --drive right=90:0:-10
   compoundkin solve crank-rocker --mode coupler=-1 | head -3
-""")
+"""
+)
 @mechanism_argument
 @drive_options
 @click.option("-o", "--to-file", "path", metavar="PATH", help="Write a table here: .csv, .json, .npz or .parquet.")

@@ -9,11 +9,13 @@ from compoundkin.cli.output import put_report, report_options
 from compoundkin.cli.shell import say
 
 
-@click.command(epilog="""\b
+@click.command(
+    epilog="""\b
 Examples:
   compoundkin structure six-bar
   compoundkin structure linkage.toml --format markdown
-""")
+"""
+)
 @mechanism_argument
 @report_options
 def command(file: str, form: str | None, path: str | None) -> int:

@@ -38,6 +38,37 @@ def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Numb
     return {name: float(v[0]) if len(v) == 1 else v for name, v in values.items()}
 
 
+def of_pose(structure: Structure, given: Sequence[str]) -> dict[str, float]:
+    """One value of every driver, radians or lengths: the one given, else the first of its own range."""
+    names = [drive.name for drive in structure.mechanism.drives]
+    if len(names) > 1 and any("=" not in text for text in given):
+        raise _wrong(
+            "--at", f"there are {len(names)} drivers", f"name them: {' '.join(f'--at {n}=...' for n in names)}"
+        )
+    found, angles = _first(structure), _angles(structure)
+    shown = list(_named(structure, "--at", given))
+    for name, text in shown:
+        if sum(other == name for other, _ in shown) > 1:
+            raise _wrong(f"--at {name}", "the driver's value is given twice", "leave one of them out")
+        found[name] = _single(text, angles[name])
+    return found
+
+
+def _first(structure: Structure) -> dict[str, float]:
+    """The first value of every driver that has values or turns a full turn."""
+    own = {d.name: FULL_TURN if d.values is None else d.values for d in structure.mechanism.drives}
+    angles = _angles(structure)
+    plain = {d.name for d in structure.mechanism.drives if d.values is None and not angles[d.name]}
+    return {name: float(np.ravel(values)[0]) for name, values in own.items() if name not in plain}
+
+
+def _single(text: str, is_angle: bool) -> float:
+    if "," in text or ":" in text:
+        raise _wrong(f"--at {text}", "centres are those of one pose", "give a single value")
+    value = number(text, f"--at {text}")
+    return float(np.deg2rad(value)) if is_angle else value
+
+
 def numbers(text: str, where: str) -> Number:
     """Numbers written one by one, or as from:to:step.
 

@@ -57,9 +57,7 @@ class Dyad(ABC):
 
     @staticmethod
     @abstractmethod
-    def close(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = ...
-    ) -> Closed:
+    def close(first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = ...) -> Closed:
         """Solve the group; `inner` is the inner pair's side on the first and on the second body.
 
         `root` takes the square root of the discriminant, given a scale of its terms, and gives the margin.
@@ -67,7 +65,9 @@ class Dyad(ABC):
 
     @staticmethod
     @abstractmethod
-    def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
         """Why the group cannot be assembled at the flat pose index `at`; `names` are the letters of its pairs."""
 
 

@@ -63,7 +63,9 @@ class Solution(NamedTuple):
 class General:
     """A group of `n` bodies joined and attached by `pairs`; `members` tells each pair's two sides."""
 
-    def __init__(self, n: int, pairs: tuple[Pair, ...], members: tuple[tuple[Member, Member], ...], size: float) -> None:
+    def __init__(
+        self, n: int, pairs: tuple[Pair, ...], members: tuple[tuple[Member, Member], ...], size: float
+    ) -> None:
         self.n = n
         self.pairs = pairs
         self.members = members
@@ -107,7 +109,10 @@ class General:
         theta = [[state[..., 3 * k + 2]] for k in range(self.n)]
         inverse = inverted(self.matrix(bodies, _leading(setting))) if order else np.zeros(())
         for k in range(1, order + 1):
-            trial = [Pose(Series((*b.z.c, 0j)), Series((*t, np.zeros_like(t[0]))).turn()) for b, t in zip(bodies, theta, strict=True)]
+            trial = [
+                Pose(Series((*b.z.c, 0j)), Series((*t, np.zeros_like(t[0]))).turn())
+                for b, t in zip(bodies, theta, strict=True)
+            ]
             step = -np.einsum("...ij,...j->...i", inverse, self.residual(trial, setting, k))
             for t, j in zip(theta, range(self.n), strict=True):
                 t.append(step[..., 3 * j + 2])

@@ -39,7 +39,9 @@ class PRP(Dyad):
         return Closed((pose, other), margin)
 
     @staticmethod
-    def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
         """The guides are parallel."""
         return f"the guides of {names[0]} and {names[2]} are parallel, so that {names[1]} is not fixed"
 

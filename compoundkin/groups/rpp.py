@@ -37,6 +37,8 @@ class RPP(Dyad):
         return Closed((pose, moved), margin)
 
     @staticmethod
-    def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
         """The guides are parallel."""
         return f"the guides of {names[1]} and {names[2]} are parallel, so that the position along them is not fixed"

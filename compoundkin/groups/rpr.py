@@ -37,11 +37,14 @@ class RPR(Dyad):
         return Closed((first_pose, second_pose), margin, line2.c[0])
 
     @staticmethod
-    def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
         """The pins are nearer to each other than their eccentricity."""
         line, across = _distances(first, inner, second)
         if element(np.abs(line.c[0]) - np.abs(across.c[0]), at) >= 0:
-            return f"{names[0]} and {names[2]} coincide, so that the direction of the guide of {names[1]} is not determined"
+            pins = f"{names[0]} and {names[2]} coincide"
+            return f"{pins}, so that the direction of the guide of {names[1]} is not determined"
         return (
             f"|{names[0]}{names[2]}| = {text(np.abs(line.c[0]), at)} < {text(np.abs(across.c[0]), at)},"
             f" the distance of the two pins across the guide of {names[1]}"

@@ -37,7 +37,9 @@ class RRP(Dyad):
         return Closed((placed_at(as_series(first.world.point), u, first.local.point), block), margin)
 
     @staticmethod
-    def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
         """The rod does not reach the line of its other pin."""
         rod, start, guide, _ = _line(first, inner, second)
         distance = np.abs(guide.cross(start).c[0])
@@ -48,7 +50,9 @@ class RRP(Dyad):
 
 
 def _line(first: Attachment, inner: tuple[End, End], second: Attachment) -> tuple[Series, Series, Series, Series]:
-    """The rod in its own frame; a point (from the outer pin) and the direction of the line of the inner pin; the block's orientation."""
+    """The rod in its own frame; the line of the inner pin, a point from the outer pin and a direction; the block's
+    orientation.
+    """
     rod = as_series(inner[0].point - first.local.point)
     guide = second.world.along
     v = guide * second.local.along.conj()

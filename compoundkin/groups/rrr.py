@@ -48,7 +48,9 @@ class RRR(Dyad):
         return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin, line2.c[0])
 
     @staticmethod
-    def explain(first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]) -> str:
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
         """Too far apart or too near."""
         a, b, line = (np.abs(s.c[0]) for s in _sides(first, inner, second))
         outer, pin, other = names

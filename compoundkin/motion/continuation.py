@@ -148,7 +148,11 @@ class _March:
         """The state's slope by s, and on which side of a singularity the configuration is."""
         setting = self._setting(s, 1)
         bodies = self.solver.series(self.state, setting, 1)
-        parts = [v for b in bodies for v in (b.z.c[1].real, b.z.c[1].imag, b.u.c[0].real * b.u.c[1].imag - b.u.c[0].imag * b.u.c[1].real)]
+        parts = [
+            v
+            for b in bodies
+            for v in (b.z.c[1].real, b.z.c[1].imag, b.u.c[0].real * b.u.c[1].imag - b.u.c[0].imag * b.u.c[1].real)
+        ]
         slope = np.stack(np.broadcast_arrays(*parts, self.state[..., 0])[:-1], axis=-1)
         return slope, self._side(self.state, setting)
 

@@ -122,7 +122,9 @@ def _driver(
     if value is None:
         pair = plan.driven[drive.name].pair
         if not pair.free_is_angle:
-            raise InvalidInput(Problem(f"drives.{drive.name}", "it has no values", f"solve(..., {{{drive.name!r}: lengths}})"))
+            raise InvalidInput(
+                Problem(f"drives.{drive.name}", "it has no values", f"solve(..., {{{drive.name!r}: lengths}})")
+            )
         value = FULL_TURN
     rest = [_rate(drive, what, default, only) for what, default in
             ((speed, drive.speed), (acceleration, drive.acceleration), (jerk, drive.jerk))]  # fmt: skip
@@ -136,7 +138,9 @@ def _rate(drive: Drive, what: Any, default: Number, only: bool) -> Any:
         return what.get(drive.name, default)
     if only:
         return what
-    raise InvalidInput(Problem("speed", "there are several drivers", f"give one for each by name: {{{drive.name!r}: ...}}"))
+    raise InvalidInput(
+        Problem("speed", "there are several drivers", f"give one for each by name: {{{drive.name!r}: ...}}")
+    )
 
 
 def _number(where: str, value: Any) -> Number:
@@ -175,7 +179,9 @@ def _shape(plan: Plan, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, .
             found = np.broadcast_shapes(found, np.shape(value))
         except ValueError:
             raise InvalidInput(
-                Problem(where, f"shape {np.shape(value)} does not broadcast with {found}", "the last axis is the motion")
+                Problem(
+                    where, f"shape {np.shape(value)} does not broadcast with {found}", "the last axis is the motion"
+                )
             ) from None
     return found
 

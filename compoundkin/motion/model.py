@@ -274,7 +274,9 @@ class Motion:
                 out.append(full)
             return Series(tuple(out))
 
-        mended = {n: FIXED if n == FRAME else Pose(put(p.z, poses[n].z), put(p.u, poses[n].u)) for n, p in self.poses.items()}
+        mended = {
+            n: FIXED if n == FRAME else Pose(put(p.z, poses[n].z), put(p.u, poses[n].u)) for n, p in self.poses.items()
+        }
         return replace(self, poses=mended)
 
     def _point(self, name: str) -> PointMotion:

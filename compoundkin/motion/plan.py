@@ -50,7 +50,6 @@ class Run:
     failed: Number = 0
     margins: dict[int, Number] = field(default_factory=dict)
 
-
     def copy(self) -> Run:
         """The same block, to try a group on."""
         world = dict(self.world)
@@ -73,7 +72,8 @@ class Plan:
         self.pairs = pairs
         self.ends = {name: pair.ends(geometry) for name, pair in pairs.items()}
         self.steps: tuple[DyadStep | GeneralStep, ...] = tuple(
-            DyadStep(k, g, self.size) if g.name in DYADS else GeneralStep(k, g, self.size) for k, g in enumerate(structure.groups)
+            DyadStep(k, g, self.size) if g.name in DYADS else GeneralStep(k, g, self.size)
+            for k, g in enumerate(structure.groups)
         )
 
     @cached_property
@@ -166,7 +166,8 @@ class GeneralStep:
         where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
         pairs = (*group.inner, *group.outer)
         members = tuple(
-            (Member(p.members[0], where.get(p.members[0])), Member(p.members[1], where.get(p.members[1]))) for p in pairs
+            (Member(p.members[0], where.get(p.members[0])), Member(p.members[1], where.get(p.members[1])))
+            for p in pairs
         )
         self.solver = General(len(group.bodies), pairs, members, size)
 

@@ -56,7 +56,9 @@ def solve(
     [[0.0, 6.0], [-6.0, 0.0]]
     """
     if isinstance(order, bool) or order not in range(HIGHEST_ORDER + 1):
-        raise InvalidInput(Problem("order", f"{order!r} is not an order", "0 position, 1 velocity, 2 acceleration, 3 jerk"))
+        raise InvalidInput(
+            Problem("order", f"{order!r} is not an order", "0 position, 1 velocity, 2 acceleration, 3 jerk")
+        )
     plan = _plan_of(mechanism)
     with np.errstate(all="ignore"):
         given = inputs(plan, values, speed, acceleration, jerk)
@@ -64,7 +66,9 @@ def solve(
         motion = _settled(plan, given, tracker, order)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
-        text = f"{missing} of {motion.failed.size} poses cannot be assembled; Motion.assembled masks them, gaps(motion) explains them"
+        text = (
+            f"{missing} of {motion.failed.size} poses cannot be assembled: Motion.assembled masks them, gaps() explains"
+        )
         warnings.warn(text, UnassembledPoses, stacklevel=2)
     return motion
 

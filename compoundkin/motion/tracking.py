@@ -130,7 +130,11 @@ def _parity(passed: Number) -> Number:
 def read_hint(plan: Plan, hint: Mapping[str, object] | None) -> dict[str, Number]:
     """A hint as planar vectors; raises InvalidInput for points that the mechanism does not have."""
     letters = plan.structure.mechanism.carriers
-    wrong = [Problem(f"hint.{k}", f"there is no point {k!r}", nearest(k, list(letters))) for k in hint or {} if k not in letters]
+    wrong = [
+        Problem(f"hint.{k}", f"there is no point {k!r}", nearest(k, list(letters)))
+        for k in hint or {}
+        if k not in letters
+    ]
     if wrong:
         raise InvalidInput(wrong)
     return {k: vector(f"hint.{k}", v) for k, v in (hint or {}).items()}

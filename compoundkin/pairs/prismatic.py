@@ -49,7 +49,11 @@ class Prismatic(Pair):
         Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
         Key("link", "name", "The link that slides (the block).", required=True),
         Key("on", "name", "The link that carries the guide.", required=True),
-        Key("at", "name", "The point of the sliding link that runs along the guide; may be left out if the link has one point."),
+        Key(
+            "at",
+            "name",
+            "The point of the sliding link that runs along the guide; may be left out if the link has one point.",
+        ),
         Key("through", "name", "A point of the guiding link on the guide.", required=True),
         Key("angle", "angle", "Direction of the guide from the x axis of the guiding link.", default=0.0),
         Key("toward", "name", "A second point of the guiding link on the guide, instead of an angle."),
@@ -75,15 +79,23 @@ class Prismatic(Pair):
         if missing:
             return
         if self.link == self.on:
-            yield Problem(f"{where}.on", f"{self.link!r} cannot slide on itself", "name the link that carries the guide")
+            yield Problem(
+                f"{where}.on", f"{self.link!r} cannot slide on itself", "name the link that carries the guide"
+            )
         wanted = [("at", self.link, self.at), ("through", self.on, self.through)]
         if self.toward is not None:
             wanted.append(("toward", self.on, self.toward))
         for key, link, point in wanted:
             if not point:
-                yield Problem(f"{where}.{key}", f"link {link!r} has several points", f"name the one that slides: {', '.join(links[link])}")
+                yield Problem(
+                    f"{where}.{key}",
+                    f"link {link!r} has several points",
+                    f"name the one that slides: {', '.join(links[link])}",
+                )
             elif point not in links[link]:
-                yield Problem(f"{where}.{key}", f"link {link!r} has no point {point!r}", nearest(point, list(links[link])))
+                yield Problem(
+                    f"{where}.{key}", f"link {link!r} has no point {point!r}", nearest(point, list(links[link]))
+                )
         if self.toward is not None and self.toward == self.through:
             yield Problem(f"{where}.toward", f"a guide from {self.through!r} to itself has no direction")
 

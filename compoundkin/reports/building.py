@@ -61,12 +61,12 @@ def _of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
     # outputs first: an unknown name is said before the slower work is done
     named = outputs or [name for name in default_outputs(mechanism) if order_of(name) <= motion.order]
     moving = outputs_section(sample, named)
-    check, missing, published = verify(motion), _gaps(sample), comparisons(structure)
-    outcome = _outcome(motion, check, published)
+    check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
+    outcome = outcome_of(motion, check, published)
     return Report(
         mechanism.title,
         (
-            _about(structure, f"{_structure_in_short(structure)} {_motion_in_short(outcome)}", _design_of(sample)),
+            _about(structure, f"{_structure_in_short(structure)} {motion_in_short(outcome)}", _design_of(sample)),
             *_counted(structure, design),
             solving_section(structure, motion, design),
             drivers_section(structure, sample),
@@ -79,7 +79,8 @@ def _of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
     )
 
 
-def _gaps(sample: Sample) -> tuple[Gap, ...]:
+def gaps_of(sample: Sample) -> tuple[Gap, ...]:
+    """The gaps of one design."""
     if sample.assembled.all():
         return ()
     axes = sample.motion.shape[:-1]
@@ -87,7 +88,8 @@ def _gaps(sample: Sample) -> tuple[Gap, ...]:
     return tuple(gap for gap in gaps(sample.motion) if gap.design == design)
 
 
-def _outcome(motion: Motion, check: Check, published: tuple[Comparison, ...]) -> Outcome:
+def outcome_of(motion: Motion, check: Check, published: tuple[Comparison, ...] = ()) -> Outcome:
+    """What the findings and the published numbers come to."""
     return Outcome(
         solvable=True,
         poses=int(motion.failed.size),
@@ -125,7 +127,8 @@ def _structure_in_short(structure: Structure) -> str:
     return f"{text}; it cannot be solved." if structure.faults else f"{text}."
 
 
-def _motion_in_short(outcome: Outcome) -> str:
+def motion_in_short(outcome: Outcome) -> str:
+    """The one line that says whether all is well."""
     return f"{'; '.join(_results(outcome))}."
 
 

@@ -48,11 +48,15 @@ def _span(driver: Quantity, gap: Gap) -> str:
 
 
 def checks_section(sample: Sample, check: Check) -> Section:
-    """The residuals of the pairs' own equations, relative to the mechanism's size and speed."""
+    """All findings of the checks, each with its worst value and where it is."""
     columns = (Column("check"), Column("worst", style="brief"), Column("limit", style="brief"), Column("at"),
                Column("", style="passed"))  # fmt: skip
-    rows = tuple((f.name, f.value, f.limit, _where(sample, f.pair, f.pose), f.passed) for f in check.findings)
-    text = "Residuals of the pairs' own equations, relative to the mechanism's size and its fastest link."
+    rows = tuple((f.name, f.value, f.limit, finding_place(sample, f.pair, f.pose), f.passed) for f in check.findings)
+    text = (
+        "None of these uses the formulas that solved the motion: residuals of the pairs' own equations, velocities from"
+        " instant centres, differences of positions; relative to the mechanism's size and its fastest link. Continuity"
+        " is in radians."
+    )
     if check.singular:
         text += f" At {counted(check.singular, 'limit pose')} rates are infinite, and only the position is checked."
     if not check.poses:
@@ -60,7 +64,7 @@ def checks_section(sample: Sample, check: Check) -> Section:
     return Section("checks", "Checks", (Paragraph(text), Table(columns, rows)))
 
 
-def _where(sample: Sample, name: str, pose: tuple[int, ...]) -> str:
+def finding_place(sample: Sample, name: str, pose: tuple[int, ...]) -> str:
     """The pair or link and the pose at which a residual is worst: "A, crank 35"."""
     if not name:
         return ""

@@ -61,4 +61,6 @@ def _(block: Table) -> dict[str, Any]:
 def _cell(cell: Cell) -> Any:
     if isinstance(cell, tuple):
         return [_cell(value) for value in cell]
+    if isinstance(cell, str):
+        return " ".join(cell.split())
     return None if isinstance(cell, float) and not isfinite(cell) else cell

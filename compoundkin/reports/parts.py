@@ -90,4 +90,3 @@ def faults_section(structure: Structure) -> Section:
 
 def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:] + "."
-

@@ -63,9 +63,7 @@ def _letters_twice(system: System, body: Body) -> Iterator[tuple[str, tuple[int,
             yield letter, (POINT_FREEDOMS * (parts - 1), tuple(names))
 
 
-def counted_faults(
-    system: System, matching: Matching, over: list[bool], under: list[bool]
-) -> Iterator[Fault]:
+def counted_faults(system: System, matching: Matching, over: list[bool], under: list[bool]) -> Iterator[Fault]:
     """The parts that more rows hold than they have freedoms, and those that fewer hold."""
     touching: list[list[Constraint]] = [[] for _ in over]
     free = [unknown for unknown, yes in enumerate(under) if yes]

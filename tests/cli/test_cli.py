@@ -12,8 +12,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 import compoundkin as ck
-from compoundkin.catalog import path
 from compoundkin import catalog
+from compoundkin.catalog import path
 from compoundkin.cli import VERBS, cli, shell
 from compoundkin.errors import Problem
 from compoundkin.formats import load

@@ -59,9 +59,7 @@ def random_end(rng: np.random.Generator, pair: Pair, order: int, shape: tuple[in
 def loose(kind: type[Dyad], rng: np.random.Generator, order: int, shape: tuple[int, ...]) -> Case:
     """Sides with nothing in common: it may or may not close."""
     pairs = tuple(sample(BY_CODE[code], str(k)) for k, code in enumerate(kind.name))
-    outer = [
-        Attachment(random_end(rng, p, order, shape), random_end(rng, p, order, shape)) for p in pairs[::2]
-    ]
+    outer = [Attachment(random_end(rng, p, order, shape), random_end(rng, p, order, shape)) for p in pairs[::2]]
     inner = (random_end(rng, pairs[1], order, shape), random_end(rng, pairs[1], order, shape))
     return Case(pairs, outer[0], inner, outer[1])  # type: ignore[arg-type]
 
@@ -362,9 +360,7 @@ def rrp(rod: float, height: complex) -> Case:
     """A rod about the origin, its other pin on a block of a guide along x at some height."""
     pairs = (sample(BY_CODE["R"], "0"), sample(BY_CODE["R"], "1"), sample(BY_CODE["P"], "2"))
     guide = End(1j * height, 1 + 0j)
-    return Case(
-        pairs, Attachment(pin(0j), pin(0j)), (pin(rod + 0j), pin(0j)), Attachment(guide, End(0j, 1 + 0j))
-    )
+    return Case(pairs, Attachment(pin(0j), pin(0j)), (pin(rod + 0j), pin(0j)), Attachment(guide, End(0j, 1 + 0j)))
 
 
 def rpr(across: float, apart: complex) -> Case:

@@ -1,0 +1,85 @@
+"""`compoundkin centres`: all instant centres at one pose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from compoundkin.cli.driving import solved_at
+from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.output import put_report, report_options
+from compoundkin.cli.shell import NOT_ASSEMBLED
+from compoundkin.cli.structure import unsolvable
+
+if TYPE_CHECKING:
+    from compoundkin.motion import Motion
+    from compoundkin.structure import Structure
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin centres six-bar --at 35
+  compoundkin centres six-bar --derivation
+  compoundkin centres five-bar --at left=60 --at right=100 --speed left=2
+  compoundkin centres slider-crank --at 90 -o centres.md
+"""
+)
+@mechanism_argument
+@click.option(
+    "--at",
+    "at",
+    multiple=True,
+    metavar="[NAME=]VALUE",
+    help="The pose: a driver's value, degrees or length; the first of its range if left out.",
+)
+@click.option(
+    "--speed",
+    "speeds",
+    multiple=True,
+    metavar="[NAME=]VALUE",
+    help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).",
+)
+@click.option(
+    "--mode", "modes", multiple=True, metavar="LINK=SIGN", help="Assembly mode, +1 or -1, of the group with this link."
+)
+@click.option("--design", default=0, show_default=True, metavar="INDEX", help="Which one, where dimensions are arrays.")
+@click.option("--derivation", is_flag=True, help="The steps in order, for any pose; without --at nothing else.")
+@report_options
+def command(
+    file: str, at: tuple[str, ...], design: int, derivation: bool, form: str | None, path: str | None, **asked: Any
+) -> int:
+    """Print the instant centres of every two links at one pose, and the velocities that follow from them.
+
+    Primary centres, which pairs give, come first; then each secondary one with the two lines that give it.
+    Exit code 3: the pose cannot be assembled.
+    """
+    from dataclasses import replace
+
+    from compoundkin.reports import Report, report
+    from compoundkin.reports.instant_centres import derivation_section
+    from compoundkin.reports.partial import NOT_SOLVED, centres_report
+    from compoundkin.structure import decompose
+
+    structure = decompose(loaded(file))
+    if structure.faults:
+        put_report(report(structure), form, path)
+        return unsolvable(len(structure.faults))
+    made = Report(structure.mechanism.title, (), NOT_SOLVED)
+    if at or not derivation:
+        made = centres_report(solved_at_pose(structure, at, asked), design)
+    if derivation:
+        made = replace(made, sections=(derivation_section(structure), *made.sections))
+    put_report(made, form, path)
+    return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
+
+
+def solved_at_pose(structure: Structure, at: Sequence[str], asked: Mapping[str, Any]) -> Motion:
+    """The motion at one pose, with velocities; raises InvalidInput for values that do not fit the drivers."""
+    from compoundkin.cli import values
+
+    return solved_at(
+        structure, values.of_pose(structure, at), {"accelerations": (), "outputs": (), "order": 1, **asked}
+    )

@@ -1,0 +1,59 @@
+"""`compoundkin check`: what verifies a motion, as a table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from compoundkin.cli.driving import drive_options, solved
+from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.output import put_report, report_options
+from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
+from compoundkin.cli.structure import unsolvable
+
+if TYPE_CHECKING:
+    from compoundkin.reports import Report
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin check six-bar
+  compoundkin check six-bar --order 3
+  compoundkin check linkage.toml --from 0 --to 90 --step 0.5 --format json
+"""
+)
+@mechanism_argument
+@drive_options
+@report_options
+def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
+    """Verify a motion in ways that do not use the formulas that solved it, and print a table of all findings.
+
+    Exit code 3: some poses cannot be assembled; 4: a check failed, and the pair or link, its group and the pose
+    where it is worst are named.
+    """
+    from compoundkin.cli.progress import working
+    from compoundkin.reports import report
+    from compoundkin.reports.partial import check_report
+    from compoundkin.structure import decompose
+
+    structure = decompose(loaded(file))
+    if structure.faults:
+        put_report(report(structure), form, path)
+        return unsolvable(len(structure.faults))
+    motion = solved(structure, asked)
+    with working("checking"):
+        made = check_report(motion)
+    put_report(made, form, path)
+    return _verdict(made)
+
+
+def _verdict(made: Report) -> int:
+    """The exit code of a check; what failed is said on stderr too."""
+    failed = made.section("failed")
+    if failed is not None:
+        for alert in failed.blocks:
+            say(f"FAILED: {getattr(alert, 'text', '')}")
+        return FAILED
+    return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
