@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -11,6 +12,10 @@ from compoundkin.cli.mechanisms import loaded, mechanism_argument
 from compoundkin.cli.output import put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
 from compoundkin.cli.structure import unsolvable
+
+if TYPE_CHECKING:
+    from compoundkin.reports import Report
+    from compoundkin.structure import Structure
 
 
 @click.command(
@@ -25,8 +30,9 @@ Examples:
 @mechanism_argument
 @drive_options
 @click.option("--design", default=0, show_default=True, metavar="INDEX", help="Which one, where dimensions are arrays.")
+@click.option("--centres", "centres", metavar="VALUES", help="Add the instant centres at this pose: 35 or left=60,right=100.")
 @report_options
-def command(file: str, design: int, form: str | None, path: str | None, **asked: Any) -> int:
+def command(file: str, design: int, centres: str | None, form: str | None, path: str | None, **asked: Any) -> int:
     """Report a mechanism: its structure, its motion over the cycle, the checks, and published numbers.
 
     Angles are in degrees and lengths in the unit of the file. Exit code 3: some poses cannot be assembled;
@@ -43,8 +49,22 @@ def command(file: str, design: int, form: str | None, path: str | None, **asked:
     motion = solved(structure, asked)
     with working("checking and reporting"):
         made = report(motion, asked["outputs"], design)
+        if centres is not None:
+            made = with_centres(made, structure, centres, design, asked)
     put_report(made, form, path)
     if not made.outcome.passed:
         say("A check or a published number FAILED; the report says which.")
         return FAILED
     return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
+
+
+def with_centres(made: Report, structure: Structure, at: str, design: int, asked: Mapping[str, Any]) -> Report:
+    """The report with the instant centres at a pose, or why that cannot be assembled, after all else."""
+    from dataclasses import replace
+
+    from compoundkin.cli.centres import solved_at_pose
+    from compoundkin.reports.partial import centres_report
+
+    rates = {key: asked[key] for key in ("speeds", "modes")}
+    found = centres_report(solved_at_pose(structure, at.split(","), rates, "--centres"), design)
+    return replace(made, sections=(*made.sections, *found.sections))

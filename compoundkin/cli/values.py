@@ -63,9 +63,10 @@ def _first(structure: Structure) -> dict[str, float]:
 
 
 def _single(text: str, is_angle: bool) -> float:
-    if "," in text or ":" in text:
-        raise _wrong(f"--at {text}", "centres are those of one pose", "give a single value")
-    value = number(text, f"--at {text}")
+    try:
+        value = number(text, "--at")
+    except InvalidInput:
+        raise _wrong(f"--at {text}", "this is not one number", "give the value of a single pose") from None
     return float(np.deg2rad(value)) if is_angle else value
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,7 +20,7 @@ from compoundkin.reports.sampling import ROUNDING, Sample
 from compoundkin.reports.wording import counted, listed
 from compoundkin.structure import Structure
 
-# A direction this close to 180 degrees is 0 less rounding.
+# A direction this close to 0 or 180 degrees is rounding.
 NEARLY = 1e-9
 
 
@@ -54,15 +54,19 @@ class Shown:
         return tuple(self.centres[names] for names in found)
 
     @cached_property
+    def kinds(self) -> Mapping[str, str]:
+        """The kind of every step by its text, which is what a centre says of how it is derived."""
+        return {step.text: step.kind for step in self.centres.derivation()}
+
+    @cached_property
     def primary(self) -> tuple[Centre, ...]:
         """The centres that a pair gives."""
-        given = {step.text for step in self.centres.derivation() if step.kind == "primary"}
-        return tuple(centre for centre in self.ordered if centre.how in given)
+        return tuple(centre for centre in self.ordered if self.kinds.get(centre.how) == "primary")
 
     @cached_property
     def secondary(self) -> tuple[Centre, ...]:
         """All other centres."""
-        return tuple(centre for centre in self.ordered if centre not in self.primary)
+        return tuple(centre for centre in self.ordered if self.kinds.get(centre.how) != "primary")
 
 
 def centres_sections(sample: Sample) -> tuple[Section, ...]:
@@ -72,8 +76,7 @@ def centres_sections(sample: Sample) -> tuple[Section, ...]:
     """
     shown = Shown(sample)
     primary = Paragraph("Each is given by a pair."), _table(shown, shown.primary, "pair")
-    lines = "Three centres of three links lie on a line (Aronhold-Kennedy): each is where two such lines cross."
-    secondary = (Paragraph(lines), _table(shown, shown.secondary, "lines")) if shown.secondary else ()
+    secondary = (Paragraph(_rule(shown)), _table(shown, shown.secondary, "lines")) if shown.secondary else ()
     return (
         Section("centres", "Instant centres", (Paragraph(_place(sample)), *_count(shown))),
         Section("primary", "Primary centres", primary),
@@ -90,7 +93,7 @@ def derivation_section(structure: Structure) -> Section:
     steps = derive(diagram_of(structure)).steps
     columns = Column("step", style="each"), Column("centre"), Column("from")
     rows = tuple((k, _name(step.centre), _derived(step)) for k, step in enumerate(steps, 1))
-    text = "The circle diagram, side by side, from the pairs alone: it holds at every pose."
+    text = "The circle diagram, side by side, from links and pairs alone: it holds at every pose."
     return Section("derivation", "Derivation of the centres", (Paragraph(text), Table(columns, rows)))
 
 
@@ -102,6 +105,13 @@ def _place(sample: Sample) -> str:
     at = [f"{d.name} {number(float(d.values[0]))}{f' {d.unit}' if d.unit != 'length' else ''}" for d in sample.drivers]
     unit = sample.motion.mechanism.unit or "the unit of the file"
     return f"At {listed(at)}. Coordinates in {unit}, in the frame's axes." if at else f"Coordinates in {unit}."
+
+
+def _rule(shown: Shown) -> str:
+    text = "Three centres of three links lie on a line (Aronhold-Kennedy): each is where two such lines cross."
+    if {"trial", "rates"} & set(shown.kinds.values()):
+        text += " Where lines are lacking, trial positions or the drivers' rates give a centre; the derivation has more."
+    return text
 
 
 def _count(shown: Shown) -> Iterator[Block]:
@@ -119,7 +129,7 @@ def _table(shown: Shown, found: Sequence[Centre], how: str) -> Table:
     directions = [_direction(shown, centre) for centre in found]
     poor = [_poor(shown, centre) for centre in found]
     if any(value is not None for value in directions):
-        columns.append(Column("at infinity, direction", "deg", "each"))
+        columns.append(Column("at infinity, direction", "deg", "each", NEARLY))
         values.append(directions)
     if any(value is not None for value in poor):
         columns.append(Column("poor conditioning", style="brief"))

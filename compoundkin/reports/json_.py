@@ -62,5 +62,5 @@ def _cell(cell: Cell) -> Any:
     if isinstance(cell, tuple):
         return [_cell(value) for value in cell]
     if isinstance(cell, str):
-        return " ".join(cell.split())
+        return cell.replace("\n", " ")
     return None if isinstance(cell, float) and not isfinite(cell) else cell
