@@ -20,10 +20,11 @@ from compoundkin.errors import (
 )
 from compoundkin.formats import load, save, save_table, to_pandas
 from compoundkin.gaps import Gap, gaps
-from compoundkin.mechanism import Mechanism, deg, drawn, drive, expect, link, mode, polar
+from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
 from compoundkin.pairs import slide
 from compoundkin.structure import Structure, decompose
+from compoundkin.words import deg, drawn, drive, expect, link, mode, polar
 
 __version__ = "0.1.0"
 

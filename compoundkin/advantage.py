@@ -9,9 +9,9 @@ import numpy as np
 
 from compoundkin.coupler.relative import SMALL, dot, moving, relative_link, relative_point
 from compoundkin.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.mechanism import FRAME
 from compoundkin.motion import Motion
 from compoundkin.series import Number
+from compoundkin.words import FRAME
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,8 @@ def gaps(motion: Motion) -> tuple[Gap, ...]:
     """All gaps of a motion, design by design, in the order of the motion.
 
     >>> import warnings
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.motion import solve
     >>> triple_rocker = Mechanism(
     ...     "Triple rocker", link("frame", A=(0, 0), D=(7, 0)), link("crank", A=(0, 0), B=(4, 0)),

@@ -72,7 +72,8 @@ def quantity(motion: Motion, name: str) -> Quantity:
     angular_acceleration, angular_jerk; pairs and drivers value, rate, second, third (and angle or
     displacement for value). Raises UnknownName with the nearest known name.
 
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.motion import solve
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"), unit="mm")
     >>> found = quantity(solve(crank, {"crank": [0.0]}, speed=3.0), "B.velocity")

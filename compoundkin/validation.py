@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from compoundkin.errors import Problem, nearest
+from compoundkin.words import FRAME, Drive, Item, Link
 
 if TYPE_CHECKING:
-    from compoundkin.mechanism import Drive, Mechanism
+    from compoundkin.mechanism import Mechanism
     from compoundkin.pairs import Pair
 
 # Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
@@ -32,8 +33,6 @@ def problems_of(mechanism: Mechanism) -> Iterator[Problem]:
 
 def _words(mechanism: Mechanism) -> Iterator[Problem]:
     """What is not a word at all."""
-    from compoundkin.mechanism import Item
-
     for index, item in enumerate(mechanism.items):
         if not isinstance(item, Item):
             yield Problem(
@@ -42,8 +41,6 @@ def _words(mechanism: Mechanism) -> Iterator[Problem]:
 
 
 def _names(mechanism: Mechanism) -> Iterator[Problem]:
-    from compoundkin.mechanism import FRAME
-
     if FRAME not in mechanism.links:
         yield Problem(
             "links",
@@ -70,8 +67,6 @@ def _names(mechanism: Mechanism) -> Iterator[Problem]:
 
 def _named(mechanism: Mechanism) -> Iterator[tuple[str, str, str]]:
     """The place, sort and name of everything that has one; pairs of all kinds share their names."""
-    from compoundkin.mechanism import Link
-
     for item in mechanism.items:
         if isinstance(item, Link):
             yield f"links.{item.name}", "link", item.name
@@ -120,14 +115,23 @@ def _lengths(mechanism: Mechanism, name: str, size: float) -> Iterator[Problem]:
     link = mechanism.links[name]
     place = {k: mechanism.sketch.get(k) if p is None else p for k, p in link.points.items()}
     pinned = [(k, p) for k, p in place.items() if k in mechanism.pins and p is not None]
-    for i, (a, p) in enumerate(pinned):
-        for b, q in pinned[i + 1 :]:
-            if np.any(np.abs(p - q) <= ZERO_LENGTH * size):
-                yield Problem(
-                    f"links.{name}.points.{b}",
-                    f"{a} and {b} coincide: a link of zero length",
-                    "move one of them or give both one letter",
-                )
+    for a, b in _coincident([p for _, p in pinned], ZERO_LENGTH * size):
+        yield Problem(
+            f"links.{name}.points.{pinned[b][0]}",
+            f"{pinned[a][0]} and {pinned[b][0]} coincide: a link of zero length",
+            "move one of them or give both one letter",
+        )
+
+
+def _coincident(points: list[Any], nearer: float) -> Iterator[tuple[int, int]]:
+    """The pairs of points that coincide in any design."""
+    if all(np.ndim(p) == 0 for p in points):
+        placed = np.array(points)
+        for i in range(len(points)):
+            yield from ((i, i + 1 + int(j)) for j in np.flatnonzero(np.abs(placed[i + 1 :] - placed[i]) <= nearer))
+    else:
+        for i, p in enumerate(points):
+            yield from ((i, j) for j in range(i + 1, len(points)) if np.any(np.abs(points[j] - p) <= nearer))
 
 
 def _size(mechanism: Mechanism) -> float:

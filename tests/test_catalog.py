@@ -20,9 +20,10 @@ from compoundkin import catalog
 from compoundkin.checks import verify
 from compoundkin.errors import InvalidInput, UnknownName
 from compoundkin.formats import dumps, load, loads, schema
-from compoundkin.mechanism import Expectation, Mechanism
+from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
 from compoundkin.structure import decompose
+from compoundkin.words import Expectation
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "catalog.md"

@@ -7,8 +7,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.errors import Problem, nearest
-from compoundkin.mechanism import Drive, vector
 from compoundkin.pairs import slide
+from compoundkin.words import Drive, vector
 
 
 def four_bar(**crank: object) -> ck.Mechanism:

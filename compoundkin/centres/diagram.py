@@ -78,7 +78,8 @@ def couple(i: int, j: int) -> Couple:
 def diagram_of(structure: Structure) -> Diagram:
     """The circle diagram of a structure, with the pairs' centres as its known sides.
 
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.structure import decompose
     >>> bars = link("frame", A=0), link("crank", A=0, B=1)
     >>> diagram_of(decompose(Mechanism("m", *bars, drive("crank")))).primaries

@@ -8,11 +8,11 @@ import numpy as np
 
 from compoundkin.centres.diagram import Diagram
 from compoundkin.centres.homogeneous import norm
-from compoundkin.mechanism import FRAME
 from compoundkin.motion import Motion
 from compoundkin.pairs.contract import Line
 from compoundkin.poses import FIXED, Pose
 from compoundkin.series import Number
+from compoundkin.words import FRAME
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from compoundkin.centres.homogeneous import cross, norm
 from compoundkin.centres.loops import null_twists
 from compoundkin.centres.model import Centres
 from compoundkin.centres.places import Scale
-from compoundkin.mechanism import FRAME
 from compoundkin.motion import Motion
 from compoundkin.series import Number
+from compoundkin.words import FRAME
 
 
 def solved_twists(motion: Motion, scale: Scale) -> Number:

@@ -12,9 +12,9 @@ import numpy as np
 from compoundkin.centres.diagram import couple
 from compoundkin.centres.homogeneous import cross, dot
 from compoundkin.centres.rates import Rates
-from compoundkin.mechanism import FRAME
 from compoundkin.motion import Motion
 from compoundkin.series import Number
+from compoundkin.words import FRAME
 
 if TYPE_CHECKING:
     from compoundkin.centres.model import Centres

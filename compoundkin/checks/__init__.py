@@ -21,7 +21,8 @@ def verify(motion: Motion) -> Check:
     the collinearity of every three; derivatives against differences of positions; continuity. Poses that
     cannot be assembled are left out; at limit positions, where rates are infinite, only the position is checked.
 
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.motion import solve
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
     >>> verify(solve(crank)).passed

@@ -80,6 +80,5 @@ def solved_at_pose(structure: Structure, at: Sequence[str], asked: Mapping[str, 
     """The motion at one pose, with velocities; raises InvalidInput for values that do not fit the drivers."""
     from compoundkin.cli import values
 
-    return solved_at(
-        structure, values.of_pose(structure, at), {"accelerations": (), "outputs": (), "order": 1, **asked}
-    )
+    driven = values.of_pose(structure, at, option)
+    return solved_at(structure, driven, {"accelerations": (), "outputs": (), "order": 1, **asked})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -30,7 +30,9 @@ Examples:
 @mechanism_argument
 @drive_options
 @click.option("--design", default=0, show_default=True, metavar="INDEX", help="Which one, where dimensions are arrays.")
-@click.option("--centres", "centres", metavar="VALUES", help="Add the instant centres at this pose: 35 or left=60,right=100.")
+@click.option(
+    "--centres", "centres", metavar="VALUES", help="Add the instant centres at a pose: 35 or left=60,right=100."
+)
 @report_options
 def command(file: str, design: int, centres: str | None, form: str | None, path: str | None, **asked: Any) -> int:
     """Report a mechanism: its structure, its motion over the cycle, the checks, and published numbers.
@@ -38,6 +40,8 @@ def command(file: str, design: int, centres: str | None, form: str | None, path:
     Angles are in degrees and lengths in the unit of the file. Exit code 3: some poses cannot be assembled;
     4: a check failed or a published number was not reproduced.
     """
+    from dataclasses import replace
+
     from compoundkin.cli.progress import working
     from compoundkin.reports import report
     from compoundkin.structure import decompose
@@ -48,23 +52,21 @@ def command(file: str, design: int, centres: str | None, form: str | None, path:
         return unsolvable(len(structure.faults))
     motion = solved(structure, asked)
     with working("checking and reporting"):
-        made = report(motion, asked["outputs"], design)
+        parts = [report(motion, asked["outputs"], design)]
         if centres is not None:
-            made = with_centres(made, structure, centres, design, asked)
+            parts.append(_of_centres(structure, centres.split(","), design, asked))
+    made = replace(parts[0], sections=tuple(section for part in parts for section in part.sections))
     put_report(made, form, path)
     if not made.outcome.passed:
         say("A check or a published number FAILED; the report says which.")
         return FAILED
-    return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
+    return NOT_ASSEMBLED if any(part.outcome.assembled < part.outcome.poses for part in parts) else 0
 
 
-def with_centres(made: Report, structure: Structure, at: str, design: int, asked: Mapping[str, Any]) -> Report:
-    """The report with the instant centres at a pose, or why that cannot be assembled, after all else."""
-    from dataclasses import replace
-
+def _of_centres(structure: Structure, at: Sequence[str], design: int, asked: Mapping[str, Any]) -> Report:
+    """The instant centres at a pose, with the rates and modes of the motion."""
     from compoundkin.cli.centres import solved_at_pose
     from compoundkin.reports.partial import centres_report
 
     rates = {key: asked[key] for key in ("speeds", "modes")}
-    found = centres_report(solved_at_pose(structure, at.split(","), rates, "--centres"), design)
-    return replace(made, sections=(*made.sections, *found.sections))
+    return centres_report(solved_at_pose(structure, at, rates, "--centres"), design)

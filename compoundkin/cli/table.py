@@ -44,7 +44,8 @@ def columns(motion: Motion, outputs: Sequence[str] = ()) -> Columns:
 
     Raises UnknownName for an output the mechanism does not have.
 
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.motion import solve
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
     >>> [c.name for c in columns(solve(crank, {"crank": [0.0]}), ["B.velocity"])]

@@ -38,35 +38,32 @@ def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Numb
     return {name: float(v[0]) if len(v) == 1 else v for name, v in values.items()}
 
 
-def of_pose(structure: Structure, given: Sequence[str]) -> dict[str, float]:
+def of_pose(structure: Structure, given: Sequence[str], option: str = "--at") -> dict[str, float]:
     """One value of every driver, radians or lengths: the one given, else the first of its own range."""
     names = [drive.name for drive in structure.mechanism.drives]
     if len(names) > 1 and any("=" not in text for text in given):
-        raise _wrong(
-            "--at", f"there are {len(names)} drivers", f"name them: {' '.join(f'--at {n}=...' for n in names)}"
-        )
+        raise _wrong(option, f"there are {len(names)} drivers", f"write NAME=VALUE, NAME one of {', '.join(names)}")
     found, angles = _first(structure), _angles(structure)
-    shown = list(_named(structure, "--at", given))
+    shown = list(_named(structure, option, given))
     for name, text in shown:
         if sum(other == name for other, _ in shown) > 1:
-            raise _wrong(f"--at {name}", "the driver's value is given twice", "leave one of them out")
-        found[name] = _single(text, angles[name])
+            raise _wrong(f"{option} {name}", "the driver's value is given twice", "leave one of them out")
+        found[name] = _single(text, f"{option} {text}", angles[name])
     return found
 
 
 def _first(structure: Structure) -> dict[str, float]:
     """The first value of every driver that has values or turns a full turn."""
-    own = {d.name: FULL_TURN if d.values is None else d.values for d in structure.mechanism.drives}
     angles = _angles(structure)
-    plain = {d.name for d in structure.mechanism.drives if d.values is None and not angles[d.name]}
-    return {name: float(np.ravel(values)[0]) for name, values in own.items() if name not in plain}
+    own = {d.name: FULL_TURN if d.values is None and angles[d.name] else d.values for d in structure.mechanism.drives}
+    return {name: float(np.ravel(values)[0]) for name, values in own.items() if values is not None}
 
 
-def _single(text: str, is_angle: bool) -> float:
+def _single(text: str, where: str, is_angle: bool) -> float:
     try:
-        value = number(text, "--at")
+        value = number(text, where)
     except InvalidInput:
-        raise _wrong(f"--at {text}", "this is not one number", "give the value of a single pose") from None
+        raise _wrong(where, "this is not one number", "give the value of a single pose") from None
     return float(np.deg2rad(value)) if is_angle else value
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.coupler.relative import INFINITE, SMALL, UNKNOWN, Relative, cross, direction, rate, relative
-from compoundkin.mechanism import FRAME
 from compoundkin.motion import Motion
 from compoundkin.series import Number, Series
+from compoundkin.words import FRAME
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,9 @@ import numpy as np
 
 from compoundkin.coupler.centrodes import pole_moves
 from compoundkin.coupler.relative import INFINITE, SMALL, Relative, cross, direction, dot, relative
-from compoundkin.mechanism import FRAME
 from compoundkin.motion import Motion
 from compoundkin.series import Number
+from compoundkin.words import FRAME
 
 
 @dataclass(frozen=True, eq=False)

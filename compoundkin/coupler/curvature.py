@@ -9,9 +9,9 @@ import numpy as np
 
 from compoundkin.coupler.circles import canonical
 from compoundkin.coupler.relative import INFINITE, SMALL, UNKNOWN, Relative, cross, dot, place, relative, relative_point
-from compoundkin.mechanism import FRAME
 from compoundkin.motion import Motion
 from compoundkin.series import Number
+from compoundkin.words import FRAME
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from compoundkin.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, nearest
-from compoundkin.mechanism import FRAME, vector
 from compoundkin.motion import LinkMotion, Motion, PointMotion
 from compoundkin.poses import Pose
 from compoundkin.series import Number, Series
+from compoundkin.words import FRAME, vector
 
 # Rates come from sums of terms as large as the fastest of the two links and the drivers, each rounded to 1e-16 and
 # carried over the groups of the solving order. What is smaller than this part of that scale is rounding, not motion:

@@ -8,9 +8,9 @@ import numpy as np
 
 from compoundkin.coupler.circles import CanonicalFrame, canonical
 from compoundkin.coupler.relative import direction, rate, relative
-from compoundkin.mechanism import FRAME
 from compoundkin.motion import Motion
 from compoundkin.series import Number
+from compoundkin.words import FRAME
 
 # Ball's point is where two curves cross. Where their directions differ by less than this they coincide, as in Cardan's
 # motion, and every point of the circle moves straight; third derivatives are exact to about 1e-12 of their scale.

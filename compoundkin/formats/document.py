@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from compoundkin.keys import Key
-from compoundkin.mechanism import Drive, Mechanism
+from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import KINDS, WRITTEN
 from compoundkin.validation import drivable
+from compoundkin.words import Drive
 
 FORMATS = (1,)
 
@@ -73,7 +74,8 @@ _PIN_IS_ANGLE = next(kind.free_is_angle for kind in KINDS if not kind.table)
 def is_angle(mechanism: Mechanism, drive: Drive) -> bool | None:
     """Whether a driver's coordinate is an angle (else a length); None where its pair is not determined.
 
-    >>> from compoundkin.mechanism import Mechanism, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import link
     >>> m = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1))
     >>> is_angle(m, Drive("crank", "crank"))
     True

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compoundkin.formats.quantities import RPM, spaced
-from compoundkin.mechanism import polar
 from compoundkin.series import Number
+from compoundkin.words import polar
 
 Floats: TypeAlias = NDArray[np.float64]
 

@@ -56,7 +56,7 @@ def loads(text: str, syntax: Syntax = "toml", where: str = "") -> Mechanism:
 def dumps(mechanism: Mechanism, syntax: Syntax = "toml") -> str:
     """The text of a mechanism file, from which `loads` makes an equal mechanism.
 
-    >>> from compoundkin.mechanism import link
+    >>> from compoundkin.words import link
     >>> print(dumps(Mechanism("Pin", link("frame", A=(0, 0.5)))))
     format = 1
     title = "Pin"
@@ -77,7 +77,7 @@ def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
     Raises InvalidInput where it cannot be written.
 
     >>> import tempfile
-    >>> from compoundkin.mechanism import link
+    >>> from compoundkin.words import link
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     save(Mechanism("Pin", link("frame", A=0)), f"{folder}/pin.json")
     ...     load(f"{folder}/pin.json").title

@@ -22,8 +22,8 @@ from compoundkin.formats.values import (
     wrong,
 )
 from compoundkin.keys import Kind
-from compoundkin.mechanism import polar, vector
 from compoundkin.series import Number
+from compoundkin.words import polar, vector
 
 # {from, to, step} beyond this many values is taken for a slip: it would only fill the memory.
 MOST_VALUES = 1_000_000

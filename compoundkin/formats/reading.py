@@ -11,8 +11,9 @@ from compoundkin.formats import document as doc
 from compoundkin.formats.quantities import rate, values
 from compoundkin.formats.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
 from compoundkin.formats.values import bad, described, wrong
-from compoundkin.mechanism import FRAME, Drawn, Drive, Expectation, Item, Link, Mechanism, Mode, drive
+from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import WRITTEN, Pair
+from compoundkin.words import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drive
 
 
 def read(document: Mapping[str, Any], where: str = "") -> Mechanism:

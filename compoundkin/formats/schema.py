@@ -9,7 +9,7 @@ from typing import Any
 from compoundkin.formats import document as doc
 from compoundkin.formats.atomic import write_atomically
 from compoundkin.keys import Key, Kind
-from compoundkin.mechanism import FRAME
+from compoundkin.words import FRAME
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

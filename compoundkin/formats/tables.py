@@ -13,7 +13,7 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem
 from compoundkin.formats.atomic import write_atomically
-from compoundkin.mechanism import FRAME
+from compoundkin.words import FRAME
 
 if TYPE_CHECKING:
     from compoundkin.motion import Motion
@@ -35,7 +35,8 @@ def columns(motion: Motion, *, degrees: bool = False) -> dict[str, Array]:
     designs, index columns come first: `design`, or `design0`, `design1` ... Angles are radians, or degrees
     where that is asked for; rates are always by radians and seconds.
 
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.motion import solve
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
     >>> columns(solve(crank, {"crank": [0.0, 1.0]}), degrees=True)["B.position.x"].round(3).tolist()
@@ -52,7 +53,8 @@ def columns(motion: Motion, *, degrees: bool = False) -> dict[str, Array]:
 def units(motion: Motion, *, degrees: bool = False) -> dict[str, str]:
     """The unit of every column that has one.
 
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.motion import solve
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"), unit="mm")
     >>> units(solve(crank, {"crank": 0.0}))["B.velocity.x"]
@@ -68,7 +70,8 @@ def save_table(motion: Motion, path: str | os.PathLike[str]) -> None:
     The file is replaced whole or not at all. Raises InvalidInput where it cannot be written.
 
     >>> import tempfile
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.motion import solve
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -86,7 +89,8 @@ def save_table(motion: Motion, path: str | os.PathLike[str]) -> None:
 def to_pandas(motion: Motion) -> Any:
     """The flat table as a pandas DataFrame, angles in radians.
 
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.motion import solve
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
     >>> to_pandas(solve(crank, {"crank": [0.0, 1.0]}))["crank.value"].tolist()

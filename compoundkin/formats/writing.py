@@ -10,9 +10,10 @@ from compoundkin.formats import document as doc
 from compoundkin.formats import exact
 from compoundkin.formats.reading import default_name
 from compoundkin.keys import Key, Kind
-from compoundkin.mechanism import Expectation, Link, Mechanism, same
+from compoundkin.mechanism import Mechanism, same
 from compoundkin.pairs import WRITTEN, Pair
 from compoundkin.series import Number
+from compoundkin.words import Expectation, Link
 
 
 def document(mechanism: Mechanism) -> dict[str, Any]:
@@ -20,7 +21,7 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
 
     Raises InvalidInput for a link of which only some points have coordinates: files cannot say that.
 
-    >>> from compoundkin.mechanism import link
+    >>> from compoundkin.words import link
     >>> document(Mechanism("Pin", link("frame", A=(0, 0))))["links"]
     {'frame': {'points': {'A': [0, 0]}}}
     """

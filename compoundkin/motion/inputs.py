@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem, nearest
-from compoundkin.mechanism import Drive, Mechanism
+from compoundkin.mechanism import Mechanism
 from compoundkin.motion.plan import Plan, rates
 from compoundkin.poses import End
 from compoundkin.series import Number, Series
+from compoundkin.words import Drive
 
 # A full turn in steps of five degrees: what a driver of a pin does when it is not told otherwise.
 FULL_TURN = np.deg2rad(np.arange(0.0, 361.0, 5.0))

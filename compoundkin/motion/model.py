@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.mechanism import FRAME, Mechanism, vector
+from compoundkin.mechanism import Mechanism
 from compoundkin.motion.inputs import Inputs, fit
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.tracking import Tracker
 from compoundkin.poses import FIXED, Pose
 from compoundkin.series import Number, Series
 from compoundkin.structure.model import Structure
+from compoundkin.words import FRAME, vector
 
 HIGHEST_ORDER = 3
 

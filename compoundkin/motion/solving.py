@@ -50,7 +50,7 @@ def solve(
     Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
     NotAssembled where a group has no pose at all; warns UnassembledPoses where some poses do not close.
 
-    >>> from compoundkin.mechanism import drive, link
+    >>> from compoundkin.words import drive, link
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
     >>> solve(crank, {"crank": [0.0, np.pi / 2]}, speed=3.0).points["B"].velocity.xy.round(12).tolist()
     [[0.0, 6.0], [-6.0, 0.0]]

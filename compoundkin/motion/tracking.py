@@ -8,13 +8,13 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.groups.contract import clipped_root, double_root, nearest_root
-from compoundkin.mechanism import vector
 from compoundkin.motion.continuation import CLOSE, Path, track
 from compoundkin.motion.home import approach
 from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.plan import DyadStep, Plan, Run
 from compoundkin.motion.starting import distance, first_state, shown
 from compoundkin.series import Number
+from compoundkin.words import vector
 
 
 class Tracker:

@@ -31,7 +31,8 @@ def report(subject: Structure | Motion, outputs: Sequence[str] = (), design: int
 
     Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
 
-    >>> from compoundkin.mechanism import Mechanism, drive, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, link
     >>> from compoundkin.structure import decompose
     >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
     >>> [section.key for section in report(decompose(crank)).sections]

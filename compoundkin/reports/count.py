@@ -46,7 +46,8 @@ class EquationCount:
 def equation_count(structure: Structure) -> EquationCount:
     """Count the equations and unknowns of a structure.
 
-    >>> from compoundkin.mechanism import Mechanism, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import link
     >>> from compoundkin.structure import decompose
     >>> bars = link("frame", A=0, D=4), link("crank", A=0, B=1), link("rod", B=0, C=3), link("arm", C=0, D=3)
     >>> count = equation_count(decompose(Mechanism("m", *bars)))

@@ -110,7 +110,7 @@ def _place(sample: Sample) -> str:
 def _rule(shown: Shown) -> str:
     text = "Three centres of three links lie on a line (Aronhold-Kennedy): each is where two such lines cross."
     if {"trial", "rates"} & set(shown.kinds.values()):
-        text += " Where lines are lacking, trial positions or the drivers' rates give a centre; the derivation has more."
+        text += " Where lines are lacking, trial positions or the drivers' rates help; the derivation has more."
     return text
 
 

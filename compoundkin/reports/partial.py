@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from compoundkin.checks import Finding, verify
 from compoundkin.motion import Motion
 from compoundkin.reports.building import gaps_of, motion_in_short, outcome_of
@@ -30,7 +32,9 @@ def centres_report(motion: Motion, design: int = 0) -> Report:
     """The instant centres of the first pose of a design, or why it cannot be assembled."""
     sample = Sample(motion, design)
     closed = bool(sample.assembled[0])
-    sections = centres_sections(sample) if closed else _missing(sample)
+    # in a report on the whole motion the section of its own gaps has that key
+    missing = tuple(replace(section, key="centres") for section in _missing(sample))
+    sections = centres_sections(sample) if closed else missing
     return Report(motion.mechanism.title, sections, Outcome(True, 1, int(closed), 0, 0, 0, 0))
 
 

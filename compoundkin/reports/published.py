@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from compoundkin.errors import NotAssembled, UnassembledPoses, UnknownName
-from compoundkin.mechanism import Expectation
 from compoundkin.motion import Motion, solve
 from compoundkin.quantities import HIGHEST_ORDER, quantity
 from compoundkin.reports.model import Cell, Column, Paragraph, Section, Table
 from compoundkin.reports.parts import driven_pairs
 from compoundkin.reports.wording import counted
 from compoundkin.structure import Structure
+from compoundkin.words import Expectation
 
 # Up to so many published numbers are listed one by one; of more, each quantity's nearest to its tolerance.
 MOST_LISTED = 12
@@ -60,7 +60,8 @@ def comparisons(structure: Structure) -> tuple[Comparison, ...]:
 
     Raises UnknownName for a published quantity that the mechanism does not have.
 
-    >>> from compoundkin.mechanism import Mechanism, drive, expect, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import drive, expect, link
     >>> from compoundkin.structure import decompose
     >>> crank = link("frame", A=0), link("crank", A=0, B=2), drive("crank")
     >>> comparisons(decompose(Mechanism("m", *crank, expect("B.position", 2j, 1e-9, crank=np.pi / 2))))[0].passed

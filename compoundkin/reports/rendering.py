@@ -21,7 +21,8 @@ FORMATS: dict[str, Callable[[Report], str]] = {"text": _text, "markdown": markdo
 def rendered(report: Report, format: str = "text") -> str:
     """A report as text for 80 columns, Markdown or JSON, ending in a new line.
 
-    >>> from compoundkin.mechanism import Mechanism, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import link
     >>> from compoundkin.reports import report
     >>> from compoundkin.structure import decompose
     >>> rendered(report(decompose(Mechanism("Pin", link("frame", A=0)))), "markdown").splitlines()[0]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.mechanism import FRAME, Drive, Mechanism
+from compoundkin.mechanism import Mechanism
 from compoundkin.motion.inputs import FULL_TURN
 from compoundkin.quantities import PER_SECOND, Quantity
 from compoundkin.reports.model import Block, Cell, Column, Paragraph, Section, Table
@@ -17,6 +17,7 @@ from compoundkin.reports.parts import driven_pairs
 from compoundkin.reports.sampling import ROUNDING, Sample
 from compoundkin.reports.wording import counted, listed, ordinal
 from compoundkin.structure import Structure
+from compoundkin.words import FRAME, Drive
 
 # How many outputs a report chooses where the mechanism names none.
 MOST_OUTPUTS = 6
@@ -25,7 +26,7 @@ MOST_OUTPUTS = 6
 def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
     """The outputs of a mechanism that names none: its tracer points and driven-by-nothing links, a few of them.
 
-    >>> from compoundkin.mechanism import drive, link
+    >>> from compoundkin.words import drive, link
     >>> crank = link("crank", A=0, B=1), link("rod", B=0, P=2), link("frame", A=0)
     >>> default_outputs(Mechanism("m", *crank, drive("crank")))
     ('P.position', 'rod.angle')

@@ -6,11 +6,12 @@ from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from compoundkin.mechanism import FRAME, Drive, Mechanism
+from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import Pair
 from compoundkin.structure.model import Body, DrivenPair
 from compoundkin.structure.pins import Pins
 from compoundkin.validation import drivable
+from compoundkin.words import FRAME, Drive
 
 GROUND = -1
 

@@ -33,7 +33,7 @@ def decompose(mechanism: Mechanism) -> Structure:
     Nothing is raised for a mechanism that is over- or under-constrained: `faults` name the links, by how
     much, and a remedy. The work grows about linearly with the number of links.
 
-    >>> from compoundkin.mechanism import drive, link
+    >>> from compoundkin.words import drive, link
     >>> four_bar = Mechanism(
     ...     "Four-bar",
     ...     link("frame", A=(0, 0), D=(4, 0)),

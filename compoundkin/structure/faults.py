@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from compoundkin.mechanism import FRAME
 from compoundkin.structure.composites import GROUND, find, spanned
 from compoundkin.structure.matching import Matching
 from compoundkin.structure.model import Body, DrivenPair, Fault
 from compoundkin.structure.rank import Deficiency, Part, RankTest
 from compoundkin.structure.system import POINT_FREEDOMS, Constraint, System
+from compoundkin.words import FRAME
 
 # How many alternatives a remedy lists.
 _LISTED = 6

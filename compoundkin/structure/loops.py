@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from compoundkin.mechanism import FRAME
 from compoundkin.pairs import Pair
 from compoundkin.structure.composites import find
 from compoundkin.structure.cycles import cycle_basis
 from compoundkin.structure.model import Structure
+from compoundkin.words import FRAME
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,8 @@ def independent_loops(structure: Structure) -> tuple[Loop, ...]:
 
     Of least total length for up to 60 links; beyond, those that pairs outside a spanning tree close.
 
-    >>> from compoundkin.mechanism import Mechanism, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import link
     >>> from compoundkin.structure import decompose
     >>> bars = link("frame", A=0, D=4), link("crank", A=0, B=1), link("rod", B=0, C=3), link("arm", C=0, D=3)
     >>> print(*independent_loops(decompose(Mechanism("m", *bars))))
@@ -49,7 +50,8 @@ def independent_loops(structure: Structure) -> tuple[Loop, ...]:
 def loop_count(structure: Structure) -> int:
     """The number of independent loops by Euler's formula: L = p - n + 1, one more for each further piece.
 
-    >>> from compoundkin.mechanism import Mechanism, link
+    >>> from compoundkin.mechanism import Mechanism
+    >>> from compoundkin.words import link
     >>> from compoundkin.structure import decompose
     >>> loop_count(decompose(Mechanism("m", link("frame", A=0, B=1), link("bar", A=0, B=1))))
     1

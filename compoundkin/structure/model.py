@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from compoundkin.mechanism import Drive, Mechanism
+from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import Pair
+from compoundkin.words import Drive
 
 if TYPE_CHECKING:
     import networkx as nx

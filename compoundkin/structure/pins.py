@@ -21,7 +21,7 @@ class Pins:
     def pair(self, letter: str, first: str, second: str) -> Pair:
         """The revolute pair of two links at a letter, named by it; of a multiple pin, as ``J(crank-rod)``.
 
-        >>> from compoundkin.mechanism import link
+        >>> from compoundkin.words import link
         >>> links = [link(name, J=0) for name in ("frame", "crank", "rod")]
         >>> Pins(Mechanism("m", *links)).pair("J", "crank", "rod").name
         'J(crank-rod)'

@@ -7,8 +7,9 @@ import time
 
 import pytest
 
-from compoundkin.mechanism import Mechanism, drive, link
+from compoundkin.mechanism import Mechanism
 from compoundkin.structure import decompose
+from compoundkin.words import drive, link
 
 
 def chain_of_dyads(links: int, seed: int = 0) -> Mechanism:

@@ -14,9 +14,9 @@ import compoundkin as ck
 from compoundkin import catalog
 from compoundkin.centres import Centres, Status, instant_centres
 from compoundkin.centres.twists import disagreement, loop_twists, solved_twists
-from compoundkin.mechanism import FRAME
 from compoundkin.poses import Pose
 from compoundkin.series import Series
+from compoundkin.words import FRAME
 
 EXACT = 1e-9
 each = pytest.mark.parametrize("name", catalog.names())

@@ -10,7 +10,8 @@ import pytest
 from compoundkin.errors import InvalidInput
 from compoundkin.formats import dumps, load, loads, save
 from compoundkin.formats.atomic import write_atomically
-from compoundkin.mechanism import Mechanism, link
+from compoundkin.mechanism import Mechanism
+from compoundkin.words import link
 
 PIN = Mechanism("Pin", link("frame", A=0))
 

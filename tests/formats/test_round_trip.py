@@ -15,19 +15,9 @@ from hypothesis.extra.numpy import arrays
 
 from compoundkin.errors import InvalidInput, InvalidMechanism
 from compoundkin.formats import dumps, exact, load, loads
-from compoundkin.mechanism import (
-    Expectation,
-    Link,
-    Mechanism,
-    deg,
-    drawn,
-    drive,
-    expect,
-    link,
-    mode,
-    polar,
-)
+from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import slide
+from compoundkin.words import Expectation, Link, deg, drawn, drive, expect, link, mode, polar
 
 finite = st.floats(-1e6, 1e6)
 radians = st.one_of(

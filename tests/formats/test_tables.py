@@ -11,8 +11,9 @@ import pytest
 
 from compoundkin.errors import InvalidInput
 from compoundkin.formats import columns, load, save_table, tables, to_pandas
-from compoundkin.mechanism import Mechanism, drive, link
+from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
+from compoundkin.words import drive, link
 
 SIX_BAR = Path(__file__).parent / "samples" / "six-bar.toml"
 

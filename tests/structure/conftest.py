@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from compoundkin.mechanism import Mechanism, drive, link
+from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import slide
+from compoundkin.words import drive, link
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 

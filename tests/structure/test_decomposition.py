@@ -9,9 +9,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from compoundkin.mechanism import Mechanism, drive, link
+from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import slide
 from compoundkin.structure import Structure, decompose
+from compoundkin.words import drive, link
 
 
 def numbered(structure: Structure) -> list[frozenset[int]]:
