@@ -8,6 +8,11 @@
 [[0.0, 6.0], [-6.0, 0.0]]
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from compoundkin.centres import instant_centres
 from compoundkin.checks import Check, Finding, verify
 from compoundkin.errors import (
     CompoundkinError,
@@ -23,8 +28,12 @@ from compoundkin.gaps import Gap, gaps
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
 from compoundkin.pairs import slide
+from compoundkin.quantities import quantity
 from compoundkin.structure import Structure, decompose
 from compoundkin.words import deg, drawn, drive, expect, link, mode, polar
+
+if TYPE_CHECKING:
+    from compoundkin.reports import rendered, report
 
 __version__ = "0.1.0"
 
@@ -48,10 +57,14 @@ __all__ = [
     "drive",
     "expect",
     "gaps",
+    "instant_centres",
     "link",
     "load",
     "mode",
     "polar",
+    "quantity",
+    "rendered",
+    "report",
     "save",
     "save_table",
     "slide",
@@ -59,3 +72,12 @@ __all__ = [
     "to_pandas",
     "verify",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # what only some programs need is imported when they ask for it
+    if name in ("rendered", "report"):
+        from compoundkin import reports
+
+        return getattr(reports, name)
+    raise AttributeError(f"module 'compoundkin' has no attribute {name!r}")

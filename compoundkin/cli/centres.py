@@ -76,9 +76,7 @@ def command(
     return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
 
 
-def solved_at_pose(
-    structure: Structure, at: Sequence[str], asked: Mapping[str, Any], option: str = "--at"
-) -> Motion:
+def solved_at_pose(structure: Structure, at: Sequence[str], asked: Mapping[str, Any], option: str = "--at") -> Motion:
     """The motion at one pose, with velocities; raises InvalidInput for values that do not fit the drivers."""
     from compoundkin.cli import values
 
