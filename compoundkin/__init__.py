@@ -80,4 +80,8 @@ def __getattr__(name: str) -> Any:
         from compoundkin import reports
 
         return getattr(reports, name)
+    if name == "catalog":
+        from importlib import import_module
+
+        return import_module("compoundkin.catalog")
     raise AttributeError(f"module 'compoundkin' has no attribute {name!r}")

@@ -68,7 +68,10 @@ def fitted_pose(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> P
     shown = [name for name in points if name in sketch]
     if len(shown) < 2:
         return None
-    a, b = shown[0], shown[1]
+    a = shown[0]
+    b = next((k for k in shown[1:] if np.all(sketch[k] != sketch[a]) and np.all(points[k] != points[a])), None)
+    if b is None:
+        return None
     turned = (sketch[b] - sketch[a]) * np.conjugate(points[b] - points[a])
     turned = turned / np.abs(turned)
     return Pose(constant(sketch[a] - turned * points[a]), constant(turned))

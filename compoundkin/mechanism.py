@@ -25,6 +25,7 @@ class Mechanism:
 
     Raises InvalidMechanism, listing every problem with its place.
 
+    >>> from compoundkin.words import drive, link
     >>> four_bar = Mechanism(
     ...     "Four-bar",
     ...     link("frame", A=(0, 0), D=(4, 0)),
@@ -50,7 +51,7 @@ class Mechanism:
         self.unit = unit
         self.source = source
         self.description = description
-        self.outputs: tuple[str, ...] = tuple(outputs)
+        self.outputs: tuple[str, ...] = (outputs,) if isinstance(outputs, str) else tuple(outputs)
         self.items: tuple[Item, ...] = items
         problems = list(problems_of(self))
         if problems:
@@ -128,6 +129,7 @@ class Mechanism:
 
         A word with no counterpart is added; `title`, `unit`, `source`, `description`, `outputs` by keyword.
 
+        >>> from compoundkin.words import drive, link
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank"))
         >>> crank.replace(link("crank", A=0, B=2)).links["crank"].points["B"]
         (2+0j)

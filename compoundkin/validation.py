@@ -28,6 +28,7 @@ def problems_of(mechanism: Mechanism) -> Iterator[Problem]:
     yield from _drives(mechanism)
     yield from _modes(mechanism)
     yield from _expectations(mechanism)
+    yield from _quantities(mechanism)
     yield from _shapes(mechanism)
 
 
@@ -251,6 +252,18 @@ def _expectations(mechanism: Mechanism) -> Iterator[Problem]:
         if not (_is_finite(expectation.tolerance) and expectation.tolerance >= 0):
             what = f"{expectation.tolerance!r} is not a tolerance"
             yield Problem(f"{where}.tolerance", what, "give a number that is not negative")
+
+
+def _quantities(mechanism: Mechanism) -> Iterator[Problem]:
+    """Outputs and published numbers of what there is not; a multiple pin's pairs are named by their links."""
+    known = [*mechanism.carriers, *mechanism.links, *(p.name for p in mechanism.written_pairs)]
+    known += [drive.name for drive in mechanism.drives]
+    asked = [(f"outputs[{k}]", name) for k, name in enumerate(mechanism.outputs)]
+    asked += [(f"expected[{k}].quantity", e.quantity) for k, e in enumerate(mechanism.expectations)]
+    for where, name in asked:
+        owner = name.split("(")[0].split(".")[0]
+        if owner not in known:
+            yield Problem(where, f"there is no point, link, pair or driver {owner!r}", nearest(owner, known))
 
 
 def _shapes(mechanism: Mechanism) -> Iterator[Problem]:

@@ -1,5 +1,7 @@
 """Flat parallelograms and their kin: the smooth motion goes through, and so do all its derivatives."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -171,3 +173,46 @@ def test_a_rhombus_goes_on_when_its_outer_pins_pass_each_other():
     motion = ck.solve(mechanism, {"crank": ck.deg(np.arange(92.5, 700.0, 5.0))})
     assert np.abs(motion.links["rocker"].angular_velocity - 1.0).max() < 1e-9
     assert ck.verify(motion).passed
+
+
+@pytest.mark.parametrize("values", [[60.0, 90.0, 270.0, 300.0], [90.0, 91.0, 269.0], [60.0, 100.0, 220.0, 260.0]])
+def test_coarse_poses_pass_change_points_too(values):
+    """What lies between two poses is searched however far apart they are."""
+    motion = ck.solve(parallelogram(DRAWN), {"crank": ck.deg(values)})
+    assert np.abs(motion.links["coupler"].angle).max() < 1e-12
+    assert np.abs(np.exp(1j * motion.links["rocker"].angle) - np.exp(1j * ck.deg(values))).max() < 1e-12
+
+
+def test_a_coarse_isosceles_slider_crank_slides_on():
+    mechanism = ck.Mechanism(
+        "Isosceles slider-crank",
+        ck.link("frame", A=0),
+        ck.link("crank", A=0, B=1),
+        ck.link("rod", B=0, C=1),
+        ck.link("slider", C=0),
+        ck.slide("slider", on="frame", through="A"),
+        ck.drive("crank"),
+    )
+    values = ck.deg(np.arange(15.0, 346.0, 30.0))
+    assert np.abs(ck.solve(mechanism, {"crank": values}).points["C"].x - 2 * np.cos(values)).max() < 1e-12
+
+
+@pytest.mark.parametrize("start", [-42.0, -40.0])
+def test_a_turning_guide_is_on_the_same_branch_on_every_grid(start):
+    """Also where a pose is the very place at which its block passes its pivot."""
+    values = ck.deg(np.arange(start, 41.0, 5.0))
+    mechanism = ck.Mechanism(
+        "Turning guide",
+        ck.link("frame", O=0, Q=1),
+        ck.link("crank", O=0, A=1),
+        ck.link("block", A=0),
+        ck.link("bar", Q=0, E=2),
+        ck.slide("block", on="bar", through="Q"),
+        ck.drive("crank", values=values),
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        motion = ck.solve(mechanism)
+    good = motion.assembled
+    expected = np.exp(1j * (values / 2 - np.pi / 2))
+    assert np.abs(motion.points["E"].position - (1 + 2 * expected))[good].max() < 1e-12

@@ -24,7 +24,11 @@ def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Numb
 
     Raises InvalidInput for what cannot be read, for drivers that do not exist, and for ranges of different lengths.
     """
-    texts = dict(_named(structure, "--drive", asked["drives"]))
+    texts: dict[str, str] = {}
+    for name, text in _named(structure, "--drive", asked["drives"]):
+        if name in texts:
+            raise _wrong(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
+        texts[name] = text
     shown = {name: numbers(text, f"--drive {name}") for name, text in texts.items()}
     span = {key: asked[key] for key in ("at", "start", "stop", "step") if asked[key] is not None}
     if span:

@@ -7,11 +7,13 @@ a place is found as a minimum of the margin that is zero but for rounding.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from compoundkin.motion.continuation import CLOSE
+from compoundkin.motion.home import spacings
 from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.plan import DyadStep, blocks
 from compoundkin.motion.tracking import Tracker
@@ -28,7 +30,37 @@ GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 BLOCK = 4096
 
 
-def pass_through(given: Inputs, tracker: Tracker, near: Iterable[int]) -> bool:
+@dataclass(frozen=True)
+class _Way:
+    """A way that is searched: samples near enough to each other, `unit` places apart, of the lead or the motion."""
+
+    samples: Inputs
+    unit: float
+    lead: bool
+
+    def margins(self, tracker: Tracker, part: Inputs, s: Number, designs: Number, upto: int) -> Mapping[int, Number]:
+        """The margins of all groups up to one, at samples `s` of a part of the way."""
+        return tracker.run(part, 0, s * self.unit, designs, upto, self.lead).margins
+
+    def blocks(self) -> Iterator[tuple[slice, slice, Inputs, Number, Number]]:
+        """The way in blocks: designs, samples, their inputs, places and design indices."""
+        for d, m in blocks(self.samples.designs, self.samples.poses, BLOCK):
+            places, designs = np.arange(m.start, m.stop, dtype=float)[None], np.arange(d.start, d.stop)[:, None]
+            yield d, m, self.samples.cut(d, m), places, designs
+
+
+def near_groups(tracker: Tracker) -> set[int]:
+    """The groups that come near a limit position on the lead, or between the poses of a coarse motion."""
+    found: set[int] = set()
+    for way in _ways(tracker):
+        if way.lead or way.unit < 1.0:
+            for _, _, part, s, designs in way.blocks():
+                margins = way.margins(tracker, part, s, designs, len(tracker.plan.steps))
+                found |= {k for k, margin in margins.items() if np.any(margin < NEAR)}
+    return found
+
+
+def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
     """Find the change points of the first group among `near` that has any; whether there is one.
 
     They are noted in the tracker, which changes the group's sign there.
@@ -38,17 +70,36 @@ def pass_through(given: Inputs, tracker: Tracker, near: Iterable[int]) -> bool:
         if k in tracker.flips or not isinstance(step, DyadStep) or step.kernel.modes < 2:
             continue
         found = False
-        for part, flips in ((tracker.lead, tracker.lead_flips), (given, tracker.flips)):
-            designs, places = _touching(part, tracker, k, part is tracker.lead)
+        for way in _ways(tracker):
+            designs, places = _touching(way, tracker, k)
             if len(designs):
-                flips[k] = _padded(designs, places, given.designs)
+                flips = tracker.lead_flips if way.lead else tracker.flips
+                flips[k] = _padded(designs, places, tracker.given.designs)
                 found = True
         if found:
-            tracker.flips.setdefault(k, np.full((given.designs, 1), np.inf))
+            tracker.flips.setdefault(k, np.full((tracker.given.designs, 1), np.inf))
             if tracker.plan.general:
                 tracker.choose()
             return True
     return False
+
+
+def _ways(tracker: Tracker) -> Iterator[_Way]:
+    """The lead, and the motion with samples put between poses that are far apart; none of a single pose."""
+    if tracker.lead.poses > 1:
+        yield _Way(tracker.lead, 1.0, lead=True)
+    given = tracker.given
+    if given.poses > 1:
+        steps = (spacings(tracker.plan, name, _steps(values[0])) for name, values in given.drives.items())
+        between = max(steps, default=0)
+        if between > 1:
+            places = np.linspace(0.0, given.poses - 1.0, (given.poses - 1) * between + 1)
+            given = given.at(places).of_poses(len(places))
+        yield _Way(given, 1.0 / max(between, 1), lead=False)
+
+
+def _steps(value: Number) -> Number:
+    return np.diff(value, axis=-1) if np.ndim(value) > 1 and np.shape(value)[-1] > 1 else np.zeros(1)
 
 
 def rates_at(given: Inputs, tracker: Tracker, order: int) -> tuple[Number, Number, Mapping[str, Pose]]:
@@ -81,40 +132,31 @@ def _direction(given: Inputs, designs: Number, index: Number) -> Number:
     return np.where(total < 0, -1.0, 1.0)
 
 
-def _touching(given: Inputs, tracker: Tracker, k: int, lead: bool) -> tuple[Number, Number]:
+def _touching(way: _Way, tracker: Tracker, k: int) -> tuple[Number, Number]:
     """Designs and places where group `k` has a zero margin that does not change sign."""
-    if given.poses < 2:
-        return np.zeros(0, dtype=int), np.zeros(0)
-    margin = _margins(given, tracker, k, lead)
+    margin = np.empty((way.samples.designs, way.samples.poses))
+    for d, m, part, s, designs in way.blocks():
+        margin[d, m] = way.margins(tracker, part, s, designs, k + 1)[k]
     padded = np.pad(margin, ((0, 0), (1, 1)), constant_values=np.inf)
     here, before, after = margin, padded[:, :-2], padded[:, 2:]
     lowest = (here < NEAR) & (here >= -TOUCHING) & (here <= before) & (here < after) & (before >= 0) & (after >= 0)
-    designs, index = np.nonzero(lowest)
-    if not len(designs):
-        return designs, index
-    low, high = np.maximum(index - 1.0, 0.0), np.minimum(index + 1.0, given.poses - 1.0)
-    place, least = _minimum(given, tracker, k, lead, designs, low, high)
+    found, index = np.nonzero(lowest)
+    if not len(found):
+        return found, index
+    low, high = np.maximum(index - 1.0, 0.0), np.minimum(index + 1.0, way.samples.poses - 1.0)
+    place, least = _minimum(way, tracker, k, found, low, high)
+    place = place * way.unit
     snapped = np.where(np.abs(place - np.round(place)) < CLOSE, np.round(place), place)
     touching = (np.abs(least) < TOUCHING) & np.isfinite(least)
-    return designs[touching], snapped[touching]
+    return found[touching], snapped[touching]
 
 
-def _margins(given: Inputs, tracker: Tracker, k: int, lead: bool) -> Number:
-    out = np.empty((given.designs, given.poses))
-    for d, m in blocks(given.designs, given.poses, BLOCK):
-        s, designs = np.arange(m.start, m.stop, dtype=float)[None], np.arange(d.start, d.stop)[:, None]
-        out[d, m] = tracker.run(given.cut(d, m), 0, s, designs, k + 1, lead).margins[k]
-    return out
-
-
-def _minimum(
-    given: Inputs, tracker: Tracker, k: int, lead: bool, designs: Number, low: Number, high: Number
-) -> tuple[Number, Number]:
+def _minimum(way: _Way, tracker: Tracker, k: int, designs: Number, low: Number, high: Number) -> tuple[Number, Number]:
     """Golden-section search for the least margin of group `k`, for all brackets at once."""
 
     def margin(s: Number) -> Number:
-        run = tracker.run(given.pick(designs, s), 0, s[:, None], designs[:, None], k + 1, lead)
-        return np.broadcast_to(run.margins[k], (len(s), 1))[:, 0]
+        found = way.margins(tracker, way.samples.pick(designs, s), s[:, None], designs[:, None], k + 1)[k]
+        return np.broadcast_to(found, (len(s), 1))[:, 0]
 
     a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     fa, fb = margin(a), margin(b)
@@ -123,7 +165,8 @@ def _minimum(
         low, high = np.where(left, low, a), np.where(left, b, high)
         new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
         f = margin(new)
-        a, fa, b, fb = np.where(left, new, b), np.where(left, f, fb), np.where(left, a, new), np.where(left, fa, f)
+        a, b = np.where(left, new, b), np.where(left, a, new)
+        fa, fb = np.where(left, f, fb), np.where(left, fa, f)
     return np.where(fa < fb, a, b), np.minimum(fa, fb)
 
 

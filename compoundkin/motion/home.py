@@ -34,7 +34,7 @@ def approach(
         if plan.driven[name].pair.free_is_angle:
             way = way - 2.0 * np.pi * np.round(way / (2.0 * np.pi))
         ways[name] = way
-    count = max(_samples(plan, name, way) for name, way in ways.items()) if ways else 1
+    count = 1 + max((spacings(plan, name, way) for name, way in ways.items()), default=0)
     ramp = np.linspace(-1.0, 0.0, count)[None] if count > 1 else np.zeros((1, 1))
     lead = end.driven({name: (rest[0] + ways[name] * ramp,) for name, rest in end.drives.items()})
     return lead.of_poses(count), at, at + _side(given, at, ways) * CLOSE
@@ -65,10 +65,10 @@ def _nearest(plan: Plan, given: Inputs, values: Mapping[str, Number]) -> int:
     return int(np.argmin(np.broadcast_to(total.max(axis=0), given.poses)))
 
 
-def _samples(plan: Plan, name: str, way: Number) -> int:
+def spacings(plan: Plan, name: str, way: Number) -> int:
+    """How many spacings the longest of some ways of a driver takes; 0 where it stands still."""
     size = 1.0 if plan.driven[name].pair.free_is_angle else plan.size
-    longest = float(np.max(np.abs(way))) / size
-    return 1 + int(np.ceil(longest / SPACING - CLOSE)) if longest > 0.0 else 1
+    return max(0, int(np.ceil(float(np.max(np.abs(way))) / size / SPACING - CLOSE)))
 
 
 def _side(given: Inputs, at: int, ways: Mapping[str, Number]) -> float:

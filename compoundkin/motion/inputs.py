@@ -102,6 +102,10 @@ def inputs(
 ) -> Inputs:
     """The inputs of a solution; raises InvalidInput for unknown drivers or shapes that do not fit."""
     mechanism = plan.structure.mechanism
+    if values is not None and not isinstance(values, Mapping):
+        if len(mechanism.drives) != 1:
+            raise InvalidInput(Problem("values", "there is more than one driver", "name them: {'driver': ...}"))
+        values = {mechanism.drives[0].name: values}
     given = {
         drive.name: _driver(plan, drive, values, speed, acceleration, jerk, len(mechanism.drives) == 1)
         for drive in mechanism.drives

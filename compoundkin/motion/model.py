@@ -318,7 +318,9 @@ class Motion:
     def _known(self, value: Number) -> Number:
         """A value in the motion's shape, not a number at poses that are not assembled."""
         shaped = self._shaped(value)
-        return shaped if self._complete else np.where(self.assembled, shaped, np.nan)
+        if self._complete:
+            return shaped
+        return np.where(self.assembled, shaped, complex(np.nan, np.nan) if np.iscomplexobj(shaped) else np.nan)
 
     @cached_property
     def _complete(self) -> bool:

@@ -145,7 +145,7 @@ class DyadStep:
         """Close the group and add its links to what is known."""
         poses, margin, meeting = self.kernel.close(*self.arguments(run), sign, root)
         if meeting is not None:
-            margin = np.minimum(margin, np.sqrt(meeting) / self.size - COINCIDENT)
+            margin = np.fmin(margin, np.sqrt(meeting) / self.size - COINCIDENT)
         run.margins[self.index] = margin
         run.failed = np.where((margin >= 0) | (run.failed != 0), run.failed, self.index + 1)
         for body, pose in zip(self.bodies, poses, strict=True):

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses
 from compoundkin.mechanism import Mechanism
-from compoundkin.motion.change_points import NEAR, pass_through, rates_at
+from compoundkin.motion.change_points import NEAR, near_groups, pass_through, rates_at
 from compoundkin.motion.gathering import Gathering
 from compoundkin.motion.inputs import Inputs, inputs
 from compoundkin.motion.model import HIGHEST_ORDER, Motion
@@ -55,7 +55,7 @@ def solve(
     >>> solve(crank, {"crank": [0.0, np.pi / 2]}, speed=3.0).points["B"].velocity.xy.round(12).tolist()
     [[0.0, 6.0], [-6.0, 0.0]]
     """
-    if isinstance(order, bool) or order not in range(HIGHEST_ORDER + 1):
+    if isinstance(order, bool) or not isinstance(order, int) or order not in range(HIGHEST_ORDER + 1):
         raise InvalidInput(
             Problem("order", f"{order!r} is not an order", "0 position, 1 velocity, 2 acceleration, 3 jerk")
         )
@@ -75,6 +75,8 @@ def solve(
 
 def _plan_of(mechanism: Mechanism | Structure) -> Plan:
     """The plan of a mechanism, made once and kept with it."""
+    if not isinstance(mechanism, Mechanism | Structure):
+        raise InvalidInput(Problem("mechanism", f"{mechanism!r} is not a mechanism", "load() one from a file"))
     owner = mechanism.mechanism if isinstance(mechanism, Structure) else mechanism
     plan: Plan | None = owner.__dict__.get("_plan")
     if plan is None:
@@ -89,6 +91,8 @@ def _plan_of(mechanism: Mechanism | Structure) -> Plan:
 def _signs(plan: Plan, modes: Mapping[str, int] | None) -> dict[int, int]:
     """The modes chosen by sign, by group; those of the call go before those of the mechanism."""
     mechanism = plan.structure.mechanism
+    if modes is not None and not isinstance(modes, Mapping):
+        raise InvalidInput(Problem("modes", f"{modes!r} does not name a link", "write {'link of the group': -1}"))
     called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
     return {**_by_group(plan, written), **_by_group(plan, called)}
 
@@ -109,11 +113,10 @@ def _by_group(plan: Plan, modes: Mapping[str, int]) -> dict[int, int]:
 
 def _settled(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> Motion:
     """Solve; again where a group is found to pass through a change point, from which its mode changes sign."""
-    lead = tracker.lead_run()
     while True:
         motion, near = _run(plan, given, tracker, order)
-        near |= _near(lead) if lead else set()
-        if not near or not pass_through(given, tracker, near):
+        near |= near_groups(tracker)
+        if not near or not pass_through(tracker, near):
             return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
 
 

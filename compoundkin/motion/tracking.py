@@ -96,13 +96,6 @@ class Tracker:
                 self.leads[k], self.paths[k] = track(self, k, step.solver, state)
                 step.run(run, state)
 
-    def lead_run(self) -> Run | None:
-        """The lead solved for position, or None where there is none."""
-        if self.lead.poses < 2:
-            return None
-        places, designs = np.arange(self.lead.poses, dtype=float)[None], np.arange(self.given.designs)[:, None]
-        return self.run(self.lead, 0, places, designs, lead=True)
-
     def _sign(self, k: int, step: DyadStep, run: Run) -> Number:
         """The mode whose points lie nearest to the drawn ones."""
         if k in self._fixed or step.kernel.modes == 1:
@@ -137,4 +130,7 @@ def read_hint(plan: Plan, hint: Mapping[str, object] | None) -> dict[str, Number
     ]
     if wrong:
         raise InvalidInput(wrong)
-    return {k: vector(f"hint.{k}", v) for k, v in (hint or {}).items()}
+    found = {k: vector(f"hint.{k}", v) for k, v in (hint or {}).items()}
+    if not all(np.isfinite(v).all() for v in found.values()):
+        raise InvalidInput(Problem("hint", "a point of the hint is not finite"))
+    return found

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.errors import Problem, nearest
+from compoundkin.errors import InvalidMechanism, Problem, nearest
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
 from compoundkin.pairs.contract import Pair, Point, table
@@ -111,6 +111,9 @@ class Prismatic(Pair):
             guide = np.cos(self.angle) + 1j * np.sin(self.angle)
         else:
             line = geometry.points[self.on][self.toward] - start
+            if not np.all(np.abs(line) > 0):
+                what = f"{self.through!r} and {self.toward!r} are at one place, so that the guide has no direction"
+                raise InvalidMechanism(Problem(f"{self.name}.toward", what, "name another point or give an angle"))
             guide = line / np.abs(line)
         point = geometry.points[self.link][self.at]
         offset, turn = self.offset, self.turn
