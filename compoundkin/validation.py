@@ -264,6 +264,12 @@ def _quantities(mechanism: Mechanism) -> Iterator[Problem]:
         owner = name.split("(")[0].split(".")[0]
         if owner not in known:
             yield Problem(where, f"there is no point, link, pair or driver {owner!r}", nearest(owner, known))
+    for k, e in enumerate(mechanism.expectations):
+        owner, _, attribute = e.quantity.partition(".")
+        # a file must tell by the word alone whether the number is in degrees
+        if not attribute or (attribute == "value" and owner.split("(")[0] in mechanism.pins):
+            yield Problem(f"expected[{k}].quantity", f"{e.quantity!r} does not say of what kind the number is",
+                          f"write {owner}.angle, {owner}.position or another in full")  # fmt: skip
 
 
 def _shapes(mechanism: Mechanism) -> Iterator[Problem]:

@@ -74,3 +74,18 @@ def test_outputs_of_what_there_is_not_are_found_at_once():
     with pytest.raises(ck.InvalidMechanism) as caught:
         ck.Mechanism("m", *items, outputs=("Z.x", "C.x", "crank.angle"))
     assert [problem.where for problem in caught.value.problems] == ["outputs[0]", "expected[0].quantity"]
+
+
+@pytest.mark.parametrize("quantity", ["rocker", "C", "C.value"])
+def test_a_published_number_says_whether_it_is_an_angle(quantity):
+    with pytest.raises(ck.InvalidMechanism, match="does not say of what kind"):
+        FOUR_BAR.replace(ck.expect(quantity, 1.0, 0.1))
+
+
+def test_the_angle_in_a_pin_is_written_in_degrees(tmp_path):
+    mechanism = FOUR_BAR.replace(ck.expect("C.angle", ck.deg(30.0), 0.1, crank=0.5))
+    ck.save(mechanism, tmp_path / "m.toml")
+    assert "value = 30" in (tmp_path / "m.toml").read_text()
+    assert ck.load(tmp_path / "m.toml") == mechanism
+    motion = ck.solve(mechanism, {"crank": [0.1, 0.2]})
+    assert np.array_equal(ck.quantity(motion, "C.angle").values, motion.pairs["C"].value)

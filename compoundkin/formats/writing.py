@@ -77,8 +77,8 @@ def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
     out = _table(item, doc.EXPECTED, doc.quantity_is_angle(item.quantity))
     if item.at:
         out["at"] = {key: _at(angles, key, value) for key, value in item.at}
-    owner, _, rest = item.quantity.partition(".")
-    if owner in mechanism.carriers and "." not in rest:
+    owner, _, attribute = item.quantity.partition(".")
+    if owner in mechanism.carriers and attribute in VECTORS:
         out["value"] = exact.point(item.value)
     return out
 
@@ -91,6 +91,9 @@ def _at(angles: Mapping[str, bool], key: str, value: float) -> Any:
 def _published(value: complex, angle: bool) -> Any:
     return exact.point(value) if value.imag else exact.coordinate(value.real, angle)
 
+
+# What a point has that is written as [x, y].
+VECTORS = ("position", "velocity", "acceleration", "jerk")
 
 WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "name": lambda value, _: value,
