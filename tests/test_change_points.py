@@ -23,6 +23,18 @@ def parallelogram(*more):
     )
 
 
+def isosceles(length):
+    return ck.Mechanism(
+        "Isosceles slider-crank",
+        ck.link("frame", A=0),
+        ck.link("crank", A=0, B=length),
+        ck.link("rod", B=0, C=length),
+        ck.link("slider", C=0),
+        ck.slide("slider", on="frame", through="A"),
+        ck.drive("crank"),
+    )
+
+
 RANGES = {
     "change points at samples": np.arange(0.0, 361.0, 5.0),
     "change points between samples": np.arange(-3.0, 760.0, 7.0),
@@ -64,16 +76,7 @@ def test_the_crossed_motion_is_held_too():
 
 
 def test_the_isosceles_slider_crank_slides_through_its_pivot():
-    mechanism = ck.Mechanism(
-        "Isosceles slider-crank",
-        ck.link("frame", A=0),
-        ck.link("crank", A=0, B=2),
-        ck.link("rod", B=0, C=2),
-        ck.link("slider", C=0),
-        ck.slide("slider", on="frame", through="A"),
-        ck.drive("crank"),
-    )
-    motion = ck.solve(mechanism, order=3)
+    motion = ck.solve(isosceles(2.0), order=3)
     q, c = motion.drives["crank"].value, motion.points["C"]
     assert np.abs(c.position - 4 * np.cos(q)).max() < 1e-12
     assert np.abs(c.velocity + 4 * np.sin(q)).max() < 1e-11
@@ -184,17 +187,8 @@ def test_coarse_poses_pass_change_points_too(values):
 
 
 def test_a_coarse_isosceles_slider_crank_slides_on():
-    mechanism = ck.Mechanism(
-        "Isosceles slider-crank",
-        ck.link("frame", A=0),
-        ck.link("crank", A=0, B=1),
-        ck.link("rod", B=0, C=1),
-        ck.link("slider", C=0),
-        ck.slide("slider", on="frame", through="A"),
-        ck.drive("crank"),
-    )
     values = ck.deg(np.arange(15.0, 346.0, 30.0))
-    assert np.abs(ck.solve(mechanism, {"crank": values}).points["C"].x - 2 * np.cos(values)).max() < 1e-12
+    assert np.abs(ck.solve(isosceles(1.0), {"crank": values}).points["C"].x - 2 * np.cos(values)).max() < 1e-12
 
 
 @pytest.mark.parametrize("start", [-42.0, -40.0])

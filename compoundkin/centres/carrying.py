@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compoundkin.centres.diagram import Couple, couple
-from compoundkin.centres.growth import pair_amplitudes, ring_amplitudes
+from compoundkin.centres.growth import attach, pair_amplitudes, ring_amplitudes
 from compoundkin.centres.steps import Bridge, Join, Move, Turn
 from compoundkin.series import Number
 
@@ -48,14 +48,14 @@ class Carried:
         shape = np.broadcast_shapes(place.shape[-1:], amplitude.shape)
         relative = np.zeros((3, self.twists[turn.i].shape[1], 1 + SAMPLES, *shape))
         relative[:, turn.parameter] = self.sampled(place, self.spread[couple(turn.i, turn.k)]) * amplitude
-        self._attach(turn.i, turn.k, relative)
+        attach(self.twists, self.member, turn.i, turn.k, relative)
 
     def join(self, join: Join) -> None:
         """Two sets through two centres."""
         i, k, j, m = join.i, join.k, join.j, join.m
         p, q = self._place(i, k), self._place(j, m)
         a, _ = pair_amplitudes(p, q, self.relative(i, j) - self.relative(k, m))
-        self._attach(i, k, p * a)
+        attach(self.twists, self.member, i, k, p * a)
 
     def bridge(self, bridge: Bridge) -> None:
         """Three sets through three centres."""
@@ -63,8 +63,8 @@ class Carried:
         q = self._place(bridge.n, bridge.j)
         gap = self.relative(bridge.i, bridge.j) - self.relative(bridge.k, bridge.l) - self.relative(bridge.m, bridge.n)
         a, _, b = ring_amplitudes(p, r, q, gap)
-        self._attach(bridge.i, bridge.k, p * a)
-        self._attach(bridge.j, bridge.n, -q * b)
+        attach(self.twists, self.member, bridge.i, bridge.k, p * a)
+        attach(self.twists, self.member, bridge.j, bridge.n, -q * b)
 
     def sampled(self, vector: Number, spread: Number) -> Number:
         """A point or line (3, poses) as it is and moved: (3, 1 + SAMPLES, poses)."""
@@ -78,14 +78,6 @@ class Carried:
     def _place(self, i: int, j: int) -> Number:
         """A known centre, (3, 1, 1 + SAMPLES, poses)."""
         return self.sampled(self.points[couple(i, j)], self.spread[couple(i, j)])[:, None]
-
-    def _attach(self, i: int, k: int, relative: Number) -> None:
-        shift = self.twists[i] + relative - self.twists[k]
-        old, new = self.member[k], self.member[i]
-        for body, owner in self.member.items():
-            if owner == old:
-                self.twists[body] = self.twists[body] + shift
-                self.member[body] = new
 
 
 def carry(

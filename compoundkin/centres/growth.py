@@ -56,7 +56,7 @@ class Growth:
         grown.rows = [np.pad(row, (0, wide - len(row))) for row in self.rows]
         relative = np.zeros((3, wide))
         relative[:, turn.parameter] = amplitude
-        grown._attach(turn.i, turn.k, relative)
+        attach(grown.twists, grown.member, turn.i, turn.k, relative)
         return grown
 
     def grow(self, bridges: bool = True) -> None:
@@ -105,26 +105,18 @@ class Growth:
         i, k, j, m = join.i, join.k, join.j, join.m
         p, q = (self._place(*c) for c in ((i, k), (j, m)))
         gap = (self.twists[j] - self.twists[i]) - (self.twists[m] - self.twists[k])
-        self._attach(i, k, p * pair_amplitudes(p, q, gap)[0])
+        attach(self.twists, self.member, i, k, p * pair_amplitudes(p, q, gap)[0])
 
     def _bridge(self, bridge: Bridge) -> None:
         i, k, l, m, n, j = (getattr(bridge, name) for name in "iklmnj")  # noqa: E741
         p, r, q = (self._place(*c) for c in ((i, k), (l, m), (n, j)))
         t = self.twists
         a, _, b = ring_amplitudes(p, r, q, (t[j] - t[i]) - (t[l] - t[k]) - (t[n] - t[m]))
-        self._attach(i, k, p * a)
-        self._attach(j, n, -q * b)
+        attach(self.twists, self.member, i, k, p * a)
+        attach(self.twists, self.member, j, n, -q * b)
 
     def _place(self, i: int, j: int) -> Number:
         return np.array(self.knowledge.place(i, j))[:, None]
-
-    def _attach(self, i: int, k: int, relative: Number) -> None:
-        shift = self.twists[i] + relative - self.twists[k]
-        old, new = self.member[k], self.member[i]
-        for body, owner in self.member.items():
-            if owner == old:
-                self.twists[body] = self.twists[body] + shift
-                self.member[body] = new
 
     def _collect(self, meeting: Meeting) -> None:
         line = self.knowledge.line(meeting.i, meeting.j, meeting.k)
@@ -173,3 +165,13 @@ def drivers_growth(knowledge: Knowledge, bridges: bool = True) -> Growth:
             growth = growth.turned(Turn(i, j, 0, k), knowledge.rates[k] * place)
     growth.grow(bridges)
     return growth
+
+
+def attach(twists: dict[int, Number], member: dict[int, int], i: int, k: int, relative: Number) -> None:
+    """Move all that belongs with body `k` so that `k` has the given twist relative to `i`, and join it to `i`."""
+    shift = twists[i] + relative - twists[k]
+    old, new = member[k], member[i]
+    for body, owner in member.items():
+        if owner == old:
+            twists[body] = twists[body] + shift
+            member[body] = new

@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.checks.model import Finding, worst
 from compoundkin.motion import Motion
+from compoundkin.motion.plan import places
 from compoundkin.poses import Pose
 from compoundkin.series import Number
 
@@ -85,14 +86,14 @@ def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
         for k, rate in enumerate(values[1:], start=1):
             moved = moved + rate * time**k / factorial(k)
         drives[name] = (moved,)
-    places, designs = np.arange(given.poses, dtype=float)[None], np.arange(given.designs)[:, None]
-    return dict(motion.tracker.run(given.driven(drives), 0, places, designs).world)
+    everywhere = places(slice(0, given.designs), slice(0, given.poses))
+    return dict(motion.tracker.run(given.driven(drives), 0, *everywhere).world)
 
 
 def _away_from_change_points(motion: Motion) -> Number:
     """Poses whose neighbours lie on the same side of every change point."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
-    places = np.arange(motion.inputs.poses, dtype=float)
+    index = np.arange(motion.inputs.poses, dtype=float)
     for flips in motion.tracker.flips.values():
-        good = good & (np.abs(flips[:, :, None] - places).min(axis=1) > 1.0)
+        good = good & (np.abs(flips[:, :, None] - index).min(axis=1) > 1.0)
     return good

@@ -15,7 +15,7 @@ import numpy as np
 from compoundkin.checks.model import Finding, worst
 from compoundkin.motion import Motion
 from compoundkin.pairs import Pair
-from compoundkin.series import Number
+from compoundkin.series import Number, Series
 
 # Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
 # over the groups of the solving order, and near a limit position by the inverse of the distance from it.
@@ -54,8 +54,8 @@ def _pair(motion: Motion, pair: Pair, k: int) -> Number:
     return _largest([series.derivative(k) for series in pair.closure(ends, poses)])
 
 
-def _twist(velocity: Number, u: object) -> tuple[Number, Number, Number]:
-    c0, c1 = u.derivative(0), u.derivative(1)  # type: ignore[attr-defined]
+def _twist(velocity: Number, u: Series) -> tuple[Number, Number, Number]:
+    c0, c1 = u.derivative(0), u.derivative(1)
     return velocity.real, velocity.imag, c0.real * c1.imag - c0.imag * c1.real
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from compoundkin.motion.continuation import CLOSE
 from compoundkin.motion.home import spacings
 from compoundkin.motion.inputs import Inputs
-from compoundkin.motion.plan import DyadStep, blocks
+from compoundkin.motion.plan import DyadStep, blocks, places
 from compoundkin.motion.tracking import Tracker
 from compoundkin.poses import Pose
 from compoundkin.series import Number
@@ -45,8 +45,7 @@ class _Way:
     def blocks(self) -> Iterator[tuple[slice, slice, Inputs, Number, Number]]:
         """The way in blocks: designs, samples, their inputs, places and design indices."""
         for d, m in blocks(self.samples.designs, self.samples.poses, BLOCK):
-            places, designs = np.arange(m.start, m.stop, dtype=float)[None], np.arange(d.start, d.stop)[:, None]
-            yield d, m, self.samples.cut(d, m), places, designs
+            yield d, m, self.samples.cut(d, m), *places(d, m)
 
 
 def near_groups(tracker: Tracker) -> set[int]:
@@ -71,10 +70,10 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
             continue
         found = False
         for way in _ways(tracker):
-            designs, places = _touching(way, tracker, k)
+            designs, where = _touching(way, tracker, k)
             if len(designs):
                 flips = tracker.lead_flips if way.lead else tracker.flips
-                flips[k] = _padded(designs, places, tracker.given.designs)
+                flips[k] = _padded(designs, where, tracker.given.designs)
                 found = True
         if found:
             tracker.flips.setdefault(k, np.full((tracker.given.designs, 1), np.inf))
@@ -93,8 +92,8 @@ def _ways(tracker: Tracker) -> Iterator[_Way]:
         steps = (spacings(tracker.plan, name, _steps(values[0])) for name, values in given.drives.items())
         between = max(steps, default=0)
         if between > 1:
-            places = np.linspace(0.0, given.poses - 1.0, (given.poses - 1) * between + 1)
-            given = given.at(places).of_poses(len(places))
+            fine = np.linspace(0.0, given.poses - 1.0, (given.poses - 1) * between + 1)
+            given = given.at(fine).of_poses(len(fine))
         yield _Way(given, 1.0 / max(between, 1), lead=False)
 
 
@@ -170,8 +169,8 @@ def _minimum(way: _Way, tracker: Tracker, k: int, designs: Number, low: Number, 
     return np.where(fa < fb, a, b), np.minimum(fa, fb)
 
 
-def _padded(designs: Number, places: Number, count: int) -> Number:
-    rows = [np.sort(places[designs == d]) for d in range(count)]
+def _padded(designs: Number, where: Number, count: int) -> Number:
+    rows = [np.sort(where[designs == d]) for d in range(count)]
     out = np.full((count, max(len(row) for row in rows)), np.inf)
     for d, row in enumerate(rows):
         out[d, : len(row)] = row

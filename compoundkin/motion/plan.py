@@ -11,7 +11,7 @@ import numpy as np
 
 from compoundkin.groups import DYADS, Attachment, Dyad
 from compoundkin.groups.contract import COINCIDENT, Root, clipped_root
-from compoundkin.groups.general import General, Member, Setting
+from compoundkin.groups.general import LEAP, General, Member, Setting
 from compoundkin.pairs import Pair
 from compoundkin.poses import FIXED, End, Pose
 from compoundkin.series import Number, Series
@@ -174,8 +174,7 @@ class GeneralStep:
     def run(self, run: Run, seeds: Number) -> None:
         """Correct the seeds, add the derivatives, and the group's links to what is known."""
         solution = self.solver.newton(seeds, run.setting)
-        # a large correction means that Newton left the configuration that was tracked
-        closed = solution.closed & (solution.moved < 0.5)
+        closed = solution.closed & (solution.moved < LEAP)
         state = np.where(closed[..., None], solution.state, np.nan)
         run.failed = np.where((run.failed == 0) & ~closed, self.index + 1, run.failed)
         for body, pose in zip(self.group.bodies, self.solver.series(state, run.setting, run.order), strict=True):
@@ -210,6 +209,15 @@ def rates(values: tuple[Number, ...], order: int) -> Series:
     """
     padded = [*values[: order + 1], *[0.0] * (order + 1 - len(values))]
     return Series(tuple([v / factorial(k) if k > 1 else v for k, v in enumerate(padded)]))
+
+
+def places(designs: slice, poses: slice) -> tuple[Number, Number]:
+    """The places along the motion (a row) and the design indices (a column) of a block.
+
+    >>> [array.shape for array in places(slice(0, 2), slice(4, 7))]
+    [(1, 3), (2, 1)]
+    """
+    return np.arange(poses.start, poses.stop, dtype=float)[None], np.arange(designs.start, designs.stop)[:, None]
 
 
 def blocks(designs: int, poses: int, size: int) -> Iterator[tuple[slice, slice]]:

@@ -14,9 +14,8 @@ from compoundkin.motion.change_points import NEAR, near_groups, pass_through, ra
 from compoundkin.motion.gathering import Gathering
 from compoundkin.motion.inputs import Inputs, inputs
 from compoundkin.motion.model import HIGHEST_ORDER, Motion
-from compoundkin.motion.plan import Plan, Run, blocks
+from compoundkin.motion.plan import Plan, Run, blocks, places
 from compoundkin.motion.tracking import Tracker, read_hint
-from compoundkin.series import Number
 from compoundkin.structure import decompose
 from compoundkin.structure.model import Structure
 
@@ -126,12 +125,12 @@ def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> tuple[Motio
     near: set[int] = set()
     parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
     if len(parts) == 1:
-        run = tracker.run(given, order, *_places(slice(0, designs), slice(0, poses)))
+        run = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
         failed = np.broadcast_to(run.failed, (designs, poses))
         return Motion(plan.structure, order, given, dict(run.world), failed, tracker), _near(run)
     store = Gathering(designs, poses)
     for d, m in parts:
-        run = tracker.run(given.cut(d, m), order, *_places(d, m))
+        run = tracker.run(given.cut(d, m), order, *places(d, m))
         store.take(run.world, run.failed, d, m)
         near |= _near(run)
     return Motion(plan.structure, order, given, store.poses(), store.failed, tracker), near
@@ -139,8 +138,3 @@ def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> tuple[Motio
 
 def _near(run: Run) -> set[int]:
     return {k for k, margin in run.margins.items() if np.any(margin < NEAR)}
-
-
-def _places(d: slice, m: slice) -> tuple[Number, Number]:
-    """The places along the motion (a row) and the design indices (a column) of a block."""
-    return np.arange(m.start, m.stop, dtype=float)[None], np.arange(d.start, d.stop)[:, None]

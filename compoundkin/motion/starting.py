@@ -12,6 +12,7 @@ from compoundkin.motion.home import column, first_of
 from compoundkin.motion.plan import DyadStep, GeneralStep, Plan, Run
 from compoundkin.poses import Pose
 from compoundkin.series import Number
+from compoundkin.words import FRAME
 
 # Random starts for a group that is not drawn completely; those after the first closed one only where a
 # drawing can tell the better of two.
@@ -98,7 +99,7 @@ def _starts(plan: Plan, step: GeneralStep, guesses: list[Pose | None]) -> Iterat
     """
     held = 1 if all(guess is not None for guess in guesses) else COMPARED
     rng = np.random.default_rng(step.solver.n)
-    frame = list(plan.structure.mechanism.geometry.points["frame"].values())
+    frame = list(plan.structure.mechanism.geometry.points[FRAME].values())
     centre = complex(np.mean([np.mean(p) for p in frame]))
     for number in range(STARTS):
         bodies = []
