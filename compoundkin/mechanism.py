@@ -13,14 +13,15 @@ from compoundkin.geometry import Geometry, fitted_pose, read_off
 from compoundkin.pairs import Pair
 from compoundkin.poses import FIXED, Pose
 from compoundkin.series import Number
-from compoundkin.validation import problems_of
-from compoundkin.words import FRAME, Drawn, Drive, Expectation, Item, Link, Mode
+from compoundkin.validation import misfits_of, problems_of
+from compoundkin.words import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, real
 
 
 class Mechanism:
     """Links, pairs and drivers, written with the words of this module; checked as a whole when it is made.
 
     Two links that have a point of the same name are pinned there; the link called "frame" is the frame.
+    `time` holds the times (seconds) at which it is solved unless a call says otherwise.
     Equality compares what is written, array by array.
 
     Raises InvalidMechanism, listing every problem with its place.
@@ -46,14 +47,16 @@ class Mechanism:
         source: str = "",
         description: str = "",
         outputs: Sequence[str] = (),
+        time: Any = None,
     ) -> None:
         self.title = title
         self.unit = unit
         self.source = source
         self.description = description
         self.outputs: tuple[str, ...] = (outputs,) if isinstance(outputs, str) else tuple(outputs)
+        self.time: Number | None = real("time", time)
         self.items: tuple[Item, ...] = items
-        problems = list(problems_of(self))
+        problems = list(problems_of(self)) or list(misfits_of(self))
         if problems:
             raise InvalidMechanism(problems, heading=f"{title!r} cannot be built")
 
@@ -127,7 +130,7 @@ class Mechanism:
     def replace(self, *items: Item, **changes: Any) -> Mechanism:
         """A copy in which each given item takes the place of the one of the same kind and name.
 
-        A word with no counterpart is added; `title`, `unit`, `source`, `description`, `outputs` by keyword.
+        A word with no counterpart is added; `title`, `unit`, `source`, `description`, `outputs`, `time` by keyword.
 
         >>> from compoundkin.words import drive, link
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank"))
@@ -136,7 +139,7 @@ class Mechanism:
         """
         keys = {_identity(item): item for item in items}
         kept = [keys.pop(_identity(item), item) for item in self.items]
-        words = {k: getattr(self, k) for k in ("unit", "source", "description", "outputs")}
+        words = {k: getattr(self, k) for k in ("unit", "source", "description", "outputs", "time")}
         title = changes.pop("title", self.title)
         return Mechanism(title, *kept, *keys.values(), **{**words, **changes})
 
@@ -177,7 +180,7 @@ def _identity(item: Item) -> tuple[Any, ...]:
 
 def _plain(mechanism: Mechanism) -> list[Any]:
     """What is written, as nested builtins and arrays, for comparison."""
-    about = [getattr(mechanism, k) for k in ("title", "unit", "source", "description", "outputs")]
+    about = [getattr(mechanism, k) for k in ("title", "unit", "source", "description", "outputs", "time")]
     drawing = [["Drawn", mechanism.sketch]] if mechanism.sketch else []
     written = [[type(item).__name__, vars(item)] for item in mechanism.items if not isinstance(item, Drawn)]
     # the order between different words says nothing; that within one kind does

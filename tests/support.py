@@ -44,7 +44,9 @@ def random_unit(rng: np.random.Generator, order: int, shape: tuple[int, ...]) ->
 
 
 def random_pose(rng: np.random.Generator, order: int, shape: tuple[int, ...]) -> Pose:
-    return Pose(random_planar(rng, order, shape), random_unit(rng, order, shape))
+    rates = random_real(rng, order, shape)
+    theta = Series((rng.uniform(-np.pi, np.pi, shape), *rates.c[1:]))
+    return Pose(random_planar(rng, order, shape), theta.turn(), theta)
 
 
 def largest(values: Iterable[Any]) -> float:
@@ -61,10 +63,10 @@ def sample(kind: type[Pair], tag: str = "") -> Pair:
     return kind(*given)
 
 
-def ends_at(pair: Pair, rng: np.random.Generator, poses: tuple[Pose, Pose]) -> tuple[End, End]:
-    """Sides of a pair in its links' frames that close it at the given poses."""
+def ends_at(pair: Pair, rng: np.random.Generator, poses: tuple[Pose, ...]) -> tuple[End, ...]:
+    """Sides of a pair in its links' frames that close it at the given poses, for kinds that do not count turns."""
     world = pair.generic(rng)
-    return tuple(pose.inverse().carry(end) for pose, end in zip(poses, world, strict=True))  # type: ignore[return-value]
+    return tuple(pose.inverse().carry(end) for pose, end in zip(poses, world, strict=True))
 
 
 # --- mechanisms whose assembled pose is known --------------------------------------------------------------

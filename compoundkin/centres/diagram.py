@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 
@@ -22,13 +22,15 @@ Couple = tuple[int, int]
 class Primary:
     """A pair as a side of the circle diagram: every two of `links` have their centre there.
 
-    `kind` is "point", "ideal" (a point at infinity) or "line"; `pair` is the name of the pair that places it.
+    `kind` is "point", "ideal" (a point at infinity), "line", or "weld" for two links that do not move relative to each
+    other; `pair` is the name of the pair that places it. A pitch point lies on the line of the two primaries `on`.
     """
 
     text: str
     pair: str
     links: tuple[int, ...]
     kind: str
+    on: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,12 @@ class Diagram:
     def generic(self) -> list[Number]:
         """Random homogeneous coordinates for every primary, of its kind; the same ones every time."""
         rng = np.random.default_rng(len(self.links))
-        return [_unit(rng.standard_normal(3), p.kind) for p in self.primaries]
+        places = [_unit(rng.standard_normal(3), p.kind) for p in self.primaries]
+        for k, primary in enumerate(self.primaries):
+            if primary.on:
+                one, two = (places[j] for j in primary.on)
+                places[k] = _unit(one * rng.standard_normal() + two * rng.standard_normal(), primary.kind)
+        return places
 
 
 def couple(i: int, j: int) -> Couple:
@@ -87,9 +94,9 @@ def diagram_of(structure: Structure) -> Diagram:
     """
     links = tuple(structure.mechanism.links)
     number = {name: k for k, name in enumerate(links)}
-    primaries = tuple(_primaries(structure, number))
+    primaries = tuple(_on_lines(tuple(_primaries(structure, number)), structure, number))
     bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
-    drives = {d.drive.name: d for body in bodies for d in body.driven}
+    drives = {d.drive.name: d for body in bodies for d in body.driven if not d.is_passive}
     ordered = [drives[d.name] for d in structure.mechanism.drives if d.name in drives]
     return Diagram(links, primaries, tuple(_driven(d, primaries, number) for d in ordered))
 
@@ -97,18 +104,47 @@ def diagram_of(structure: Structure) -> Diagram:
 def _primaries(structure: Structure, number: dict[str, int]) -> Iterator[Primary]:
     written = {pair.name for pair in structure.mechanism.written_pairs}
     by_letter = {pair.letters[0]: pair for pair in structure.pairs if pair.name not in written}
+    still = {spin.link: spin for spin in structure.passive}
     for letter, carriers in structure.mechanism.pins.items():
         pair = by_letter[letter]
-        yield Primary(f"pin {letter}", pair.name, tuple(number[name] for name in carriers), _kind(pair))
+        moving = [name for name in carriers if name not in still or still[name].at != letter]
+        if len(moving) > 1:
+            yield Primary(f"pin {letter}", pair.name, tuple(number[name] for name in moving), _kind(pair))
+    for spin in structure.passive:
+        text = f"pin {spin.at}, passive"
+        yield Primary(text, by_letter[spin.at].name, (number[spin.on], number[spin.link]), "weld")
     for pair in structure.mechanism.written_pairs:
         if _kind(pair):
             members = tuple(number[name] for name in pair.members[:2])
             yield Primary(f"{pair.title} {pair.name}", pair.name, members, _kind(pair))
 
 
+def _on_lines(primaries: tuple[Primary, ...], structure: Structure, number: dict[str, int]) -> Iterator[Primary]:
+    """The primaries, each pitch point with the two others on whose line it lies by the theorem of three centres.
+
+    That is where one link, such as the carrier of two gears, has a pair with both.
+    """
+    turning = {pair.name for pair in structure.mechanism.written_pairs if pair.counts_turns}
+    for primary in primaries:
+        on: tuple[int, ...] = ()
+        if primary.pair in turning:
+            a, b = primary.links
+            carriers = (number[name] for name in structure.mechanism.links)
+            found = ((_joining(primaries, a, c), _joining(primaries, c, b)) for c in carriers if c not in (a, b))
+            on = next(((j, k) for j, k in found if j is not None and k is not None and j != k), ())
+        yield replace(primary, on=on)
+
+
+def _joining(primaries: tuple[Primary, ...], a: int, b: int) -> int | None:
+    """The first primary centre of two links."""
+    kinds = ("point", "ideal")
+    return next((k for k, p in enumerate(primaries) if p.kind in kinds and {a, b} <= set(p.links)), None)
+
+
 def _kind(pair: Pair) -> str:
     """What the pair says about the centre, asked at random geometry; "" where it says nothing."""
-    centre = pair.centre(pair.generic(np.random.default_rng(0)), (FIXED, FIXED))
+    ends = pair.generic(np.random.default_rng(0))
+    centre = pair.centre(ends, (FIXED,) * len(ends))
     if centre is None:
         return ""
     if isinstance(centre, Line):

@@ -78,7 +78,9 @@ def null_twists(diagram: Diagram, places: Sequence[Number], rates: Sequence[Numb
 
 
 def _basis(place: Number, kind: str) -> list[Number]:
-    """The directions a relative twist may have: the centre itself, or two points of its line."""
+    """The directions a relative twist may have: the centre itself, two points of its line, or none."""
+    if kind == "weld":
+        return []
     if kind != "line":
         return [place]
     # Householder: the reflection that takes the line's vector to the third axis takes the plane to the other two

@@ -46,11 +46,11 @@ def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
 
 def _pair(motion: Motion, pair: Pair, k: int) -> Number:
     ends = motion.inputs.ends[pair.name]
-    poses = (motion.poses[pair.members[0]], motion.poses[pair.members[1]])
+    poses = tuple(motion.poses[member] for member in pair.members)
     if k == 1:
         rates = [v for pose in poses for v in _twist(pose.z.derivative(1), pose.u)]
         rows = pair.jacobian(ends, poses)[..., : pair.held, :]
-        return _largest([sum(rows[..., j, i] * rates[i] for i in range(6)) for j in range(pair.held)])
+        return _largest([sum(rows[..., j, i] * rates[i] for i in range(len(rates))) for j in range(pair.held)])
     return _largest([series.derivative(k) for series in pair.closure(ends, poses)])
 
 

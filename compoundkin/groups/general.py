@@ -18,7 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.pairs import Pair
-from compoundkin.poses import End, Pose
+from compoundkin.pairs.contract import Ends, Poses
+from compoundkin.poses import Pose
 from compoundkin.series import Number, Series, constant
 
 # Newton stops when no correction exceeds this (of the mechanism's size, or radians); it doubles its digits
@@ -47,7 +48,7 @@ class Setting:
     a link in its composite body (absent for the body's own base).
     """
 
-    ends: Mapping[str, tuple[End, End]]
+    ends: Mapping[str, Ends]
     world: Mapping[str, Pose]
     local: Mapping[str, Pose]
 
@@ -61,11 +62,9 @@ class Solution(NamedTuple):
 
 
 class General:
-    """A group of `n` bodies joined and attached by `pairs`; `members` tells each pair's two sides."""
+    """A group of `n` bodies joined and attached by `pairs`; `members` tells each pair's sides."""
 
-    def __init__(
-        self, n: int, pairs: tuple[Pair, ...], members: tuple[tuple[Member, Member], ...], size: float
-    ) -> None:
+    def __init__(self, n: int, pairs: tuple[Pair, ...], members: tuple[tuple[Member, ...], ...], size: float) -> None:
         self.n = n
         self.pairs = pairs
         self.members = members
@@ -77,6 +76,7 @@ class General:
             Pose(
                 constant(state[..., 3 * k] + 1j * state[..., 3 * k + 1]),
                 constant(np.cos(state[..., 3 * k + 2]) + 1j * np.sin(state[..., 3 * k + 2])),
+                constant(state[..., 3 * k + 2]),
             )
             for k in range(self.n)
         ]
@@ -109,15 +109,12 @@ class General:
         theta = [[state[..., 3 * k + 2]] for k in range(self.n)]
         inverse = inverted(self.matrix(bodies, _leading(setting))) if order else np.zeros(())
         for k in range(1, order + 1):
-            trial = [
-                Pose(Series((*b.z.c, 0j)), Series((*t, np.zeros_like(t[0]))).turn())
-                for b, t in zip(bodies, theta, strict=True)
-            ]
+            trial = [_turned((*b.z.c, 0j), (*t, np.zeros_like(t[0]))) for b, t in zip(bodies, theta, strict=True)]
             step = -np.einsum("...ij,...j->...i", inverse, self.residual(trial, setting, k))
             for t, j in zip(theta, range(self.n), strict=True):
                 t.append(step[..., 3 * j + 2])
             bodies = [
-                Pose(Series((*b.z.c, step[..., 3 * j] + 1j * step[..., 3 * j + 1])), Series(tuple(theta[j])).turn())
+                _turned((*b.z.c, step[..., 3 * j] + 1j * step[..., 3 * j + 1]), tuple(theta[j]))
                 for j, b in enumerate(bodies)
             ]
         return bodies
@@ -149,7 +146,7 @@ class General:
             out[..., top : top + columns.shape[-2], 3 * body : 3 * body + 3] += columns
         return out
 
-    def _links(self, members: tuple[Member, Member], bodies: list[Pose], setting: Setting, k: int) -> tuple[Pose, Pose]:
+    def _links(self, members: tuple[Member, ...], bodies: list[Pose], setting: Setting, k: int) -> Poses:
         found = []
         for member in members:
             if member.body is None:
@@ -158,21 +155,24 @@ class General:
                 local = setting.local.get(member.link)
                 pose = bodies[member.body] if local is None else bodies[member.body].compose(trimmed(local, k))
             found.append(pose)
-        return found[0], found[1]
+        return tuple(found)
 
     def _weights(self) -> Number:
         return np.tile([1.0 / self.size, 1.0 / self.size, 1.0], self.n)
 
     def _upright(self, state: Number, setting: Setting) -> Number:
-        """Whether no guide lies in its block the wrong way round, which the sine alone does not see."""
+        """Whether every pair is closed in the way that is meant, such as no guide the wrong way round in its block."""
         bodies = self.poses(state)
         good: Number = True
         for pair, members in zip(self.pairs, self.members, strict=True):
-            ends = setting.ends[pair.name]
-            if ends[0].direction is not None:
-                one, two = (p.carry(e) for p, e in zip(self._links(members, bodies, setting, 0), ends, strict=True))
-                good = good & (one.along.dot(two.along).c[0] > 0)
+            good = good & pair.upright(setting.ends[pair.name], self._links(members, bodies, setting, 0))
         return good
+
+
+def _turned(z: tuple[Number, ...], theta: tuple[Number, ...]) -> Pose:
+    """The pose of an origin and an angle."""
+    angle = Series(theta)
+    return Pose(Series(z), angle.turn(), angle)
 
 
 def _about(columns: Number, link: Pose, body: Pose) -> Number:
@@ -189,7 +189,8 @@ def trimmed(pose: Pose, k: int) -> Pose:
     """A pose to order k at most."""
     if pose.z.order <= k and pose.u.order <= k:
         return pose
-    return Pose(Series(pose.z.c[: k + 1]), Series(pose.u.c[: k + 1]))
+    theta = None if pose.theta is None else Series(pose.theta.c[: k + 1])
+    return Pose(Series(pose.z.c[: k + 1]), Series(pose.u.c[: k + 1]), theta)
 
 
 def _leading(setting: Setting) -> Setting:

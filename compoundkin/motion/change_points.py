@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.motion.continuation import CLOSE
-from compoundkin.motion.home import spacings
+from compoundkin.motion.home import between
 from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.plan import DyadStep, blocks, places
 from compoundkin.motion.tracking import Tracker
@@ -77,7 +77,7 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
                 found = True
         if found:
             tracker.flips.setdefault(k, np.full((tracker.given.designs, 1), np.inf))
-            if tracker.plan.general:
+            if tracker.plan.general or tracker.turns:
                 tracker.choose()
             return True
     return False
@@ -89,16 +89,8 @@ def _ways(tracker: Tracker) -> Iterator[_Way]:
         yield _Way(tracker.lead, 1.0, lead=True)
     given = tracker.given
     if given.poses > 1:
-        steps = (spacings(tracker.plan, name, _steps(values[0])) for name, values in given.drives.items())
-        between = max(steps, default=0)
-        if between > 1:
-            fine = np.linspace(0.0, given.poses - 1.0, (given.poses - 1) * between + 1)
-            given = given.at(fine).of_poses(len(fine))
-        yield _Way(given, 1.0 / max(between, 1), lead=False)
-
-
-def _steps(value: Number) -> Number:
-    return np.diff(value, axis=-1) if np.ndim(value) > 1 and np.shape(value)[-1] > 1 else np.zeros(1)
+        per_pose = max(1, between(tracker.plan, given))
+        yield _Way(given.refined(per_pose), 1.0 / per_pose, lead=False)
 
 
 def rates_at(given: Inputs, tracker: Tracker, order: int) -> tuple[Number, Number, Mapping[str, Pose]]:

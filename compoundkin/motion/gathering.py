@@ -36,7 +36,8 @@ class Gathering:
         self.failed[designs, poses] = failed
         for link, pose in world.items():
             self._fixed[link] = pose is FIXED
-            for name, series in (("z", pose.z), ("u", pose.u)):
+            sides = (("z", pose.z), ("u", pose.u), ("theta", pose.theta))
+            for name, series in ((name, series) for name, series in sides if series is not None):
                 found = self._found.setdefault((link, name), [None] * len(series.c))
                 for k, c in enumerate(series.c):
                     found[k] = self._with(found[k], c, designs, poses)
@@ -47,8 +48,11 @@ class Gathering:
         def gathered(link: str, name: str) -> Series:
             return Series(tuple(self._found[link, name]))
 
+        def angle(link: str) -> Series | None:
+            return gathered(link, "theta") if (link, "theta") in self._found else None
+
         return {
-            link: FIXED if fixed else Pose(gathered(link, "z"), gathered(link, "u"))
+            link: FIXED if fixed else Pose(gathered(link, "z"), gathered(link, "u"), angle(link))
             for link, fixed in self._fixed.items()
         }
 
@@ -58,9 +62,9 @@ class Gathering:
             return part
         shape = np.broadcast_shapes(np.shape(whole), self._needed(np.shape(part), designs, poses))
         if whole is None:
-            whole = np.empty(shape, dtype=complex)
+            whole = np.empty(shape, dtype=np.result_type(part))
         elif np.shape(whole) != shape:
-            whole = np.array(np.broadcast_to(whole, shape), dtype=complex)
+            whole = np.array(np.broadcast_to(whole, shape), dtype=np.result_type(part, whole))
         rows, columns = whole.shape
         whole[designs if rows > 1 else slice(None), poses if columns > 1 else slice(None)] = part
         return whole

@@ -71,6 +71,15 @@ def spacings(plan: Plan, name: str, way: Number) -> int:
     return max(0, int(np.ceil(float(np.max(np.abs(way))) / size / SPACING - CLOSE)))
 
 
+def between(plan: Plan, given: Inputs) -> int:
+    """How many spacings the longest step of a driver from one pose of a motion to the next takes."""
+    return max((spacings(plan, name, _steps(values[0])) for name, values in given.drives.items()), default=0)
+
+
+def _steps(value: Number) -> Number:
+    return np.diff(value, axis=-1) if np.ndim(value) > 1 and np.shape(value)[-1] > 1 else np.zeros(1)
+
+
 def _side(given: Inputs, at: int, ways: Mapping[str, Number]) -> float:
     """-1 where the lead reaches the motion's pose `at` in the direction of the motion, else +1."""
     leads = given.poses > 1 and any(np.any(way != 0.0) for way in ways.values())

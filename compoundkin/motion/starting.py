@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.errors import NotAssembled, Problem
 from compoundkin.geometry import fitted_pose
 from compoundkin.motion.home import column, first_of
-from compoundkin.motion.plan import DyadStep, GeneralStep, Plan, Run
+from compoundkin.motion.plan import GeneralStep, Plan, Run, Step
 from compoundkin.poses import Pose
 from compoundkin.series import Number
 from compoundkin.words import FRAME
@@ -24,7 +24,7 @@ STEPS = 40
 Letters = list[tuple[str, str]]
 
 
-def shown(plan: Plan, step: DyadStep | GeneralStep, sketch: Mapping[str, Number]) -> Letters:
+def shown(plan: Plan, step: Step, sketch: Mapping[str, Number]) -> Letters:
     """The letters a sketch shows on the links of a group, each with its link."""
     links = plan.structure.mechanism.links
     return [(link, letter) for link in step.group.links for letter in links[link].points if letter in sketch]

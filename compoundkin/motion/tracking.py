@@ -11,8 +11,9 @@ from compoundkin.groups.contract import clipped_root, double_root, nearest_root
 from compoundkin.motion.continuation import CLOSE, Path, track
 from compoundkin.motion.home import approach
 from compoundkin.motion.inputs import Inputs
-from compoundkin.motion.plan import DyadStep, Plan, Run
+from compoundkin.motion.plan import AffineStep, DyadStep, Plan, Run
 from compoundkin.motion.starting import distance, first_state, shown
+from compoundkin.motion.turns import Turns, turns_of
 from compoundkin.series import Number
 from compoundkin.words import vector
 
@@ -30,13 +31,15 @@ class Tracker:
         self.signs: dict[int, Number] = {}
         self.paths: dict[int, Path] = {}
         self.leads: dict[int, Path] = {}
+        # the angles of links, full turns counted, that pairs ask for and no driver tells
+        self.turns: dict[str, Turns] = {}
         self.chosen_by: dict[int, str] = {}
         # where along the lead and the motion each group passes through a change point, (designs, count), padded
         self.lead_flips: dict[int, Number] = {}
         self.flips: dict[int, Number] = {}
         self.lead, self.at, self.home = approach(plan, given, self.drawn, {} if hint else geometry.sketch)
         self._fixed = signs
-        if self.sketch or plan.general:
+        if self.sketch or plan.general or plan.turning:
             self.choose()
         else:
             for k in range(len(plan.steps)):
@@ -65,8 +68,13 @@ class Tracker:
             if isinstance(step, DyadStep):
                 sign = self.sign(k, designs, s, lead)
                 step.run(run, sign, double_root(doubles[k]) if doubles and k in doubles else clipped_root)
+            elif isinstance(step, AffineStep):
+                step.run(run)
             else:
                 step.run(run, paths[k].seeds(designs, s))
+            for link in step.group.links:
+                if link in self.turns:
+                    run.world[link] = run.world[link].counted(self.turns[link].near(designs, s, lead))
         return run
 
     def sign(self, k: int, designs: Number, s: Number, lead: bool = False) -> Number:
@@ -83,18 +91,26 @@ class Tracker:
 
     def choose(self) -> None:
         """Pass through the groups at the drawn pose, choosing; track those without a closed form."""
+        self.turns = {}
         home = self.lead.cut(slice(None), slice(0, 1))
         run = self.plan.start(home.ends, home.series(0), 0)
         for k, step in enumerate(self.plan.steps):
             if isinstance(step, DyadStep):
                 self.signs[k] = self._sign(k, step, run)
                 step.run(run, self.signs[k], nearest_root)
+            elif isinstance(step, AffineStep):
+                self.chosen_by[k] = "only one"
+                step.run(run)
             else:
                 state, self.chosen_by[k] = first_state(self.plan, step, run, self.sketch, self.given.designs)
                 if self.chosen_by[k] == "drawing" and not self.from_drawing:
                     self.chosen_by[k] = "hint"
                 self.leads[k], self.paths[k] = track(self, k, step.solver, state)
                 step.run(run, state)
+            for link in step.group.links:
+                if link in self.plan.turning and run.world[link].theta is None:
+                    self.turns[link] = turns_of(self, k, link)
+                    run.world[link] = run.world[link].counted(np.angle(run.world[link].u.c[0]))
 
     def _sign(self, k: int, step: DyadStep, run: Run) -> Number:
         """The mode whose points lie nearest to the drawn ones."""

@@ -7,8 +7,8 @@ constraint); the others are free, and are what a drive may prescribe.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
-from typing import ClassVar, NamedTuple
+from collections.abc import Hashable, Iterator, Mapping
+from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -39,14 +39,31 @@ class Line(NamedTuple):
     c: Number
 
 
+# A pair's sides on its members, in the members' own frames; and the members' poses.
+Ends: TypeAlias = tuple[End, ...]
+Poses: TypeAlias = tuple[Pose, ...]
+
+
+class Equivalent(NamedTuple):
+    """Two lower pairs and a link between them that stand for a higher pair at every pose, not at one only.
+
+    `pairs` join `link` to the first and to the second member; `ends` are their sides by their names.
+    """
+
+    link: str
+    pairs: tuple[Pair, Pair]
+    ends: Mapping[str, Ends]
+
+
 class Pair(ABC):
-    """A kinematic pair between two links; subclasses are frozen dataclasses, one file each."""
+    """A kinematic pair between two links, or two and their carrier; kinds are frozen dataclasses, one file each."""
 
     code: ClassVar[str]  # the letter in a group's name
     title: ClassVar[str]  # "revolute pair"
     held: ClassVar[int]  # how many relative coordinates stay zero
-    free: ClassVar[tuple[str, ...]]  # the names of the others
-    free_is_angle: ClassVar[bool]  # whether the free coordinate is an angle (else a length)
+    free: ClassVar[tuple[str, ...]]  # the names of the others; the first is its `coordinate`
+    free_is_angle: ClassVar[bool]  # whether the coordinate is an angle (else a length)
+    counts_turns: ClassVar[bool] = False  # whether it asks for its members' angles with full turns
     table: ClassVar[str] = ""  # its table in a mechanism file; "" for pairs that are not written out
     keys: ClassVar[tuple[Key, ...]] = ()
 
@@ -54,8 +71,8 @@ class Pair(ABC):
 
     @property
     @abstractmethod
-    def members(self) -> tuple[str, str]:
-        """The two links, the one that carries the reference first."""
+    def members(self) -> tuple[str, ...]:
+        """The two links, the one that carries the reference first; a third one is their carrier."""
 
     @property
     @abstractmethod
@@ -70,57 +87,87 @@ class Pair(ABC):
         """The pair with what its words leave to be understood filled in."""
         return self
 
+    def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
+        """What is wrong with its dimensions: teeth that do not fit, a profile that crosses itself."""
+        return iter(())
+
     @abstractmethod
-    def ends(self, geometry: Geometry) -> tuple[End, End]:
+    def ends(self, geometry: Geometry) -> Ends:
         """The pair's side on each member, in the members' own frames."""
 
     @abstractmethod
-    def closure(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> tuple[Series, ...]:
+    def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """The held relative coordinates as series: zero where the pair is closed."""
 
     @abstractmethod
-    def coordinate(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Series:
-        """The free relative coordinate as a series."""
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
+        """The (first) free relative coordinate as a series."""
 
     def drawn_coordinate(self, sketch: Mapping[str, Number]) -> Number | None:
         """The free coordinate as drawn points alone show it, without the links' poses; None where they do not."""
         return None
 
     @abstractmethod
-    def jacobian(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Number:
+    def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """The derivatives of `closure` and then `coordinate` by x, y, theta of the first member, then of the second.
 
-        Shape (..., held + 1, 6), at the leading coefficient of the poses.
+        Shape (..., held + 1, 3 members), at the leading coefficient of the poses.
         """
 
-    def centre(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Point | Line | None:
-        """Where the relative instant centre is: a point, or the line it must lie on (higher pairs), or nothing.
+    def centre(self, ends: Ends, poses: Poses) -> Point | Line | None:
+        """Where the relative instant centre of the first two members is: a point, a line it must lie on, or nothing.
 
         At the leading coefficient of the poses; which of the three it is depends on the kind of pair only.
         """
         return None
 
-    @abstractmethod
-    def placed(self, ends: tuple[End, End], free: Series) -> Pose:
-        """The pose of the second member in the first one's frame when the free coordinate is `free`."""
+    def upright(self, ends: Ends, poses: Poses) -> Number:
+        """Whether a closed pair is in the way that is meant, where its closure does not tell."""
+        return True
+
+    @property
+    def is_drivable(self) -> bool:
+        """Whether a driver may prescribe its coordinate: where nothing else is free."""
+        return self.held == 2
+
+    def placed(self, ends: Ends, free: Series) -> Pose:
+        """The pose of the second member in the first one's frame when the coordinate is `free`; of drivable pairs."""
+        raise NotImplementedError(f"a {self.title} leaves more than one coordinate free")
 
     @abstractmethod
-    def generic(self, rng: np.random.Generator) -> tuple[End, End]:
+    def generic(self, rng: np.random.Generator) -> Ends:
         """Ends of random geometry in the world at a pose where the pair is closed, for rank tests."""
 
-    @abstractmethod
+    @property
+    def make_up(self) -> Hashable:
+        """All that the rank of its generic Jacobian may depend on."""
+        return type(self)
+
     def driven_by(self, link: str) -> int:
-        """+1 if driving `link` drives the free coordinate itself, -1 if its opposite."""
+        """+1 if driving `link` drives the coordinate itself, -1 if its opposite."""
+        return 1
+
+    def is_affine(self, lower: Pair, own: int) -> bool:
+        """Whether `closure` grows in proportion to the coordinate of the pair `lower`, on which the member `own` is."""
+        return False
+
+    def equivalent(self, ends: Ends) -> Equivalent | None:
+        """The lower pairs that stand for a higher pair at every pose, where there are such."""
+        return None
+
+    def round_at(self, link: str) -> str | None:
+        """The point about which a member may turn without any effect on the pair, such as a roller's pin."""
+        return None
 
 
 def table(*rows: tuple[Number, ...]) -> Number:
-    """Jacobian rows of six entries each, numbers or arrays, as one array (..., rows, 6).
+    """Jacobian rows of equal length, numbers or arrays, as one array (..., rows, columns).
 
     >>> table((1.0, 0.0, np.zeros(2), 0.0, 0.0, 0.0)).shape
     (2, 1, 6)
     """
     shape = np.broadcast_shapes(*[np.shape(entry) for row in rows for entry in row])
-    out = np.empty((*shape, len(rows), 6))
+    out = np.empty((*shape, len(rows), len(rows[0])))
     for i, row in enumerate(rows):
         for j, entry in enumerate(row):
             out[..., i, j] = entry

@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.errors import InvalidMechanism, Problem, nearest
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
-from compoundkin.pairs.contract import Pair, Point, table
+from compoundkin.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series
 
@@ -62,7 +62,7 @@ class Prismatic(Pair):
     )
 
     @property
-    def members(self) -> tuple[str, str]:
+    def members(self) -> tuple[str, ...]:
         """The guiding link and the sliding link."""
         return self.on, self.link
 
@@ -104,7 +104,7 @@ class Prismatic(Pair):
         points = links.get(self.link, ())
         return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
 
-    def ends(self, geometry: Geometry) -> tuple[End, End]:
+    def ends(self, geometry: Geometry) -> Ends:
         """Guide point and direction on each link; the two directions are parallel when the pair is closed."""
         start = geometry.points[self.on][self.through]
         if self.toward is None:
@@ -128,12 +128,12 @@ class Prismatic(Pair):
             start = start + 1j * guide * offset
         return End(start, guide), End(point, along)
 
-    def closure(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> tuple[Series, ...]:
+    def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """Distance from the guide, sine of the angle to it."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.cross(block.point - guide.point), guide.along.cross(block.along)
 
-    def coordinate(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Series:
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """The displacement along the guide."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.dot(block.point - guide.point)
@@ -145,7 +145,7 @@ class Prismatic(Pair):
         across = 0.0 if self.offset is None else self.offset
         return np.sqrt(np.maximum(np.abs(sketch[self.at] - sketch[self.through]) ** 2 - across**2, 0.0))
 
-    def jacobian(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Number:
+    def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Rows of distance, angle and displacement."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         e = guide.along.c[0]
@@ -162,27 +162,28 @@ class Prismatic(Pair):
             (-e.real, -e.imag, along, e.real, e.imag, _dot(e, 1j * arm1)),
         )
 
-    def centre(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Point:
+    def centre(self, ends: Ends, poses: Poses) -> Point:
         """At infinity, at right angles to the guide."""
         guide = poses[0].carry(ends[0]).along.c[0]
         return Point(-guide.imag, guide.real, 0.0)
 
-    def placed(self, ends: tuple[End, End], free: Series) -> Pose:
+    def placed(self, ends: Ends, free: Series) -> Pose:
         """The block moved along the guide by the given displacement."""
         guide, block = ends
         u = guide.along * block.along.conj()
-        return Pose(free * guide.along + guide.point - u * block.point, u)
+        return Pose(free * guide.along + guide.point - u * block.point, u, u.angle())
 
-    def generic(self, rng: np.random.Generator) -> tuple[End, End]:
+    def generic(self, rng: np.random.Generator) -> Ends:
         """A guide in a random direction with the block somewhere along it."""
         angle = rng.uniform(0.0, 2.0 * np.pi)
         guide = complex(np.cos(angle), np.sin(angle))
         start = complex(*rng.standard_normal(2))
         return End(start, guide), End(start + guide * rng.standard_normal(), guide)
 
-    def driven_by(self, link: str) -> int:
-        """The displacement is the same whichever link is named."""
-        return 1
+    def upright(self, ends: Ends, poses: Poses) -> Number:
+        """Whether the guide does not lie in its block the wrong way round, which the sine alone does not see."""
+        guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
+        return guide.along.dot(block.along).c[0] > 0
 
 
 def slide(

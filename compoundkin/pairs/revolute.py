@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
-from compoundkin.pairs.contract import Pair, Point, table
+from compoundkin.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series, as_series
 
@@ -34,7 +34,7 @@ class Revolute(Pair):
     free_is_angle: ClassVar[bool] = True
 
     @property
-    def members(self) -> tuple[str, str]:
+    def members(self) -> tuple[str, ...]:
         """The two links."""
         return self.first, self.second
 
@@ -47,20 +47,23 @@ class Revolute(Pair):
         """Nothing can be wrong: a pin exists only where two links share a letter."""
         return iter(())
 
-    def ends(self, geometry: Geometry) -> tuple[End, End]:
+    def ends(self, geometry: Geometry) -> Ends:
         """The pin on each link."""
         return End(geometry.points[self.first][self.at]), End(geometry.points[self.second][self.at])
 
-    def closure(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> tuple[Series, ...]:
+    def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """Gap in x, gap in y."""
         gap = poses[1].at(ends[1].point) - poses[0].at(ends[0].point)
         return gap.real, gap.imag
 
-    def coordinate(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Series:
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """The angle from the first link to the second."""
-        return (poses[1].u * poses[0].u.conj()).angle()
+        first, second = poses
+        if first.theta is not None and second.theta is not None:
+            return second.theta - first.theta
+        return (second.u * first.u.conj()).angle()
 
-    def jacobian(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Number:
+    def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Rows of gap x, gap y and angle."""
         arm = [(pose.u * end.point).c[0] for pose, end in zip(poses, ends, strict=True)]
         return table(
@@ -69,17 +72,17 @@ class Revolute(Pair):
             (0.0, 0.0, -1.0, 0.0, 0.0, 1.0),
         )
 
-    def centre(self, ends: tuple[End, End], poses: tuple[Pose, Pose]) -> Point:
+    def centre(self, ends: Ends, poses: Poses) -> Point:
         """The pin."""
         pin = poses[0].at(ends[0].point).c[0]
         return Point(pin.real, pin.imag, 1.0)
 
-    def placed(self, ends: tuple[End, End], free: Series) -> Pose:
+    def placed(self, ends: Ends, free: Series) -> Pose:
         """The second link turned about the pin by the given angle."""
         u = free.turn()
-        return Pose(Pose(as_series(ends[0].point), u).at(-ends[1].point), u)
+        return Pose(Pose(as_series(ends[0].point), u).at(-ends[1].point), u, free)
 
-    def generic(self, rng: np.random.Generator) -> tuple[End, End]:
+    def generic(self, rng: np.random.Generator) -> Ends:
         """A pin at a random place."""
         pin = complex(*rng.standard_normal(2))
         return End(pin), End(pin)

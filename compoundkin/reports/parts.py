@@ -72,7 +72,7 @@ def pairs_section(structure: Structure) -> Section:
 def driven_pairs(structure: Structure) -> dict[str, DrivenPair]:
     """The driven pair of every driver that has its place in the structure, by the driver's name."""
     bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
-    return {step.drive.name: step for body in bodies for step in body.driven}
+    return {step.drive.name: step for body in bodies for step in body.driven if not step.is_passive}
 
 
 def _multiple_pins(structure: Structure) -> Iterator[Block]:

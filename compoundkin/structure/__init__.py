@@ -6,7 +6,7 @@ from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.graph import kinematic_graph, links_by_pairs, pair_counts
 from compoundkin.structure.loops import Loop, independent_loops, loop_count
 from compoundkin.structure.mobility import Mobility, PairCount
-from compoundkin.structure.model import Body, DrivenPair, Fault, Group, Structure
+from compoundkin.structure.model import Body, DrivenPair, Fault, Group, Passive, Structure
 from compoundkin.structure.naming import roman
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "Loop",
     "Mobility",
     "PairCount",
+    "Passive",
     "Structure",
     "decompose",
     "independent_loops",

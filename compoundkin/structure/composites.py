@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import Pair
-from compoundkin.structure.model import Body, DrivenPair
+from compoundkin.structure.model import Body, DrivenPair, Passive
+from compoundkin.structure.passive import passive_freedoms
 from compoundkin.structure.pins import Pins
 from compoundkin.validation import drivable
 from compoundkin.words import FRAME, Drive
@@ -21,7 +22,7 @@ class Composites:
     """The bodies of a mechanism: the ground, the moving ones in input order, and what closes on itself.
 
     `body_of` maps each link to the index of its moving body, or to GROUND. `closing` are the drives whose
-    links other drives join already.
+    links other drives join already. A link with a passive freedom is one body with the link it is pinned to.
     """
 
     ground: Body
@@ -29,6 +30,7 @@ class Composites:
     pins: Pins
     body_of: dict[str, int]
     closing: tuple[Drive, ...]
+    passive: tuple[Passive, ...]
 
     def body(self, index: int) -> Body:
         """The body of an index as in `body_of`."""
@@ -48,6 +50,12 @@ def composites(mechanism: Mechanism) -> Composites:
         pair = driven_pair(pins, drive)
         neighbours[drive.on].append(DrivenPair(drive, pair, drive.on, drive.link))
         neighbours[drive.link].append(DrivenPair(drive, pair, drive.link, drive.on))
+    passive = tuple(passive_freedoms(mechanism))
+    for spin in passive:
+        pair = pins.pair(spin.at, spin.on, spin.link)
+        drive = Drive(spin.link, spin.link, spin.on, spin.at, 0.0, 0.0)
+        neighbours[spin.on].append(DrivenPair(drive, pair, spin.on, spin.link, is_passive=True))
+        neighbours[spin.link].append(DrivenPair(drive, pair, spin.link, spin.on, is_passive=True))
     ground = _outward(FRAME, neighbours)
     body_of = dict.fromkeys(ground.links, GROUND)
     moving: list[Body] = []
@@ -56,7 +64,7 @@ def composites(mechanism: Mechanism) -> Composites:
             body = _outward(name, neighbours)
             body_of.update(dict.fromkeys(body.links, len(moving)))
             moving.append(body)
-    return Composites(ground, tuple(moving), pins, body_of, tuple(closing))
+    return Composites(ground, tuple(moving), pins, body_of, tuple(closing), passive)
 
 
 def driven_pair(pins: Pins, drive: Drive) -> Pair:

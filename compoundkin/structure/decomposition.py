@@ -52,8 +52,8 @@ def decompose(mechanism: Mechanism) -> Structure:
     groups, faults = _groups(system, matching, coarse)
     faults = [*closed_drives(system), *counted_faults(system, matching, coarse.over, coarse.under), *faults]
     pairs = all_pairs(system, groups)
-    mobility = mobility_of(mechanism, pairs)
-    return Structure(mechanism, pairs, bodies.ground, tuple(groups), mobility, tuple(faults))
+    mobility = mobility_of(mechanism, pairs, bodies.passive)
+    return Structure(mechanism, pairs, bodies.ground, tuple(groups), mobility, tuple(faults), bodies.passive)
 
 
 @dataclass(frozen=True)

@@ -39,9 +39,9 @@ def _closed(system: System, body: Body) -> Iterator[Fault]:
         links = tuple(dict.fromkeys(_between(drives))) or body.links
         excess = _number(amount, "constraint")
         text = f"{_listed(links)}: driven links close on themselves, held by {excess} too many"
-        remedy = f"remove {_of(amount, [*(step.drive.name for step in drives), *closing], 'driver')}"
-        if across:
-            remedy += f" or take apart {_either(list(across))}"
+        names = [*(step.drive.name for step in drives if not step.is_passive), *closing]
+        ways = [f"remove {_of(amount, names, 'driver')}"] if names else []
+        remedy = " or ".join([*ways, *([f"take apart {_either(list(across))}"] if across else [])])
         yield Fault("over", links, amount, text, remedy)
 
 
@@ -121,7 +121,7 @@ def _over(system: System, found: Deficiency) -> Fault:
 
 
 def _over_remedy(amount: int, drives: Sequence[DrivenPair], pairs: Sequence[str]) -> str:
-    names = list(dict.fromkeys(step.drive.name for step in drives))
+    names = list(dict.fromkeys(step.drive.name for step in drives if not step.is_passive))
     free = f"free {_of(amount, pairs, 'coordinate', 'of the pairs')}"
     return f"remove {_of(amount, names, 'driver')} or {free}" if names else f"{free} or take out a link"
 
@@ -152,7 +152,7 @@ def _drivable(system: System, constraint: Constraint) -> Iterator[str]:
     if constraint.letter and len(links) == 1:
         other = system.neighbour(constraint.letter, constraint.sides[1])
         links = (system.carrier(constraint.letter, other), *links)
-    if len(links) == 2 and constraint.pair.free:
+    if len(links) == 2 and constraint.pair.is_drivable:
         kind = "pin " if constraint.letter else ""
         yield f"{links[1]} on {links[0]} ({kind}{constraint.letter or constraint.pair.name})"
 

@@ -49,7 +49,7 @@ def pair_counts(structure: Structure) -> dict[str, int]:
         for name in names:
             counts[name] += 1
     for pair in mechanism.written_pairs:
-        for name in pair.members:
+        for name in pair.members[:2]:
             counts[name] += 1
     return counts
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import Pair
+from compoundkin.structure.model import Passive
+from compoundkin.structure.system import LINK_FREEDOMS
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,8 @@ class PairCount:
 class Mobility:
     """The mobility by the count of Chebyshev and Gruebler: F = 3 (n - 1) - the sum of what the pairs hold.
 
-    A multiple pin of k links counts as k - 1 pairs.
+    A multiple pin of k links counts as k - 1 pairs. Passive freedoms, such as a roller's spin, are no mobility:
+    `passive` of them are subtracted.
 
     >>> count = Mobility(6, (PairCount("R", 2, 6), PairCount("P", 2, 1)), 1)
     >>> count.freedoms, count.is_determinate
@@ -34,11 +37,12 @@ class Mobility:
     links: int
     pairs: tuple[PairCount, ...]
     drivers: int
+    passive: int = 0
 
     @property
     def freedoms(self) -> int:
         """The mobility F."""
-        return 3 * (self.links - 1) - sum(count.held * count.number for count in self.pairs)
+        return 3 * (self.links - 1) - sum(count.held * count.number for count in self.pairs) - self.passive
 
     @property
     def is_determinate(self) -> bool:
@@ -50,10 +54,14 @@ class Mobility:
         """The count with its numbers substituted."""
         held = sorted({count.held for count in self.pairs}, reverse=True)
         total = {h: sum(c.number for c in self.pairs if c.held == h) for h in held}
-        letter = {h: "p" if len(held) == 1 else f"p{h}" for h in held}
+        # a pair's index is the number of freedoms that it leaves
+        letter = {h: "p" if len(held) == 1 else f"p{LINK_FREEDOMS - h}" for h in held}
         symbols = "".join(f" - {_times(h)}{letter[h]}" for h in held)
         numbers = "".join(f" - {h} * {total[h]}" if h > 1 else f" - {total[h]}" for h in held)
         kinds = [f", {letter[h]} = {self._kinds(h)}" for h in held]
+        if self.passive:
+            symbols, numbers = f"{symbols} - f0", f"{numbers} - {self.passive}"
+            kinds.append(f", f0 = {_counted(self.passive, 'passive freedom')}")
         return f"F = 3 (n - 1){symbols} = 3 ({self.links} - 1){numbers} = {self.freedoms}{''.join(kinds)}"
 
     @property
@@ -75,13 +83,13 @@ class Mobility:
         return " + ".join(f"{count.number} {count.code}" for count in self.pairs if count.held == held)
 
 
-def mobility_of(mechanism: Mechanism, pairs: Sequence[Pair]) -> Mobility:
-    """The mobility of a mechanism with all its pairs, those of multiple pins one by one."""
+def mobility_of(mechanism: Mechanism, pairs: Sequence[Pair], passive: Sequence[Passive]) -> Mobility:
+    """The mobility of a mechanism with all its pairs, those of multiple pins one by one, and its passive freedoms."""
     numbers: dict[tuple[str, int], int] = {}
     for pair in pairs:
         numbers[pair.code, pair.held] = numbers.get((pair.code, pair.held), 0) + 1
     counts = tuple(PairCount(code, held, number) for (code, held), number in numbers.items())
-    return Mobility(len(mechanism.links), counts, len(mechanism.drives))
+    return Mobility(len(mechanism.links), counts, len(mechanism.drives), len(passive))
 
 
 def _times(held: int) -> str:

@@ -19,12 +19,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DrivenPair:
-    """One driven pair inside a composite link: `link` is placed from `parent` by the driver's value."""
+    """One driven pair inside a composite link: `link` is placed from `parent` by the driver's value.
+
+    A passive freedom, such as the spin of a roller, is held at zero as by a driver that nobody wrote: `is_passive`.
+    """
 
     drive: Drive
     pair: Pair
     parent: str
     link: str
+    is_passive: bool = False
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,18 @@ class Group:
 
 
 @dataclass(frozen=True)
+class Passive:
+    """A freedom that moves nothing else: `link` may turn about the pin `at` on the link `on`, as a roller does."""
+
+    link: str
+    on: str
+    at: str
+
+    def __str__(self) -> str:
+        return f"{self.link} may turn about {self.at} on {self.on} without moving anything else"
+
+
+@dataclass(frozen=True)
 class Fault:
     """A part that is over- or under-constrained: which links, by how much, and what to add or remove."""
 
@@ -91,6 +107,7 @@ class Structure:
     groups: tuple[Group, ...]
     mobility: Mobility
     faults: tuple[Fault, ...]
+    passive: tuple[Passive, ...] = ()
 
     @cached_property
     def graph(self) -> nx.MultiGraph:

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.poses import FIXED, End
+from compoundkin.pairs.contract import Ends
+from compoundkin.poses import FIXED
 from compoundkin.structure.composites import GROUND
 from compoundkin.structure.system import LINK_FREEDOMS, Constraint, System
 
@@ -106,7 +107,7 @@ class RankTest:
         made: list[Any] = [self.system.freedoms[unknown] for unknown in part.unknowns]
         for c in part.constraints:
             letter = letters.setdefault(c.letter, len(letters))
-            made.append((type(c.pair), letter, *[place.get(side, -1) for side in c.sides]))
+            made.append((c.pair.make_up, letter, *[place.get(side, -1) for side in c.sides]))
         return tuple(made)
 
     def _shape(self, part: Part) -> tuple[int, int]:
@@ -161,13 +162,13 @@ class RankTest:
 def _rows(part: Part) -> Iterator[tuple[Constraint, Matrix]]:
     """Each pair's rows in the world at a generic pose; all links on a pin share its one place."""
     rng = np.random.default_rng(_SEED)
-    pins: dict[str, tuple[End, End]] = {}
+    pins: dict[str, Ends] = {}
     for constraint in part.constraints:
         pair = constraint.pair
         ends = pins.get(constraint.letter) or pair.generic(rng)
         if constraint.letter:
             pins[constraint.letter] = ends
-        yield constraint, np.asarray(pair.jacobian(ends, (FIXED, FIXED)), dtype=float)
+        yield constraint, np.asarray(pair.jacobian(ends, (FIXED,) * len(ends)), dtype=float)
 
 
 def _taking_part(null_space: Matrix, sizes: Sequence[int]) -> list[bool]:

@@ -6,30 +6,48 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.linalg import null_space
 
 import compoundkin as ck
 from compoundkin.geometry import Geometry
 from compoundkin.pairs import KINDS, WRITTEN, Pair
+from compoundkin.pairs.contract import Line
 from compoundkin.poses import FIXED, End, Pose
 from compoundkin.series import Series, constant
 from tests.support import ends_at, largest, random_planar, random_pose, random_real, random_unit, sample
 
 SEEDS = st.integers(0, 2**32 - 1)
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.code for kind in KINDS])
+every_drivable_kind = pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.held == 2], ids=lambda k: k.code)
+
+Ends = tuple[End, ...]
+Poses = tuple[Pose, ...]
 
 
 def pose_at(x: float, y: float, theta: float) -> Pose:
-    return Pose(constant(complex(x, y)), constant(complex(np.cos(theta), np.sin(theta))))
+    return Pose(constant(complex(x, y)), constant(complex(np.cos(theta), np.sin(theta))), constant(theta))
 
 
-def free_ends(pair: Pair, rng: np.random.Generator) -> tuple[End, End]:
+def poses_at(state: np.ndarray) -> Poses:
+    return tuple(pose_at(*part) for part in np.split(state, len(state) // 3))
+
+
+def random_poses(pair: Pair, rng: np.random.Generator, order: int, shape: tuple[int, ...]) -> Poses:
+    return tuple(random_pose(rng, order, shape) for _ in pair.members)
+
+
+def free_ends(pair: Pair, rng: np.random.Generator) -> Ends:
     """Sides that do not close, in the links' frames."""
-    return ends_at(pair, rng, (random_pose(rng, 0, ()), random_pose(rng, 0, ())))
+    return ends_at(pair, rng, random_poses(pair, rng, 0, ()))
 
 
-def relative(pair: Pair, ends: tuple[End, End], state: np.ndarray) -> np.ndarray:
-    poses = (pose_at(*state[:3]), pose_at(*state[3:]))
+def relative(pair: Pair, ends: Ends, state: np.ndarray) -> np.ndarray:
+    poses = poses_at(state)
     return np.array([*[c.c[0] for c in pair.closure(ends, poses)], pair.coordinate(ends, poses).c[0]])
+
+
+def still(poses: Poses) -> Poses:
+    return tuple(Pose(constant(p.z.c[0]), constant(p.u.c[0]), constant(p.angle.c[0])) for p in poses)
 
 
 @every_kind
@@ -37,8 +55,9 @@ def test_says_what_it_is(kind: type[Pair]) -> None:
     pair = sample(kind)
     assert len(kind.code) == 1
     assert 0 < kind.held < 3
-    assert kind.held + len(kind.free) == 3
-    assert len(pair.members) == 2
+    assert kind.held + len(kind.free) <= 3
+    assert len(pair.members) in (2, 3)
+    assert pair.is_drivable == (kind.held == 2)
     assert pair.letters
     assert kind.title.endswith("pair")
     assert len({k.code for k in KINDS}) == len(KINDS)
@@ -54,12 +73,12 @@ def test_jacobian_against_central_differences(kind: type[Pair], seed: int) -> No
     """Not only where the pair is closed, but for the angles, which are sines there."""
     rng = np.random.default_rng(seed)
     pair = sample(kind)
-    state = rng.standard_normal(6)
+    state = rng.standard_normal(3 * len(pair.members))
     ends = free_ends(pair, rng)
-    matrix = pair.jacobian(ends, (pose_at(*state[:3]), pose_at(*state[3:])))
-    assert matrix.shape == (kind.held + 1, 6)
-    for column in range(6):
-        step = np.zeros(6)
+    matrix = pair.jacobian(ends, poses_at(state))
+    assert matrix.shape == (kind.held + 1, len(state))
+    for column in range(len(state)):
+        step = np.zeros(len(state))
         step[column] = 1e-3
         # four points: the error is of order 1e-12 times the fifth derivative
         near = relative(pair, ends, state + step) - relative(pair, ends, state - step)
@@ -74,12 +93,12 @@ def test_jacobian_against_central_differences(kind: type[Pair], seed: int) -> No
 def test_jacobian_of_arrays_is_that_of_each(kind: type[Pair], seed: int) -> None:
     rng = np.random.default_rng(seed)
     pair = sample(kind)
-    poses = (random_pose(rng, 0, (5,)), random_pose(rng, 0, (5,)))
+    poses = random_poses(pair, rng, 0, (5,))
     ends = free_ends(pair, rng)
     together = pair.jacobian(ends, poses)
     for k in range(5):
-        one = tuple(Pose(constant(p.z.c[0][k]), constant(p.u.c[0][k])) for p in poses)
-        alone = pair.jacobian(ends, one)  # type: ignore[arg-type]
+        one = tuple(Pose.of(p.z.c[0][k], p.u.c[0][k]).counted(p.angle.c[0][k]) for p in poses)
+        alone = pair.jacobian(ends, one)
         assert np.allclose(np.broadcast_to(together, (5, *alone.shape))[k], alone, atol=1e-14)
 
 
@@ -89,15 +108,36 @@ def test_rates_of_the_closure_are_jacobian_times_twist(kind: type[Pair], seed: i
     """The series of closure and coordinate against the Jacobian, at first order."""
     rng = np.random.default_rng(seed)
     pair = sample(kind)
-    poses = (random_pose(rng, 1, ()), random_pose(rng, 1, ()))
+    poses = random_poses(pair, rng, 1, ())
     ends = free_ends(pair, rng)
     twist = np.concatenate([[p.z.c[1].real, p.z.c[1].imag, (p.u.c[1] / (1j * p.u.c[0])).real] for p in poses])
     rates = [*[c.c[1] for c in pair.closure(ends, poses)], pair.coordinate(ends, poses).c[1]]
-    still = tuple(Pose(constant(p.z.c[0]), constant(p.u.c[0])) for p in poses)
-    assert np.allclose(pair.jacobian(ends, still) @ twist, rates, atol=1e-12)  # type: ignore[arg-type]
+    assert np.allclose(pair.jacobian(ends, still(poses)) @ twist, rates, atol=1e-12)
 
 
 @every_kind
+@given(seed=SEEDS)
+def test_higher_coefficients_of_the_closure_against_differences(kind: type[Pair], seed: int) -> None:
+    """Coefficients 1 to 3 of closure and coordinate, by a polynomial through the values at neighbouring times."""
+    rng = np.random.default_rng(seed)
+    pair = sample(kind)
+    poses = random_poses(pair, rng, 3, ())
+    ends = free_ends(pair, rng)
+    times = np.linspace(-0.04, 0.04, 9)
+    values = []
+    for t in times:
+        z = [sum(c * t**k for k, c in enumerate(p.z.c)) for p in poses]
+        theta = [sum(c * t**k for k, c in enumerate(p.angle.c)) for p in poses]
+        values.append(relative(pair, ends, np.ravel([[a.real, a.imag, b] for a, b in zip(z, theta, strict=True)])))
+    fitted = np.linalg.solve(np.vander(times, increasing=True), np.unwrap(np.array(values), axis=0))
+    found = [*pair.closure(ends, poses), pair.coordinate(ends, poses)]
+    for column, series in enumerate(found):
+        for k in range(1, 4):
+            c = series.c[k] if k < len(series.c) else 0.0
+            assert abs(c - fitted[k, column]) < 1e-6 * max(1.0, float(np.max(np.abs(fitted[:5, column]))))
+
+
+@every_drivable_kind
 @given(seed=SEEDS)
 def test_placed_closes_the_pair_at_the_coordinate_asked_for(kind: type[Pair], seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -119,25 +159,55 @@ def test_generic_ends_close_and_are_regular(kind: type[Pair], seed: int) -> None
     rng = np.random.default_rng(seed)
     pair = sample(kind)
     ends = pair.generic(rng)
-    closure = pair.closure(ends, (FIXED, FIXED))
+    fixed = (FIXED,) * len(ends)
+    closure = pair.closure(ends, fixed)
     assert len(closure) == kind.held
     assert largest(c.c[0] for c in closure) < 1e-12
-    matrix = pair.jacobian(ends, (FIXED, FIXED))
+    matrix = pair.jacobian(ends, fixed)
     assert np.linalg.matrix_rank(matrix[: kind.held]) == kind.held
     assert np.linalg.matrix_rank(matrix) == kind.held + 1
     assert pair.generic(rng) != ends
+    hash(pair.make_up)
+
+
+@every_kind
+@given(seed=SEEDS)
+def test_motion_about_the_centre_keeps_the_pair_closed(kind: type[Pair], seed: int) -> None:
+    """Whatever the pair leaves free turns about its centre, or about a point of the line that holds it."""
+    rng = np.random.default_rng(seed)
+    pair = sample(kind)
+    ends = pair.generic(rng)
+    fixed = (FIXED,) * len(ends)
+    centre = pair.centre(ends, fixed)
+    rows = pair.jacobian(ends, fixed)
+    if isinstance(centre, Line):
+        free = null_space(rows[: kind.held, 3:6])
+        for column in free.T:  # the twist (vx, vy, w) has its centre at (-vy, vx, w)
+            assert abs(centre.a * -column[1] + centre.b * column[0] + centre.c * column[2]) < 1e-9
+    elif centre is not None and len(ends) == 2:
+        x, y, w = (float(v) for v in centre)
+        twist = np.zeros(3 * len(ends))
+        twist[3:6] = y, -x, w
+        assert np.allclose(rows @ twist, [*[0.0] * kind.held, 1.0], atol=1e-9)
+    elif centre is not None:
+        # relative to the carrier: the first turns at unit rate, the second as the closure asks; both about their axes
+        free = null_space(np.vstack([rows[: kind.held, [2, 5]]]))[:, 0] / rows[-1, 2]
+        free = free / free[0]
+        twists = [np.array([e.point.imag, -e.point.real, 1.0]) * rate for e, rate in zip(ends[:2], free, strict=True)]
+        x, y, w = (float(v) for v in centre)
+        assert np.allclose(twists[1] - twists[0], [y, -x, w], atol=1e-9)
 
 
 @every_kind
 @given(seed=SEEDS)
 def test_the_frame_of_reference_does_not_matter(kind: type[Pair], seed: int) -> None:
-    """Both links carried along by a third motion: the same relative coordinates; pins turn with it."""
+    """All links carried along by another motion: the same relative coordinates; pins turn with it."""
     rng = np.random.default_rng(seed)
     pair = sample(kind)
     ends = free_ends(pair, rng)
-    poses = (random_pose(rng, 3, ()), random_pose(rng, 3, ()))
+    poses = random_poses(pair, rng, 3, ())
     carrier = random_pose(rng, 3, ())
-    moved = (carrier.compose(poses[0]), carrier.compose(poses[1]))
+    moved = tuple(carrier.compose(pose) for pose in poses)
     one, other = pair.coordinate(ends, poses), pair.coordinate(ends, moved)
     turns = 2 * np.pi * np.round((one.c[0] - other.c[0]) / (2 * np.pi)) if kind.free_is_angle else 0.0
     assert abs(one.c[0] - other.c[0] - turns) < 1e-11
@@ -153,21 +223,21 @@ def test_the_links_own_frames_do_not_matter(kind: type[Pair], seed: int) -> None
     rng = np.random.default_rng(seed)
     pair = sample(kind)
     ends = free_ends(pair, rng)
-    poses = (random_pose(rng, 2, ()), random_pose(rng, 2, ()))
-    shift = tuple(random_pose(rng, 0, ()) for _ in range(2))
-    if kind.free_is_angle:  # an angle between links depends on their axes: shift both alike
-        shift = (Pose(shift[0].z, shift[1].u), shift[1])
+    poses = random_poses(pair, rng, 2, ())
+    shift = random_poses(pair, rng, 0, ())
+    if kind.free_is_angle or kind.counts_turns:  # an angle between links depends on their axes: shift all alike
+        shift = tuple(Pose(p.z, shift[1].u, shift[1].theta) for p in shift)
     other_poses = tuple(p.compose(s) for p, s in zip(poses, shift, strict=True))
     other_ends = tuple(s.inverse().carry(e) for s, e in zip(shift, ends, strict=True))
     for a, b in zip(
         (*pair.closure(ends, poses), pair.coordinate(ends, poses)),
-        (*pair.closure(other_ends, other_poses), pair.coordinate(other_ends, other_poses)),  # type: ignore[arg-type]
+        (*pair.closure(other_ends, other_poses), pair.coordinate(other_ends, other_poses)),
         strict=True,
     ):
         assert largest([*[x - y for x, y in zip(a.c[1:], b.c[1:], strict=True)], np.sin(a.c[0] - b.c[0])]) < 1e-10
 
 
-@every_kind
+@every_drivable_kind
 def test_driving_one_link_or_the_other(kind: type[Pair]) -> None:
     pair = sample(kind)
     one, two = pair.members
@@ -268,12 +338,14 @@ def test_series_ends_belong_to_bodies_that_change() -> None:
     rng = np.random.default_rng(1)
     for kind in KINDS:
         pair = sample(kind)
-        local = (random_pose(rng, 2, ()), random_pose(rng, 2, ()))
+        local = random_poses(pair, rng, 2, ())
+        if kind.counts_turns:  # an angle is that of the link itself
+            local = tuple(Pose(p.z, FIXED.u, FIXED.theta) for p in local)
         ends = free_ends(pair, rng)
-        poses = (random_pose(rng, 2, ()), random_pose(rng, 2, ()))
+        poses = random_poses(pair, rng, 2, ())
         carried = tuple(p.carry(e) for p, e in zip(local, ends, strict=True))
         composed = tuple(p.compose(q) for p, q in zip(poses, local, strict=True))
-        closure = zip(pair.closure(carried, poses), pair.closure(ends, composed), strict=True)  # type: ignore[arg-type]
+        closure = zip(pair.closure(carried, poses), pair.closure(ends, composed), strict=True)
         assert largest(a - b for s, t in closure for a, b in zip(s.c, t.c, strict=True)) < 1e-12
 
 

@@ -82,7 +82,7 @@ def test_formula_and_verdict(bars):
     assert mobility.formula == "F = 3 (n - 1) - 2 p = 3 (6 - 1) - 2 * 7 = 1, p = 7 R"
     assert mobility.verdict == "mobility 1 and 1 driver: the motion is determined"
     geared = Mobility(3, (PairCount("R", 2, 2), PairCount("gear", 1, 1)), 0)
-    assert geared.formula == ("F = 3 (n - 1) - 2 p2 - p1 = 3 (3 - 1) - 2 * 2 - 1 = 1, p2 = 2 R, p1 = 1 gear")
+    assert geared.formula == ("F = 3 (n - 1) - 2 p1 - p2 = 3 (3 - 1) - 2 * 2 - 1 = 1, p1 = 2 R, p2 = 1 gear")
     assert Mobility(1, (), 0).formula == "F = 3 (n - 1) = 3 (1 - 1) = 0"
     four_bar = Mobility(4, (PairCount("R", 2, 4),), 4)
     assert four_bar.verdict == "mobility 1 and 4 drivers: 3 drivers are too many"
