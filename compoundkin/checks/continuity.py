@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.checks.model import Finding, worst
 from compoundkin.motion import Motion
 from compoundkin.motion.inputs import Inputs
-from compoundkin.motion.plan import Run
+from compoundkin.motion.run import Run
 from compoundkin.series import Number
 
 # A step may differ by this much (radians, or parts of the size) from the mean of the slopes at its ends: other

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.checks.model import Finding, worst
 from compoundkin.motion import Motion
-from compoundkin.motion.plan import places
+from compoundkin.motion.run import places
 from compoundkin.poses import Pose
 from compoundkin.series import Number
 
@@ -78,12 +78,15 @@ def _largest(motion: Motion, k: int) -> Number:
 
 
 def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
-    """The poses at a time (designs x poses) from those of the motion, the drivers following their rates."""
+    """The poses at a time (designs x poses) from those of the motion, the drivers following their rates.
+
+    Rates beyond the motion's order are left out: they do not belong to the series that tells its time scale.
+    """
     given = motion.inputs
     drives = {}
     for name, values in given.drives.items():
         moved: Number = values[0]
-        for k, rate in enumerate(values[1:], start=1):
+        for k, rate in enumerate(values[1 : motion.order + 1], start=1):
             moved = moved + rate * time**k / factorial(k)
         drives[name] = (moved,)
     everywhere = places(slice(0, given.designs), slice(0, given.poses))

@@ -20,6 +20,8 @@ from compoundkin.series import Number, Series
 # Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
 # over the groups of the solving order, and near a limit position by the inverse of the distance from it.
 TOLERANCE = 1e-9
+# Dimensions that must fit although nothing holds them are given to some five digits.
+FITS = 1e-5
 ORDERS = ("closure", "velocity", "acceleration", "jerk")
 # A pose slower than this part of the motion's fastest is judged by that: a mechanism at rest has no own scale.
 SLOWEST = 1e-6
@@ -33,6 +35,25 @@ def residuals(motion: Motion) -> Iterator[Finding]:
         for name, parts in _parts(motion, k):
             relative = {label: residual / scale for label, residual in parts.items()}
             yield worst(motion, name, TOLERANCE, relative, counted)
+    fits = dict(_misfits(motion))
+    if fits:
+        scale = _scale(motion, 0, motion.failed == 0)
+        relative = {_off(name, gap): gap / scale for name, gap in fits.items()}
+        yield worst(motion, "fit of racks and wheels", FITS, relative, motion.failed == 0)
+
+
+def _misfits(motion: Motion) -> Iterator[tuple[str, Number]]:
+    """By pair, how far a length is off that no pair holds, such as a pinion's distance from its rack."""
+    for name, pair in motion.tracker.plan.pairs.items():
+        misfit = pair.misfit(motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members))
+        if misfit is not None:
+            yield name, np.abs(misfit.c[0])
+
+
+def _off(name: str, gap: Number) -> str:
+    """A pair's name with the length by which it is off, where it is."""
+    worst_gap = float(np.nanmax(gap, initial=0.0))
+    return f"{name}, off by {worst_gap:.6g}"
 
 
 def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:

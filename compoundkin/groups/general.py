@@ -83,7 +83,7 @@ class General:
 
     def state(self, bodies: list[Pose]) -> Number:
         """The state of bodies' poses, at their leading coefficients."""
-        parts = [v for b in bodies for v in (b.z.c[0].real, b.z.c[0].imag, np.angle(b.u.c[0]))]
+        parts = [v for b in bodies for v in (b.z.c[0].real, b.z.c[0].imag, b.angle.c[0])]
         return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
     def newton(self, state: Number, setting: Setting, steps: int = STEPS) -> Solution:

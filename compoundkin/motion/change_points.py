@@ -15,7 +15,8 @@ import numpy as np
 from compoundkin.motion.continuation import CLOSE
 from compoundkin.motion.home import between
 from compoundkin.motion.inputs import Inputs
-from compoundkin.motion.plan import DyadStep, blocks, places
+from compoundkin.motion.run import blocks, places
+from compoundkin.motion.steps import DyadStep
 from compoundkin.motion.tracking import Tracker
 from compoundkin.poses import Pose
 from compoundkin.series import Number

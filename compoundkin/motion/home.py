@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -38,6 +39,33 @@ def approach(
     ramp = np.linspace(-1.0, 0.0, count)[None] if count > 1 else np.zeros((1, 1))
     lead = end.driven({name: (rest[0] + ways[name] * ramp,) for name, rest in end.drives.items()})
     return lead.of_poses(count), at, at + _side(given, at, ways) * CLOSE
+
+
+def recounted(plan: Plan, ways: tuple[Inputs, ...], home: Inputs) -> tuple[Inputs, ...]:
+    """The motion and its lead with phases read off a drawing taken on by the turns that drivers have made at home.
+
+    A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
+    """
+    turns = dict(_turns_at(plan, home))
+    ends = dict(home.ends)
+    for pair in (pair for pair in plan.pairs.values() if pair.counts_turns):
+        ahead = tuple(turns.get(name, 0.0) for name in pair.members)
+        if any(np.any(turn != 0.0) for turn in ahead):
+            ends[pair.name] = pair.turned(ways[0].ends[pair.name], plan.structure.mechanism.geometry, ahead)
+    return tuple(replace(way, ends={**way.ends, **{k: ends[k] for k in ends if ends[k] is not home.ends[k]}})
+                 for way in ways)  # fmt: skip
+
+
+def _turns_at(plan: Plan, home: Inputs) -> Iterator[tuple[str, Number]]:
+    """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
+    drawn = plan.structure.mechanism.geometry.drawn
+    start = plan.start(home.ends, home.series(0), 0)
+    for body in plan.bodies:
+        base = body.links[0]
+        for link in (link for link in body.links[1:] if link in drawn and base in drawn and link in plan.turning):
+            pose = start.world.get(link) or start.setting.local[link]
+            gap = column(drawn[base]).angle.c[0] + pose.angle.c[0] - column(drawn[link]).angle.c[0]
+            yield link, np.round(gap / (2.0 * np.pi))
 
 
 def _drawn_value(
@@ -98,4 +126,5 @@ def first_of(value: Number) -> Number:
 
 def column(pose: Pose) -> Pose:
     """A pose at the first pose of each design."""
-    return Pose(constant(first_of(pose.z.c[0])), constant(first_of(pose.u.c[0])))
+    theta = None if pose.theta is None else constant(first_of(pose.theta.c[0]))
+    return Pose(constant(first_of(pose.z.c[0])), constant(first_of(pose.u.c[0])), theta)

@@ -12,7 +12,10 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.mechanism import Mechanism
-from compoundkin.motion.plan import Plan, rates
+from compoundkin.motion.plan import Plan
+from compoundkin.motion.run import rates
+from compoundkin.motion.timing import timed
+from compoundkin.pairs.contract import Ends
 from compoundkin.poses import End
 from compoundkin.series import Number, Series
 from compoundkin.words import Drive
@@ -30,7 +33,7 @@ class Inputs:
     """
 
     shape: tuple[int, ...]
-    ends: Mapping[str, tuple[End, End]]
+    ends: Mapping[str, Ends]
     drives: Mapping[str, tuple[Number, ...]]
 
     @property
@@ -64,6 +67,13 @@ class Inputs:
         slopes = {k: (between.drives[k][0], _slope(v[0], i)) for k, v in self.drives.items()}
         return replace(between, drives=slopes)
 
+    def refined(self, per_pose: int) -> Inputs:
+        """The motion with samples between its poses, `per_pose` a pose."""
+        if per_pose == 1 or self.poses == 1:
+            return self
+        count = (self.poses - 1) * per_pose + 1
+        return self.at(np.linspace(0.0, self.poses - 1.0, count)).of_poses(count)
+
     def pick(self, designs: Number, s: Number) -> Inputs:
         """One pose of each of the given designs, at its own place `s`: a column of poses."""
         i = np.clip(np.floor(s).astype(int), 0, max(self.poses - 2, 0))
@@ -89,7 +99,7 @@ class Inputs:
     def _each(self, change: Any) -> Inputs:
         ends = self.ends
         if not self._rigid:
-            ends = {name: (_map(a, change), _map(b, change)) for name, (a, b) in ends.items()}
+            ends = {name: tuple(_map(end, change) for end in sides) for name, sides in ends.items()}
         return replace(self, ends=ends, drives={k: tuple(change(v) for v in vs) for k, vs in self.drives.items()})
 
 
@@ -99,41 +109,55 @@ def inputs(
     speed: Any,
     acceleration: Any,
     jerk: Any,
+    times: Number | None = None,
 ) -> Inputs:
-    """The inputs of a solution; raises InvalidInput for unknown drivers or shapes that do not fit."""
+    """The inputs of a solution, in time where `times` are given (see `timing`).
+
+    Raises InvalidInput for unknown drivers or shapes that do not fit.
+    """
     mechanism = plan.structure.mechanism
-    if values is not None and not isinstance(values, Mapping):
-        if len(mechanism.drives) != 1:
-            raise InvalidInput(Problem("values", "there is more than one driver", "name them: {'driver': ...}"))
-        values = {mechanism.drives[0].name: values}
-    given = {
-        drive.name: _driver(plan, drive, values, speed, acceleration, jerk, len(mechanism.drives) == 1)
-        for drive in mechanism.drives
-    }
-    _only_known(mechanism, {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk})
+    asked = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk}
+    _only_known(mechanism, asked)
+    given = {drive.name: _driver(plan, drive, asked, times) for drive in mechanism.drives}
     shape = _shape(plan, given)
     fitted = fit(shape)
     return Inputs(
         shape,
-        {k: (_map(a, fitted), _map(b, fitted)) for k, (a, b) in plan.ends.items()},
+        {k: tuple(_map(end, fitted) for end in ends) for k, ends in plan.ends.items()},
         {k: tuple(fitted(v) for v in vs) for k, vs in given.items()},
     )
 
 
-def _driver(
-    plan: Plan, drive: Drive, values: Mapping[str, Any] | None, speed: Any, acceleration: Any, jerk: Any, only: bool
-) -> tuple[Number, ...]:
-    value = (values or {}).get(drive.name, drive.values)
+def by_name(mechanism: Mechanism, values: Any) -> Mapping[str, Any] | None:
+    """The values of the drivers by name, those of the only one also without; raises InvalidInput."""
+    if values is None or isinstance(values, Mapping):
+        return values
+    if len(mechanism.drives) != 1:
+        raise InvalidInput(Problem("values", "there is more than one driver", "name them: {'driver': ...}"))
+    return {mechanism.drives[0].name: values}
+
+
+def _driver(plan: Plan, drive: Drive, asked: Mapping[str, Any], times: Number | None) -> tuple[Number, ...]:
+    """Value, speed, acceleration and jerk of a driver."""
+    value = (asked["values"] or {}).get(drive.name, drive.values)
     if value is None:
-        pair = plan.driven[drive.name].pair
-        if not pair.free_is_angle:
-            raise InvalidInput(
-                Problem(f"drives.{drive.name}", "it has no values", f"solve(..., {{{drive.name!r}: lengths}})")
-            )
-        value = FULL_TURN
-    rest = [_rate(drive, what, default, only) for what, default in
-            ((speed, drive.speed), (acceleration, drive.acceleration), (jerk, drive.jerk))]  # fmt: skip
-    return tuple(_number(f"{drive.name}", v) for v in (value, *rest))
+        value = _unsaid(plan, drive) if times is None else 0.0
+    only = len(plan.driven) == 1
+    rest = [_rate(drive, asked[key], getattr(drive, key), only) for key in ("speed", "acceleration", "jerk")]
+    given = tuple(_number(f"{drive.name}", v) for v in (value, *rest))
+    if times is None:
+        return given
+    called = {key: drive.name in what if isinstance(what, Mapping) else what is not None for key, what in asked.items()}
+    return timed(drive, given, times, called)
+
+
+def _unsaid(plan: Plan, drive: Drive) -> Number:
+    """The values of a driver that is given none: a full turn."""
+    if not plan.driven[drive.name].pair.free_is_angle:
+        raise InvalidInput(
+            Problem(f"drives.{drive.name}", "it has no values", f"solve(..., {{{drive.name!r}: lengths}})")
+        )
+    return FULL_TURN
 
 
 def _rate(drive: Drive, what: Any, default: Number, only: bool) -> Any:
@@ -192,7 +216,7 @@ def _shape(plan: Plan, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, .
 
 
 def _map(end: End, change: Any) -> End:
-    return End(change(end.point), None if end.direction is None else change(end.direction))
+    return End(*(None if value is None else change(value) for value in end))
 
 
 def fit(shape: tuple[int, ...]) -> Callable[[Number], Number]:
@@ -200,7 +224,7 @@ def fit(shape: tuple[int, ...]) -> Callable[[Number], Number]:
     designs = prod(shape[:-1])
 
     def fitted(value: Number) -> Number:
-        if isinstance(value, (complex, float)):
+        if isinstance(value, (complex, float, int)):
             return value
         if np.ndim(value) == 0:
             return value.item()

@@ -98,13 +98,14 @@ class LinkMotion:
 
     def _rate(self, k: int) -> Number:
         self._motion._has(k)
-        rate = self._turning.derivative(k - 1) if k else np.angle(self._pose.u.c[0])
-        return self._motion._known(rate)
+        if k:
+            return self._motion._known(self._turning.derivative(k - 1))
+        return self._motion._known(self._pose.angle.c[0])
 
     @cached_property
     def angle(self) -> Number:
-        """The angle of its x axis, radians, unwrapped along the motion."""
-        return unwrapped(self._rate(0))
+        """The angle of its x axis, radians, unwrapped along the motion; of a driven link or a gear as it is counted."""
+        return unwrapped(self._rate(0)) if self._pose.theta is None else self._rate(0)
 
     @property
     def angular_velocity(self) -> Number:
@@ -135,9 +136,12 @@ class LinkMotion:
 class PairMotion:
     """The free relative coordinate of a pair: an angle (radians, unwrapped) or a displacement, and its rates."""
 
-    def __init__(self, motion: Motion, coordinate: Series, is_angle: bool, prescribed: bool = False) -> None:
+    def __init__(
+        self, motion: Motion, coordinate: Series, is_angle: bool, prescribed: bool = False, counted: bool = False
+    ) -> None:
         self._motion = motion
         self._prescribed = prescribed
+        self._counted = counted or prescribed
         self.coordinate = coordinate
         self.is_angle = is_angle
 
@@ -146,7 +150,7 @@ class PairMotion:
         self._motion._has(k)
         value = self.coordinate.derivative(k)
         value = self._motion._shaped(value) if self._prescribed else self._motion._known(value)
-        return unwrapped(value) if k == 0 and self.is_angle else value
+        return unwrapped(value) if k == 0 and self.is_angle and not self._counted else value
 
     @property
     def value(self) -> Number:
@@ -207,6 +211,7 @@ class Motion:
     poses: Mapping[str, Pose]
     failed: Number  # shape (designs, poses): index of the first group that does not close plus one, or 0
     tracker: Tracker
+    time: Number | None = None  # the times (seconds) of a motion in time; broadcasts with its shape
 
     @property
     def mechanism(self) -> Mechanism:
@@ -270,15 +275,16 @@ class Motion:
         def put(series: Series, other: Series) -> Series:
             out = []
             for k in range(self.order + 1):
-                full = np.array(np.broadcast_to(series.c[k] if k < len(series.c) else 0j, shape))
-                full[designs, index] = np.ravel(other.c[k]) if k < len(other.c) else 0j
+                full = np.array(np.broadcast_to(series.c[k] if k < len(series.c) else 0.0 * series.c[0], shape))
+                full[designs, index] = np.ravel(other.c[k]) if k < len(other.c) else 0.0
                 out.append(full)
             return Series(tuple(out))
 
-        mended = {
-            n: FIXED if n == FRAME else Pose(put(p.z, poses[n].z), put(p.u, poses[n].u)) for n, p in self.poses.items()
-        }
-        return replace(self, poses=mended)
+        def mended(pose: Pose, other: Pose) -> Pose:
+            known = pose.theta is not None and other.theta is not None
+            return Pose(put(pose.z, other.z), put(pose.u, other.u), put(pose.angle, other.angle) if known else None)
+
+        return replace(self, poses={n: FIXED if n == FRAME else mended(p, poses[n]) for n, p in self.poses.items()})
 
     def _point(self, name: str) -> PointMotion:
         link = self.mechanism.carriers[name][0]
@@ -292,8 +298,9 @@ class Motion:
     def _pair(self, name: str) -> PairMotion:
         pair = self._plan.pairs[name]
         ends = self.inputs.ends[name]
-        coordinate = pair.coordinate(ends, (self.poses[pair.members[0]], self.poses[pair.members[1]]))
-        return PairMotion(self, coordinate, pair.free_is_angle)
+        poses = tuple(self.poses[member] for member in pair.members)
+        counted = all(pose.theta is not None for pose in poses)
+        return PairMotion(self, pair.coordinate(ends, poses), pair.free_is_angle, counted=counted)
 
     def _drive(self, name: str) -> PairMotion:
         is_angle = self._plan.driven[name].pair.free_is_angle

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,9 +13,11 @@ from compoundkin.errors import InvalidInput, NotDetermined, Problem, Unassembled
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion.change_points import NEAR, near_groups, pass_through, rates_at
 from compoundkin.motion.gathering import Gathering
-from compoundkin.motion.inputs import Inputs, inputs
+from compoundkin.motion.inputs import Inputs, by_name, inputs
 from compoundkin.motion.model import HIGHEST_ORDER, Motion
-from compoundkin.motion.plan import Plan, Run, blocks, places
+from compoundkin.motion.plan import Plan
+from compoundkin.motion.run import Run, blocks, places
+from compoundkin.motion.timing import times_of
 from compoundkin.motion.tracking import Tracker, read_hint
 from compoundkin.structure import decompose
 from compoundkin.structure.model import Structure
@@ -30,6 +33,7 @@ def solve(
     mechanism: Mechanism | Structure,
     values: Mapping[str, Any] | None = None,
     *,
+    time: Any = None,
     speed: Any = None,
     acceleration: Any = None,
     jerk: Any = None,
@@ -42,6 +46,11 @@ def solve(
     `values` gives each driver's coordinate (radians or lengths; arrays, the last axis the motion); `speed`,
     `acceleration`, `jerk` its rates, a number for a single driver or a mapping by name. What is not given
     comes from the mechanism's drives; a driver of a pin without values makes a full turn.
+
+    In time: at the times `time` (seconds, any order; the last axis is the motion) drivers with a law are where it
+    takes them, with its derivatives; others move from their single value (0 where they have none) by their speed,
+    acceleration and jerk. Where `time` is not given, drivers with laws that are given no values move at the mechanism's
+    own times, else over the range on which their laws agree.
 
     The assembly mode of each group is that of `modes` (a link of the group: +1 or -1), else the one nearest
     to `hint` (points near their places at the first pose), else nearest to the mechanism's drawing, else +1.
@@ -60,9 +69,11 @@ def solve(
         )
     plan = _plan_of(mechanism)
     with np.errstate(all="ignore"):
-        given = inputs(plan, values, speed, acceleration, jerk)
+        values = by_name(plan.structure.mechanism, values)
+        times = times_of(plan.structure.mechanism, values, time)
+        given = inputs(plan, values, speed, acceleration, jerk, times)
         tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint))
-        motion = _settled(plan, given, tracker, order)
+        motion = replace(_settled(plan, tracker.given, tracker, order), time=times)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         text = (

@@ -9,7 +9,9 @@ import numpy as np
 from compoundkin.errors import NotAssembled, Problem
 from compoundkin.geometry import fitted_pose
 from compoundkin.motion.home import column, first_of
-from compoundkin.motion.plan import GeneralStep, Plan, Run, Step
+from compoundkin.motion.plan import Plan
+from compoundkin.motion.run import Run
+from compoundkin.motion.steps import GeneralStep, Step
 from compoundkin.poses import Pose
 from compoundkin.series import Number
 from compoundkin.words import FRAME
@@ -89,7 +91,13 @@ def _guesses(plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Numbe
     points = plan.structure.mechanism.geometry.points
     seen = {k: run.world[n].at(first_of(p)).c[0] for n in step.group.uses for k, p in points[n].items()}
     seen.update({k: first_of(p) for k, p in sketch.items()})
-    return [fitted_pose({k: first_of(p) for k, p in points[b.links[0]].items()}, seen) for b in step.group.bodies]
+    drawn = plan.structure.mechanism.geometry.drawn
+    found = []
+    for base in (body.links[0] for body in step.group.bodies):
+        pose = fitted_pose({k: first_of(p) for k, p in points[base].items()}, seen)
+        # pairs that count turns take the drawn angle, which at half a turn may have either sign
+        found.append(pose.counted(column(drawn[base]).angle.c[0]) if pose and base in drawn else pose)
+    return found
 
 
 def _starts(plan: Plan, step: GeneralStep, guesses: list[Pose | None]) -> Iterator[Number]:

@@ -9,10 +9,12 @@ import numpy as np
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.groups.contract import clipped_root, double_root, nearest_root
 from compoundkin.motion.continuation import CLOSE, Path, track
-from compoundkin.motion.home import approach
+from compoundkin.motion.home import approach, recounted
 from compoundkin.motion.inputs import Inputs
-from compoundkin.motion.plan import AffineStep, DyadStep, Plan, Run
+from compoundkin.motion.plan import Plan
+from compoundkin.motion.run import Run
 from compoundkin.motion.starting import distance, first_state, shown
+from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep
 from compoundkin.motion.turns import Turns, turns_of
 from compoundkin.series import Number
 from compoundkin.words import vector
@@ -38,6 +40,9 @@ class Tracker:
         self.lead_flips: dict[int, Number] = {}
         self.flips: dict[int, Number] = {}
         self.lead, self.at, self.home = approach(plan, given, self.drawn, {} if hint else geometry.sketch)
+        if plan.turning and geometry.drawn:
+            home = self.lead.cut(slice(None), slice(0, 1))
+            self.given, self.lead = recounted(plan, (given, self.lead), home)
         self._fixed = signs
         if self.sketch or plan.general or plan.turning:
             self.choose()
@@ -65,7 +70,7 @@ class Tracker:
         paths = self.leads if lead else self.paths
         run = self.plan.start(part.ends, part.series(order), order)
         for k, step in enumerate(self.plan.steps[:upto]):
-            if isinstance(step, DyadStep):
+            if isinstance(step, DyadStep | FollowerStep):
                 sign = self.sign(k, designs, s, lead)
                 step.run(run, sign, double_root(doubles[k]) if doubles and k in doubles else clipped_root)
             elif isinstance(step, AffineStep):
@@ -95,7 +100,7 @@ class Tracker:
         home = self.lead.cut(slice(None), slice(0, 1))
         run = self.plan.start(home.ends, home.series(0), 0)
         for k, step in enumerate(self.plan.steps):
-            if isinstance(step, DyadStep):
+            if isinstance(step, DyadStep | FollowerStep):
                 self.signs[k] = self._sign(k, step, run)
                 step.run(run, self.signs[k], nearest_root)
             elif isinstance(step, AffineStep):
@@ -110,9 +115,9 @@ class Tracker:
             for link in step.group.links:
                 if link in self.plan.turning and run.world[link].theta is None:
                     self.turns[link] = turns_of(self, k, link)
-                    run.world[link] = run.world[link].counted(np.angle(run.world[link].u.c[0]))
+                    run.world[link] = run.world[link].counted(self.turns[link].lead[:, :1])
 
-    def _sign(self, k: int, step: DyadStep, run: Run) -> Number:
+    def _sign(self, k: int, step: DyadStep | FollowerStep, run: Run) -> Number:
         """The mode whose points lie nearest to the drawn ones."""
         if k in self._fixed or step.kernel.modes == 1:
             self.chosen_by[k] = "sign" if k in self._fixed else "only one"

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compoundkin.motion.home import between
+from compoundkin.motion.home import between, column
 from compoundkin.motion.inputs import Inputs
-from compoundkin.motion.plan import blocks, places
+from compoundkin.motion.run import blocks, places
 from compoundkin.series import Number
 
 if TYPE_CHECKING:
@@ -39,10 +39,12 @@ class Turns:
 
 
 def turns_of(tracker: Tracker, k: int, link: str) -> Turns:
-    """Follow the angle of a link of group `k` from home, where it lies between -pi and pi."""
+    """Follow the angle of a link of group `k` from home, where it is nearest to the drawn one or between -pi and pi."""
     given = tracker.given
     on_lead = _angles(tracker, k, link, tracker.lead, 1.0, lead=True)
-    on_lead = _unwrapped(on_lead, 0, on_lead[:, 0])
+    drawn = tracker.plan.structure.mechanism.geometry.drawn.get(link)
+    first = on_lead[:, 0] if drawn is None else np.ravel(column(drawn).angle.c[0])
+    on_lead = _unwrapped(on_lead, 0, first)
     per_pose = max(1, between(tracker.plan, given))
     for _ in range(DOUBLINGS):
         angles = _angles(tracker, k, link, given.refined(per_pose), 1.0 / per_pose, lead=False)

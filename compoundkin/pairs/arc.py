@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
-from compoundkin.pairs.contact import Contact, Touch, named_problems
+from compoundkin.pairs.contact import Contact, Touch, named_problems, row
 from compoundkin.pairs.contract import Ends, Equivalent, Poses
 from compoundkin.pairs.revolute import Revolute
 from compoundkin.poses import End
@@ -19,7 +19,7 @@ from compoundkin.series import Number, Series
 
 
 @dataclass(frozen=True, eq=False)
-class Arc(Contact):
+class ArcSlot(Contact):
     """The point `at` of `link` runs along a circular slot in the link `on`: on the circle of `radius` about `centre`.
 
     A roller on a round disc is the same with the sum of both radii. Held: the distance of the pin from the circle.
@@ -59,7 +59,7 @@ class Arc(Contact):
         if not np.all(np.asarray(self.radius) > 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a positive length")
 
-    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Arc:
+    def completed(self, links: Mapping[str, tuple[str, ...]]) -> ArcSlot:
         """With the only point of its link as the pin, where none is named."""
         points = links.get(self.link, ())
         return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
@@ -76,12 +76,11 @@ class Arc(Contact):
         length = arm.abs2().sqrt()
         return Touch(pin, arm / length, length - ends[0].measure)
 
-    def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, Number, Number]:
-        """The pin's velocity along the circle, by its distance from the centre."""
+    def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
+        """The pin passes along the circle, by its distance from the centre."""
         pin = poses[1].at(ends[1].point).c[0]
         arm = pin - poses[0].at(ends[0].point).c[0]
-        length = np.abs(arm)
-        return pin, 1j * arm / length, 1.0 / length
+        return row(poses, pin, 1j * arm / np.abs(arm) ** 2)
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """The direction from the centre to the pin."""
@@ -108,10 +107,10 @@ class Arc(Contact):
         return self.at if link == self.link else self.centre_at
 
 
-def arc(link: str, *, on: str, centre: str, radius: Number, at: str = "", name: str = "") -> Arc:
+def arc(link: str, *, on: str, centre: str, radius: Number, at: str = "", name: str = "") -> ArcSlot:
     """A pin in a circular slot: the point `at` of `link` keeps the distance `radius` from the point `centre` of `on`.
 
     >>> arc("rocker", on="frame", at="B", centre="C", radius=40).letters
     ('B', 'C')
     """
-    return Arc(name or f"{link}/{on}", link, on, at, centre, radius)
+    return ArcSlot(name or f"{link}/{on}", link, on, at, centre, radius)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
-from typing import ClassVar, NamedTuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import ClassVar, NamedTuple, TypeAlias
+
+import numpy as np
 
 from compoundkin.errors import Problem, nearest
-from compoundkin.pairs.contract import Ends, Line, Pair, Poses, table
+from compoundkin.pairs.contract import Ends, Freedom, Line, Pair, Poses, table
 from compoundkin.poses import Pose
 from compoundkin.series import Number, Series
 
@@ -41,8 +43,8 @@ class Contact(Pair):
         """Where the two links touch; away from contact, where they are nearest."""
 
     @abstractmethod
-    def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, Number, Number]:
-        """A place, a direction and a factor: the coordinate's rate is the factor times the sliding velocity there."""
+    def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
+        """The derivatives of the coordinate by each link's x, y, theta: a row of the Jacobian."""
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """The distance along the common normal."""
@@ -51,8 +53,7 @@ class Contact(Pair):
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Rows of the distance and of the sliding."""
         place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
-        at, along, factor = self.sliding(ends, poses)
-        return table(_row(poses, place, normal), tuple(entry * factor for entry in _row(poses, at, along)))
+        return table(row(poses, place, normal), self.sliding(ends, poses))
 
     def centre(self, ends: Ends, poses: Poses) -> Line:
         """On the common normal."""
@@ -60,8 +61,85 @@ class Contact(Pair):
         return Line(-normal.imag, normal.real, place.real * normal.imag - place.imag * normal.real)
 
 
-def _row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
-    """By how much the second link passes the first one at a place, in a direction, for each link's x, y, theta."""
+class Path(NamedTuple):
+    """The way of a point past a profile as a body's coordinate grows, in the profile's frame.
+
+    It starts at `start` and turns about `centre`; or, where it is `straight`, goes in the direction `centre`. `sense` is
+    how it goes there as the coordinate grows. All but `straight` are numbers or arrays.
+    """
+
+    straight: bool
+    start: Number
+    centre: Number
+    sense: Number
+
+    def level(self, place: Number) -> Number:
+        """What is zero where a place is on the way."""
+        if self.straight:
+            gap = place - self.start
+            return self.centre.real * gap.imag - self.centre.imag * gap.real
+        gap, arm = place - self.centre, self.start - self.centre
+        return (gap.real**2 + gap.imag**2) - (arm.real**2 + arm.imag**2)
+
+    def coordinate(self, place: Number, middle: complex) -> Number:
+        """The coordinate at a place on the way; an angle is within half a turn of that of the `middle`."""
+        if self.straight:
+            gap = place - self.start
+            return self.sense * (self.centre.real * gap.real + self.centre.imag * gap.imag)
+        arm = self.start - self.centre
+        return self.sense * nearest_angle((place - self.centre) / arm, (middle - self.centre) / arm)
+
+
+def nearest_angle(of: Number, middle: Number) -> Number:
+    """The angle of a vector, within half a turn of that of another one."""
+    return np.angle(of / middle) + np.angle(middle)
+
+
+def path_of(frame: Pose, point: Number, own: int, freedom: Freedom) -> Path:
+    """The way of a point of the world past a profile's frame, as its body moves (own 1) or that of the profile (0)."""
+    back = np.conjugate(frame.u.c[0])
+    straight = freedom.about is None
+    centre = back * (freedom.along if straight else freedom.about - frame.z.c[0])
+    return Path(straight, back * (point - frame.z.c[0]), centre, freedom.sense if own else -freedom.sense)
+
+
+# Poses times samples that are looked at together: their arrays stay in a second-level cache.
+TOGETHER = 1 << 17
+
+# A function of numbers at poses and of samples of a profile, broadcast together.
+Look: TypeAlias = Callable[[Sequence[Number], Sequence[Number]], Number]
+
+
+def outermost(
+    level: Look, coordinate: Look, numbers: Sequence[Number], samples: Sequence[Number], closed: bool
+) -> tuple[Number, Number]:
+    """The least and the greatest coordinate at which a level passes zero between two samples; NaN where none does.
+
+    `numbers` are arrays of the poses' shape, `samples` what belongs to each sample of the profile.
+    """
+    shape = np.broadcast_shapes(*(np.shape(v) for v in numbers))
+    flat = [np.broadcast_to(v, shape).ravel() for v in numbers]
+    around = [np.append(v, v[:1]) if closed else v for v in samples]
+    least, greatest = np.full(flat[0].size, np.inf), np.full(flat[0].size, -np.inf)
+    step = max(1, TOGETHER // around[0].size)
+    for first in range(0, least.size, step):
+        found = level([v[first : first + step, None] for v in flat], [v[None] for v in around])
+        pose, side = np.nonzero((found[:, :-1] <= 0) != (found[:, 1:] <= 0))
+        before, after = found[pose, side], found[pose, side + 1]
+        share = before / (before - after)
+        pose = pose + first
+        at = coordinate([v[pose] for v in flat], [v[side] + share * (v[side + 1] - v[side]) for v in around])
+        np.minimum.at(least, pose, at)
+        np.maximum.at(greatest, pose, at)
+    least, greatest = (np.where(np.isfinite(v), v, np.nan).reshape(shape) for v in (least, greatest))
+    return least, greatest
+
+
+def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
+    """By how much the second link passes the first one at a place, in a direction, by each link's x, y, theta.
+
+    `along` is a unit vector, or one whose length is a factor.
+    """
     first, second = (along.real * arm.real + along.imag * arm.imag for arm in _arms(poses, place))
     return -along.real, -along.imag, -first, along.real, along.imag, second
 

@@ -55,6 +55,15 @@ class Equivalent(NamedTuple):
     ends: Mapping[str, Ends]
 
 
+class Freedom(NamedTuple):
+    """How a body moves as a coordinate grows at unit rate: about a point of the world, `sense` +1 counterclockwise; or,
+    where `about` is None, in the direction `along`."""
+
+    about: Number
+    along: Number
+    sense: Number
+
+
 class Pair(ABC):
     """A kinematic pair between two links, or two and their carrier; kinds are frozen dataclasses, one file each."""
 
@@ -64,6 +73,8 @@ class Pair(ABC):
     free: ClassVar[tuple[str, ...]]  # the names of the others; the first is its `coordinate`
     free_is_angle: ClassVar[bool]  # whether the coordinate is an angle (else a length)
     counts_turns: ClassVar[bool] = False  # whether it asks for its members' angles with full turns
+    is_simple: ClassVar[bool] = False  # whether its coordinate only turns a member about a point, or only shifts it
+    leads: ClassVar[bool] = False  # whether it leads a member along a profile, so that it has `meetings`
     table: ClassVar[str] = ""  # its table in a mechanism file; "" for pairs that are not written out
     keys: ClassVar[tuple[Key, ...]] = ()
 
@@ -154,6 +165,25 @@ class Pair(ABC):
     def equivalent(self, ends: Ends) -> Equivalent | None:
         """The lower pairs that stand for a higher pair at every pose, where there are such."""
         return None
+
+    def misfit(self, ends: Ends, poses: Poses) -> Series | None:
+        """A length that must be zero though the pair does not hold it: other pairs must; None where there is none."""
+        return None
+
+    def turned(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+        """The ends of a pair that counts turns where its members' angles are by whole `turns` from the drawn ones."""
+        return ends
+
+    def meetings(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
+        """The least and greatest coordinate at which a member of one freedom is in contact, nearly; of pairs that lead.
+
+        `poses` are those where the coordinate is zero; NaN where there is no contact.
+        """
+        raise NotImplementedError(f"a {self.title} has no profile")
+
+    def lost(self) -> str:
+        """Why a member has no contact where there are no meetings, in a sentence."""
+        return f"{self.name} does not close"
 
     def round_at(self, link: str) -> str | None:
         """The point about which a member may turn without any effect on the pair, such as a roller's pin."""

@@ -150,6 +150,14 @@ class Geared(Pair):
         one, two = self.sizes
         return (second - carrier) + (first - carrier) * (one / two)
 
+    def turned(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+        """A phase that the drawing gave follows the turns of wheels and carrier since."""
+        if self.phase is not None or any(name not in geometry.drawn for name in self.members):
+            return ends
+        one, two, carrier = turns
+        ahead = 2.0 * np.pi * ((two - carrier) + (one - carrier) * ratio(ends))
+        return *ends[:2], ends[2]._replace(measure=ends[2].measure + ahead)
+
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """The angle by which the second wheel is ahead of where the first one turns it."""
         first, second, carrier = (pose.angle for pose in poses)

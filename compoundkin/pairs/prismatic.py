@@ -44,6 +44,7 @@ class Prismatic(Pair):
     held: ClassVar[int] = 2
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
+    is_simple: ClassVar[bool] = True
     table: ClassVar[str] = "slides"
     keys: ClassVar[tuple[Key, ...]] = (
         Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),

@@ -32,6 +32,7 @@ class Revolute(Pair):
     held: ClassVar[int] = 2
     free: ClassVar[tuple[str, ...]] = ("angle",)
     free_is_angle: ClassVar[bool] = True
+    is_simple: ClassVar[bool] = True
 
     @property
     def members(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
-from compoundkin.pairs.contact import Contact, Touch, named_problems
+from compoundkin.pairs.contact import Contact, Touch, named_problems, row
 from compoundkin.pairs.contract import Ends, Equivalent, Poses
 from compoundkin.pairs.prismatic import Prismatic
 from compoundkin.pairs.revolute import Revolute
@@ -97,9 +97,9 @@ class Slot(Contact):
         slot, pin = poses[0].carry(ends[0]), poses[1].at(ends[1].point)
         return Touch(pin, slot.along * 1j, slot.along.cross(pin - slot.point))
 
-    def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, Number, Number]:
-        """The pin's velocity along the slot."""
-        return poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0], 1.0
+    def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
+        """The pin passes along the slot."""
+        return row(poses, poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0])
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """The displacement along the slot."""

@@ -1,0 +1,64 @@
+"""The follower: one body on a pair of one freedom, held by its contact with a profile.
+
+Where the path of the contact meets the sampled profile gives the pair's coordinate nearly, Newton on the contact's own
+distance exactly, and every further coefficient of its time series one division by the same slope.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar, TypeAlias
+
+import numpy as np
+
+from compoundkin.groups.general import CLOSED, CONVERGED, STEPS
+from compoundkin.pairs import Pair
+from compoundkin.pairs.contract import Ends, Freedom, Poses
+from compoundkin.series import Number, Series
+
+# The members' poses where the body's coordinate is the one given.
+Placing: TypeAlias = Callable[[Series], Poses]
+
+
+class Follower:
+    """Mode +1: of the places where the contact may be, the one to which the coordinate has grown farthest."""
+
+    modes: ClassVar[int] = 2
+    sign_means: ClassVar[str] = "the follower is on the side of the profile to which its coordinate grows"
+
+    def __init__(self, pair: Pair, own: int, size: float) -> None:
+        self.pair = pair
+        self.own = own
+        self.size = size
+
+    def start(self, ends: Ends, at_zero: Poses, freedom: Freedom, sign: Number) -> Number:
+        """The coordinate, nearly: the last meeting (mode +1) or the first; NaN where there is none."""
+        first, last = self.pair.meetings(ends, at_zero, self.own, freedom)
+        return np.where(sign > 0, last, first)
+
+    def polished(self, ends: Ends, placing: Placing, start: Number) -> tuple[Number, Number, Number]:
+        """The coordinate, where it closes the contact, and the slope of the contact's distance there."""
+        coordinate = start
+        for _ in range(STEPS):
+            gap, slope = self._gap(ends, placing, coordinate)
+            step = -gap / slope
+            coordinate = coordinate + step
+            if not np.any(np.abs(step * slope) > CONVERGED * self.size):
+                break
+        gap, slope = self._gap(ends, placing, coordinate)
+        upright = self.pair.upright(ends, placing(Series((coordinate,))))
+        closed = (np.abs(gap) <= CLOSED * self.size) & upright
+        return np.where(closed, coordinate, np.nan), closed, slope
+
+    def series(self, ends: Ends, placing: Placing, coordinate: Number, slope: Number, order: int) -> Series:
+        """The coordinate to the given order, from its closed value and the slope there."""
+        found: tuple[Number, ...] = (coordinate,)
+        for k in range(1, order + 1):
+            trial = Series((*found, *[np.zeros_like(coordinate)] * (order + 1 - k)))
+            found = (*found, -self.pair.closure(ends, placing(trial))[0].c[k] / slope)
+        return Series(found)
+
+    def _gap(self, ends: Ends, placing: Placing, coordinate: Number) -> tuple[Number, Number]:
+        """The contact's distance and its slope by the coordinate, all else standing still."""
+        gap = self.pair.closure(ends, placing(Series((coordinate, 1.0))))[0]
+        return gap.c[0], gap.c[1]
