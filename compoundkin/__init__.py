@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from compoundkin.centres import instant_centres
 from compoundkin.checks import Check, Finding, verify
+from compoundkin.equivalents import equivalent_linkage
 from compoundkin.errors import (
     CompoundkinError,
     InvalidInput,
@@ -25,9 +26,12 @@ from compoundkin.errors import (
 )
 from compoundkin.formats import load, save, save_table, to_pandas
 from compoundkin.gaps import Gap, gaps
+from compoundkin.laws import constant_acceleration, constant_speed, time_table
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
-from compoundkin.pairs import slide
+from compoundkin.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
+from compoundkin.programs import dwell, fall, program, rise
+from compoundkin.profiles import disc, formula, profile
 from compoundkin.quantities import quantity
 from compoundkin.structure import Structure, decompose
 from compoundkin.words import deg, drawn, drive, expect, link, mode, polar
@@ -51,24 +55,44 @@ __all__ = [
     "Structure",
     "UnassembledPoses",
     "UnknownName",
+    "arc",
+    "belt",
+    "cam",
+    "constant_acceleration",
+    "constant_speed",
     "decompose",
     "deg",
+    "disc",
     "drawn",
     "drive",
+    "dwell",
+    "equivalent_linkage",
     "expect",
+    "face",
+    "fall",
+    "formula",
     "gaps",
+    "gear",
     "instant_centres",
     "link",
     "load",
     "mode",
     "polar",
+    "profile",
+    "program",
     "quantity",
+    "rack",
     "rendered",
     "report",
+    "rise",
+    "roll",
+    "roll_around",
     "save",
     "save_table",
     "slide",
+    "slot",
     "solve",
+    "time_table",
     "to_pandas",
     "verify",
 ]

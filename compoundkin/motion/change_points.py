@@ -67,7 +67,7 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
     """
     for k in sorted(near):
         step = tracker.plan.steps[k]
-        if k in tracker.flips or not isinstance(step, DyadStep) or step.kernel.modes < 2:
+        if k in tracker.flips or not isinstance(step, DyadStep) or step.modes < 2:
             continue
         found = False
         for way in _ways(tracker):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
@@ -50,6 +50,7 @@ class DyadStep:
         self.size = size
         dyad = dyad or group
         self.kernel: type[Dyad] = DYADS[dyad.name]
+        self.modes, self.sign_means = self.kernel.modes, self.kernel.sign_means
         inner = dyad.inner[0]
         bodies, outer = dyad.bodies, dyad.outer
         first = 1 if self.kernel.follows_inner and inner.members[0] in bodies[1].links else 0
@@ -88,6 +89,9 @@ class DyadStep:
 class AffineStep:
     """A body on a pair of one freedom, which a higher pair determines in proportion: a gear on its pin."""
 
+    modes: ClassVar[int] = 1
+    sign_means: ClassVar[str] = "there is only one mode"
+
     def __init__(self, index: int, group: Group, lower: Pair, higher: Pair) -> None:
         self.index = index
         self.group = group
@@ -120,6 +124,9 @@ class AffineStep:
 
 class FollowerStep:
     """A body on a pair of one freedom that its contact with a profile leads: a cam's follower."""
+
+    modes: ClassVar[int] = Follower.modes
+    sign_means: ClassVar[str] = Follower.sign_means
 
     def __init__(self, index: int, group: Group, lower: Pair, higher: Pair, size: float) -> None:
         self.index = index
@@ -178,7 +185,10 @@ class _Mounted:
 
 
 class GeneralStep:
-    """A group without a closed form."""
+    """A group without a closed form: its configurations have no sign, and are followed along the motion."""
+
+    modes: ClassVar[int] = 0
+    sign_means: ClassVar[str] = ""
 
     def __init__(self, index: int, group: Group, size: float) -> None:
         self.index = index

@@ -119,7 +119,7 @@ class Tracker:
 
     def _sign(self, k: int, step: DyadStep | FollowerStep, run: Run) -> Number:
         """The mode whose points lie nearest to the drawn ones."""
-        if k in self._fixed or step.kernel.modes == 1:
+        if k in self._fixed or step.modes == 1:
             self.chosen_by[k] = "sign" if k in self._fixed else "only one"
             return self._fixed.get(k, 1)
         letters = shown(self.plan, step, self.sketch)

@@ -12,7 +12,7 @@ from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
 from compoundkin.pairs.contact import Contact, Touch, named_problems, row
-from compoundkin.pairs.contract import Ends, Equivalent, Poses
+from compoundkin.pairs.contract import Ends, Equivalent, Osculation, Poses
 from compoundkin.pairs.revolute import Revolute
 from compoundkin.poses import End
 from compoundkin.series import Number, Series
@@ -96,6 +96,11 @@ class ArcSlot(Contact):
         )
         far = End(ends[0].measure + 0j)
         return Equivalent(bar, pairs, {pairs[0].name: (End(ends[0].point), End(0j)), pairs[1].name: (far, ends[1])})
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation:
+        """The middle of the circle, and the pin."""
+        centre, pin = (pose.at(end.point).c[0] for pose, end in zip(poses, ends, strict=True))
+        return Osculation(centre, pin, (pin - centre) / np.abs(pin - centre))
 
     def generic(self, rng: np.random.Generator) -> Ends:
         """A random circle with the pin somewhere on it."""

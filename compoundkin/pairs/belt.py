@@ -37,6 +37,10 @@ class Belt(Geared):
         """Unless the belt is crossed."""
         return not self.crossed
 
+    def reach(self, one: Number, two: Number, distance: Number) -> Number:
+        """The radii as they are; by teeth alone, some that fit."""
+        return 1.0 if self.teeth is None else super().reach(one, two, distance)
+
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
         """Axes that coincide, and pulleys that overlap."""
         distance = self.distance(geometry)

@@ -14,8 +14,8 @@ from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
 from compoundkin.pairs.arc import ArcSlot
-from compoundkin.pairs.contact import Contact, Path, Touch, named_problems, outermost, path_of, row
-from compoundkin.pairs.contract import Ends, Equivalent, Freedom, Poses
+from compoundkin.pairs.contact import Contact, Path, Touch, centre_of_curvature, named_problems, outermost, path_of, row
+from compoundkin.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
 from compoundkin.poses import End, Pose
 from compoundkin.profiles import Profile, side_of
 from compoundkin.series import Number, Series, as_series
@@ -171,6 +171,12 @@ class Cam(Contact):
         s = s if self.curve.closed else np.append(s, self.curve.high)
         place, first = self.curve.derivatives(s, 1)
         return place, -1j * first / np.abs(first)
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation:
+        """The profile's centre of curvature, and the middle of the roller."""
+        frame, centre, foot = self._foot(ends, poses)
+        place, normal = frame.at(self.curve.at(foot.c[0])).c[0], self.touch(ends, poses).normal.c[0]
+        return Osculation(centre_of_curvature(self.curve, foot.c[0], place, frame.u.c[0]), centre.c[0], normal)
 
     def generic(self, rng: np.random.Generator) -> Ends:
         """The profile in a random direction, the roller somewhere on it."""

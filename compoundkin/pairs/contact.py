@@ -8,6 +8,7 @@ from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
+from compoundkin.curves import Curve
 from compoundkin.errors import Problem, nearest
 from compoundkin.pairs.contract import Ends, Freedom, Line, Pair, Poses, table
 from compoundkin.poses import Pose
@@ -59,6 +60,12 @@ class Contact(Pair):
         """On the common normal."""
         place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
         return Line(-normal.imag, normal.real, place.real * normal.imag - place.imag * normal.real)
+
+
+def centre_of_curvature(curve: Curve, s: Number, place: Number, u: Number) -> Number:
+    """The centre of curvature of a profile at a parameter, whose point is at a place of the world; inf if straight."""
+    along = curve.tangent(s).c[0] * u
+    return place + 1j * along / curve.curvature(s)
 
 
 class Path(NamedTuple):

@@ -55,6 +55,18 @@ class Equivalent(NamedTuple):
     ends: Mapping[str, Ends]
 
 
+class Osculation(NamedTuple):
+    """Where the profiles of two members have their centres of curvature while they touch, in the world.
+
+    None for a straight one. A bar between the centres, or a block on the straight profile pinned at the other one's
+    centre, gives the members the same velocities and accelerations. `normal` is a unit vector between the centres.
+    """
+
+    first: Number
+    second: Number
+    normal: Number
+
+
 class Freedom(NamedTuple):
     """How a body moves as a coordinate grows at unit rate: about a point of the world, `sense` +1 counterclockwise; or,
     where `about` is None, in the direction `along`."""
@@ -184,6 +196,10 @@ class Pair(ABC):
     def lost(self) -> str:
         """Why a member has no contact where there are no meetings, in a sentence."""
         return f"{self.name} does not close"
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation | None:
+        """The centres of curvature of a higher pair at the leading coefficient of the poses; None for other pairs."""
+        return None
 
     def round_at(self, link: str) -> str | None:
         """The point about which a member may turn without any effect on the pair, such as a roller's pin."""

@@ -13,8 +13,8 @@ from compoundkin.curves import Curve
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
-from compoundkin.pairs.contact import Contact, Touch, named_problems, nearest_angle, outermost, path_of, row
-from compoundkin.pairs.contract import Ends, Equivalent, Freedom, Poses
+from compoundkin.pairs.contact import Contact, Touch, centre_of_curvature, named_problems, nearest_angle, outermost, path_of, row
+from compoundkin.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
 from compoundkin.pairs.prismatic import Prismatic
 from compoundkin.pairs.revolute import Revolute
 from compoundkin.poses import End, Pose
@@ -168,6 +168,13 @@ class Face(Contact):
         touched = self.curve.at(self.curve.support(normal)).c[0]
         on_hull = np.abs(touched - place) < NEAR * self.curve.size
         return place[on_hull], normal[on_hull]
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation:
+        """The profile's centre of curvature; the face is straight."""
+        frame, face = self._sides(ends, poses)
+        s = self._support(frame, face).c[0]
+        place = frame.at(self.curve.at(s)).c[0]
+        return Osculation(centre_of_curvature(self.curve, s, place, frame.u.c[0]), None, self._normal(face).c[0])
 
     def generic(self, rng: np.random.Generator) -> Ends:
         """The profile in a random direction, the face somewhere on it."""

@@ -14,6 +14,9 @@ from compoundkin.keys import Key
 from compoundkin.pairs.geared import Geared, check_distance, two_of
 from compoundkin.series import Number
 
+# The pressure angle of standard involute teeth; it shows in the equivalent linkage only, not in any motion.
+PRESSURE_ANGLE = np.deg2rad(20.0)
+
 
 @dataclass(frozen=True, eq=False)
 class Gear(Geared):
@@ -65,6 +68,10 @@ class Gear(Geared):
         elif self.radii is not None:
             wanted = np.abs(np.asarray(self.radii[1]) + sign * np.asarray(self.radii[0]))
             yield from check_distance(self, geometry, f"{where}.radii", wanted, "pitch circles ask for a distance of")
+
+    def reach(self, one: Number, two: Number, distance: Number) -> Number:
+        """From teeth or radii to base circles."""
+        return distance / (one + two) * np.cos(PRESSURE_ANGLE)
 
     def pitch_radii(self, geometry: Geometry) -> tuple[Number, Number]:
         """The radii of the two pitch circles, which the distance of the axes and the ratio give."""

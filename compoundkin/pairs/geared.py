@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.errors import InvalidMechanism, Problem, nearest
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
-from compoundkin.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.pairs.contract import Ends, Osculation, Pair, Point, Poses, table
 from compoundkin.poses import End
 from compoundkin.series import Number, Series
 
@@ -181,6 +181,21 @@ class Geared(Pair):
         first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
         place = first * two + second * one
         return Point(-place.real / two, -place.imag / two, -(one + two) / two)
+
+    def reach(self, one: Number, two: Number, distance: Number) -> Number:
+        """What the sizes are to be multiplied with to be radii of the circles that the line of action touches."""
+        return distance / (2.0 * (np.abs(one) + np.abs(two)))
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation:
+        """Where the line of action, of involutes or of a belt, touches the circles about both axes."""
+        first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
+        distance = np.abs(second - first)
+        one, two = ends[0].measure, ends[1].measure
+        reach = self.reach(one, two, distance)
+        one, two = one * reach, two * reach
+        cosine = (one + two) / distance
+        across = (second - first) / distance * (cosine + 1j * np.sqrt(1.0 - cosine**2))
+        return Osculation(first + one * across, second - two * across, across * 1j)
 
     def is_affine(self, lower: Pair, own: int) -> bool:
         """On a pin, any of the three turns in proportion."""

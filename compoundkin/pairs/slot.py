@@ -12,7 +12,7 @@ from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
 from compoundkin.pairs.contact import Contact, Touch, named_problems, row
-from compoundkin.pairs.contract import Ends, Equivalent, Poses
+from compoundkin.pairs.contract import Ends, Equivalent, Osculation, Poses
 from compoundkin.pairs.prismatic import Prismatic
 from compoundkin.pairs.revolute import Revolute
 from compoundkin.poses import End
@@ -114,6 +114,10 @@ class Slot(Contact):
             Revolute(f"{self.name} (pin)", self.at, block, self.link),
         )
         return Equivalent(block, pairs, {pairs[0].name: (ends[0], End(0j, 1 + 0j)), pairs[1].name: (End(0j), ends[1])})
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation:
+        """The slot is straight, the pin round."""
+        return Osculation(None, poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0] * 1j)
 
     def generic(self, rng: np.random.Generator) -> Ends:
         """A slot in a random direction, the pin somewhere in it."""

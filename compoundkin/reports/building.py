@@ -11,6 +11,7 @@ from compoundkin.gaps import Gap, gaps
 from compoundkin.motion import Motion
 from compoundkin.quantities import order_of
 from compoundkin.reports.count import loops_section, mobility_section
+from compoundkin.reports.equivalent import equivalent_section
 from compoundkin.reports.findings import checks_section, gaps_section
 from compoundkin.reports.model import Outcome, Paragraph, Report, Section
 from compoundkin.reports.parts import faults_section, links_section, pairs_section
@@ -71,6 +72,7 @@ def _of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
             *_counted(structure, design),
             solving_section(structure, motion, design),
             drivers_section(structure, sample),
+            *([equivalent] if (equivalent := equivalent_section(sample)) else []),
             moving,
             *([gaps_section(sample, missing)] if missing else []),
             checks_section(sample, check),

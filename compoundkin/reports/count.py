@@ -16,9 +16,9 @@ MOST_LOOPS = 20
 class EquationCount:
     """The position equations of a mechanism against their unknowns, with the angles of the links as unknowns.
 
-    Unknown are the angle of every moving link and the displacement of every pair that slides. Each loop
-    closes in x and in y; each pair that slides without turning ties the angles of its two links, an
-    auxiliary equation; each driver prescribes one coordinate.
+    Unknown are the angle of every moving link and the displacement of every pair that slides or of every contact. Each
+    loop closes in x and in y; each pair that slides without turning ties the angles of its two links, an auxiliary
+    equation, and so does a gear or belt, whose loop does not count; each driver prescribes one coordinate.
     Source: vector loops as in R. L. Norton, Design of Machinery, chapter 4, and E. Soylemez, Mechanisms.
 
     >>> count = EquationCount(loops=2, angles=5, displacements=1, auxiliary=1, drivers=1)
@@ -54,11 +54,11 @@ def equation_count(structure: Structure) -> EquationCount:
     >>> count.equations, count.unknowns
     (2, 3)
     """
-    slides = [0 if pair.free_is_angle else 1 for pair in structure.pairs]
-    # of what a pair holds, two less its displacements are the components of position; the rest are angles
-    angles = [pair.held - 2 + slide for pair, slide in zip(structure.pairs, slides, strict=True)]
-    links = len(structure.mechanism.links)
-    return EquationCount(loop_count(structure), links - 1, sum(slides), sum(angles), structure.mobility.drivers)
+    geared = [pair for pair in structure.pairs if pair.counts_turns and pair.held == 1]
+    running = [pair for pair in structure.pairs if pair not in geared and not (pair.is_simple and pair.free_is_angle)]
+    guided = [pair for pair in running if pair.held > 1]
+    loops, angles = loop_count(structure) - len(geared), len(structure.mechanism.links) - 1 - len(structure.passive)
+    return EquationCount(loops, angles, len(running), len(guided) + len(geared), structure.mobility.drivers)
 
 
 def mobility_section(structure: Structure) -> Section:
@@ -73,17 +73,20 @@ def mobility_section(structure: Structure) -> Section:
 def loops_section(structure: Structure) -> Section:
     """The independent loops as chains, and the equations against the unknowns."""
     count = equation_count(structure)
-    links, pairs = count.angles + 1, len(structure.pairs)
+    links, pairs, loops = len(structure.mechanism.links), len(structure.pairs), loop_count(structure)
     euler = Formula(f"L = p - n + 1 = {pairs} - {links} + 1 = {pairs - links + 1}")
     blocks: list[Block] = [euler]
-    if count.loops != pairs - links + 1:
-        text = f"The links fall into separate pieces, so that there are {counted(count.loops, 'loop')}."
+    if loops != pairs - links + 1:
+        text = f"The links fall into separate pieces, so that there are {counted(loops, 'loop')}."
         blocks.append(Paragraph(text))
+    if count.loops < loops:
+        through = counted(loops - count.loops, "loop")
+        blocks.append(Paragraph(f"Of these, {through} through gears or belts: an auxiliary equation of angles each."))
     rows = tuple((k, str(loop)) for k, loop in enumerate(structure.loops[:MOST_LOOPS], 1))
     if rows:
         blocks.append(Table((Column("loop", style="each"), Column("chain: link -pair- link")), rows))
-    if count.loops > MOST_LOOPS:
-        blocks.append(Paragraph(f"... and {count.loops - MOST_LOOPS} more."))
+    if loops > MOST_LOOPS:
+        blocks.append(Paragraph(f"... and {loops - MOST_LOOPS} more."))
     return Section("loops", "Loops and equations", (*blocks, *_equations(count)))
 
 
@@ -102,7 +105,7 @@ def _sum(terms: tuple[tuple[int, str], ...], total: int) -> str:
 
 
 def _verdict(count: EquationCount) -> tuple[Block, ...]:
-    auxiliary = " An auxiliary equation says that a block turns with its guide." if count.auxiliary else ""
+    auxiliary = " An auxiliary equation ties angles: of a block and its guide, of two gears." if count.auxiliary else ""
     if count.equations == count.unknowns:
         return (Paragraph(f"As many equations as unknowns.{auxiliary}"),)
     gap = abs(count.equations - count.unknowns)

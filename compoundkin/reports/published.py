@@ -18,6 +18,7 @@ from compoundkin.reports.model import Cell, Column, Paragraph, Section, Table
 from compoundkin.reports.parts import driven_pairs
 from compoundkin.reports.wording import counted
 from compoundkin.structure import Structure
+from compoundkin.validation import TIME
 from compoundkin.words import Expectation
 
 # Up to so many published numbers are listed one by one; of more, each quantity's nearest to its tolerance.
@@ -78,16 +79,31 @@ def comparisons(structure: Structure) -> tuple[Comparison, ...]:
 
 def _solved(structure: Structure, at: Mapping[str, float]) -> Motion | None:
     """The single pose at given driver values and rates; what is not given is the driver's own, the first of several."""
+    if TIME in at and TIME not in [drive.name for drive in structure.mechanism.drives]:
+        return _solved_at_time(structure, at)
     values: dict[str, float] = {}
     rates: dict[str, Any] = {rate: {} for rate in RATES}
     for drive in structure.mechanism.drives:
         values[drive.name] = at.get(drive.name, 0.0 if drive.values is None else _first(drive.values))
         for rate, given in rates.items():
             given[drive.name] = at.get(f"{drive.name}.{rate}", _first(getattr(drive, rate)))
+    return _pose(structure, values, **rates)
+
+
+def _solved_at_time(structure: Structure, at: Mapping[str, float]) -> Motion | None:
+    """The single pose at a time; what else is given goes before the driver's own."""
+    values = {drive.name: at[drive.name] for drive in structure.mechanism.drives if drive.name in at}
+    named = {rate: [d.name for d in structure.mechanism.drives if f"{d.name}.{rate}" in at] for rate in RATES}
+    rates = {rate: {name: at[f"{name}.{rate}"] for name in names} for rate, names in named.items()}
+    return _pose(structure, values, time=at[TIME], **rates)
+
+
+def _pose(structure: Structure, values: Mapping[str, float], **how: Any) -> Motion | None:
+    """A single pose; None where it cannot be assembled."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UnassembledPoses)
-            return solve(structure, values, **rates, order=HIGHEST_ORDER)
+            return solve(structure, values, **how, order=HIGHEST_ORDER)
     except NotAssembled:
         return None
 

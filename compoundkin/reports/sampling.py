@@ -68,8 +68,15 @@ class Sample:
         return tuple(d for d in self.drivers if self.poses == 1 or np.ptp(d.values) > 0)
 
     @cached_property
+    def times(self) -> Any:
+        """The times of its poses; None for a motion that is not in time."""
+        return None if self.motion.time is None else self.of(self.motion.time)
+
+    @cached_property
     def places(self) -> tuple[Column, Any]:
-        """What tells poses apart: the value of the only driver that changes, else their numbers, from 0."""
+        """What tells poses apart: the time, the value of the only driver that changes, else their numbers, from 0."""
+        if self.times is not None:
+            return Column("time", "s", "fixed"), self.times
         if len(self.varying) == 1:
             return self.driver_column(self.varying[0]), self.varying[0].values
         return Column("pose", style="each"), np.arange(self.poses)

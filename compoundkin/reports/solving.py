@@ -55,7 +55,7 @@ def _title(group: Group) -> str:
 
 
 def _ground(ground: Body, letters: Iterable[str]) -> Step:
-    driven = tuple(("driver", _driven(step)) for step in ground.driven)
+    driven = tuple(("driver", _driven(step)) for step in ground.driven if not step.is_passive)
     title = "0  The frame and its driven links" if driven else "0  The frame"
     return Step(title, (*driven, ("yields", _yields(ground.links, letters))))
 
@@ -71,8 +71,12 @@ def _facts(structure: Structure, group: Group, new: list[str]) -> Iterator[tuple
     inner = f"; inner {', '.join(pair.name for pair in group.inner)}" if group.inner else ""
     yield "pairs", f"outer {', '.join(pair.name for pair in group.outer)}{inner}"
     for body in group.bodies:
-        if body.driven:
-            yield "driven", "; ".join(map(_driven, body.driven))
+        driven = [step for step in body.driven if not step.is_passive]
+        passive = [step for step in body.driven if step.is_passive]
+        if passive:
+            yield "passive", "; ".join(f"{step.drive.link} may turn about {step.pair.letters[0]}" for step in passive)
+        if driven:
+            yield "driven", "; ".join(map(_driven, driven))
             yield "body", f"{listed(body.links)} are one link of changing shape"
     yield "uses", "; ".join(_used(structure, group))
     yield "yields", _yields(group.links, new)
@@ -87,7 +91,7 @@ def _used(structure: Structure, group: Group) -> Iterator[str]:
                 points = structure.mechanism.links[link].points
                 letters = [letter for letter in pair.letters if letter in points]
                 prefix = "" if pair.name.startswith(pair.letters[0]) else f"{pair.name}: "
-                yield f"{prefix}{', '.join(letters)} on {link}"
+                yield f"{prefix}{', '.join(letters)}{' on ' if letters else ''}{link}"
 
 
 def _yields(links: Iterable[str], letters: Iterable[str]) -> str:
@@ -100,14 +104,14 @@ def _mode(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]]:
     """Which assembly mode it is in, what that means, and what chose it."""
     tracker = motion.tracker
     why = CHOSEN_BY.get(tracker.chosen_by.get(k, ""), "")
-    kernel = DYADS.get(motion.structure.groups[k].name)
-    if kernel is None:
+    step = tracker.plan.steps[k]
+    if step.modes == 0:
         yield "mode", f"{why or 'found'}, by iteration, and followed along the motion"
-    elif kernel.modes == 1:
+    elif step.modes == 1:
         yield "mode", "the only one"
     else:
         sign = _sign(motion, k, design)
-        meaning = kernel.sign_means if sign > 0 else f"the other one; in +1, {kernel.sign_means}"
+        meaning = step.sign_means if sign > 0 else f"the other one; in +1, {step.sign_means}"
         yield "mode", f"{sign:+d}, {why} ({meaning}){_changes(motion, k, design)}"
 
 

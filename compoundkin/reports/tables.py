@@ -12,6 +12,7 @@ import numpy as np
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion.inputs import FULL_TURN
 from compoundkin.quantities import PER_SECOND, Quantity
+from compoundkin.reports.laws import Wording
 from compoundkin.reports.model import Block, Cell, Column, Paragraph, Section, Table
 from compoundkin.reports.parts import driven_pairs
 from compoundkin.reports.sampling import ROUNDING, Sample
@@ -35,11 +36,14 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
         return mechanism.outputs
     used = {letter for pair in mechanism.written_pairs for letter in pair.letters}
     free = {k: links for k, links in mechanism.carriers.items() if k not in used and len(links) == 1}
-    tracers = [letter for letter, links in free.items() if links != (FRAME,)]
     driven = {drive.link for drive in mechanism.drives}
-    turning = [name for name in mechanism.links if name != FRAME and name not in driven]
-    chosen = [*(f"{name}.position" for name in tracers), *(f"{name}.angle" for name in turning)]
-    return tuple(chosen[:MOST_OUTPUTS])
+    tracers = [letter for letter, links in free.items() if links != (FRAME,)]
+    tracers = [letter for letter in tracers if free[letter][0] not in driven] or tracers
+    sliding = {pair.members[1]: pair.name for pair in mechanism.written_pairs
+               if pair.is_simple and not pair.free_is_angle and pair.members[0] == FRAME}  # fmt: skip
+    moving = [name for name in mechanism.links if name != FRAME and name not in driven]
+    lines = [f"{sliding[name]}.displacement" if name in sliding else f"{name}.angle" for name in moving]
+    return tuple([*(f"{name}.position" for name in tracers), *lines][:MOST_OUTPUTS])
 
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
@@ -52,7 +56,16 @@ def drivers_section(structure: Structure, sample: Sample | None) -> Section:
         what = f"{drive.link} on {drive.on}" + (f", {step.pair.name}" if step else "")
         kinds.setdefault(is_angle, []).append((drive.name, what, *_span(drive, sample, is_angle)))
     tables = tuple(_driver_table(structure, is_angle, rows) for is_angle, rows in kinds.items())
-    return Section("drivers", "Drivers", tables or (Paragraph("There is no driver."),))
+    return Section("drivers", "Drivers", (*tables, *_laws(structure)) or (Paragraph("There is no driver."),))
+
+
+def _laws(structure: Structure) -> Iterator[Paragraph]:
+    """How each driver with a law moves."""
+    steps, unit = driven_pairs(structure), structure.mechanism.unit or "length"
+    for drive in structure.mechanism.drives:
+        if drive.law is not None:
+            is_angle = drive.name not in steps or steps[drive.name].pair.free_is_angle
+            yield Paragraph(f"{drive.name} moves {Wording(is_angle, unit).law(drive.law)}.")
 
 
 def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, ...]]) -> Table:
@@ -65,6 +78,8 @@ def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, .
 def _span(drive: Drive, sample: Sample | None, is_angle: bool) -> tuple[Cell, ...]:
     """From, to, poses, speed, acceleration."""
     values, speed, acceleration = _given(drive, sample)
+    if sample is None and drive.law is not None:
+        return None, None, None, None, None
     if values is None and not is_angle:
         return None, None, None, speed, acceleration
     values = FULL_TURN if values is None else values
@@ -91,8 +106,8 @@ def outputs_section(sample: Sample, outputs: Sequence[str]) -> Section:
     """The outputs over the cycle, and where each is least and greatest."""
     found = [sample.quantity(name) for name in outputs]
     drivers = [(sample.driver_column(driver), driver.values) for driver in sample.varying]
-    # several drivers are columns like any other, and the poses are numbered
-    first = drivers if len(drivers) == 1 else [sample.places, *drivers]
+    # several drivers are columns like any other, and the poses are numbered or have their times
+    first = drivers if len(drivers) == 1 and sample.times is None else [sample.places, *drivers]
     columns = [*first, *(column for one in found for column in _columns(sample, one))]
     rows = tuple(tuple(_cell(values[pose]) for _, values in columns) for pose in sample.rows)
     table = Table(tuple(column for column, _ in columns), rows, keys=1)
