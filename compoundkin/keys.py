@@ -13,18 +13,34 @@ from typing import Any, Literal
 #   angle    the same in degrees, or {rad = ...}          float or array, radians
 #   point    [x, y], {polar = [radius, degrees]}          complex or array
 #   sign     1 or -1                                      int
+#   flag     true or false                                bool
+#   two      list of two numbers or lists of numbers      tuple of two floats or arrays
 #   points   table of points by letter, or list of letters   mapping of letter to complex, array or None
 #   drawing  table of points by letter                    mapping of letter to complex or array
+#   whole    whole number                                 int
+#   span     positive number; degrees where it is of a rotation   float
+#   times    list of seconds or {from, to, step}          array
+#   segments list of tables, as Segment has keys          tuple of Segment
+#   law      table with a kind, and the keys of that law  law
+#   number   a single number                              float
+#   turn     a single angle in degrees, or {rad = ...}    float, radians
+#   place    [x, y], {polar = [radius, degrees]}, single  complex
+#   places   list of such points                          tuple of complex
+#   program  list of segments over degrees, or a table with the keys of Program   Program over radians
+#   profile  table with a kind, and the keys of that profile   Profile
 # Of a driven coordinate, an angle (degrees in files) or a length, as its pair has it:
 #   values   number or nested list, {from, to, step}, {rad = ...}   float or array
+#   coordinate  number or nested list, {rad = ...}        float or array
 #   rate     number or nested list, {rpm = ...}, {deg = ...}        float or array
 #   at       table of such numbers by driver, rates by "driver.speed"   tuple of (key, float)
 # Of a published quantity, an angle (degrees in files) or anything else, as its name says:
 #   published  number or [x, y]                           complex
 #   margin   number                                       float
 Kind = Literal[
-    "name", "text", "names", "length", "angle", "point", "sign", "points", "drawing",
+    "name", "text", "names", "length", "angle", "point", "sign", "flag", "two", "points", "drawing",
     "values", "rate", "at", "published", "margin",
+    "whole", "span", "times", "coordinate", "segments", "law",
+    "number", "turn", "place", "places", "program", "profile",
 ]  # fmt: skip
 
 

@@ -11,11 +11,15 @@ from compoundkin.errors import Problem, nearest
 from compoundkin.words import FRAME, Drive, Item, Link
 
 if TYPE_CHECKING:
+    from compoundkin.keys import Key
     from compoundkin.mechanism import Mechanism
     from compoundkin.pairs import Pair
 
 # Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
 ZERO_LENGTH = 1e-12
+
+# Among the driver values of a published number, the time of a motion in time.
+TIME = "time"
 
 
 def problems_of(mechanism: Mechanism) -> Iterator[Problem]:
@@ -37,7 +41,7 @@ def _words(mechanism: Mechanism) -> Iterator[Problem]:
     for index, item in enumerate(mechanism.items):
         if not isinstance(item, Item):
             yield Problem(
-                f"items[{index}]", f"{item!r} is not a word", "known: link, slide, drive, drawn, mode, expect"
+                f"items[{index}]", f"{item!r} is not a word", "known: link, the pairs such as slide, drive, drawn, mode, expect"
             )
 
 
@@ -147,13 +151,28 @@ def _pairs(mechanism: Mechanism) -> Iterator[Problem]:
     for where, pair in _placed(mechanism.written_pairs):
         yield from pair.problems(letters, where)
         for key in pair.keys:
-            value = getattr(pair, key.name, None)
-            if key.kind in ("length", "angle") and value is not None and not _is_finite(value):
-                yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite")
-        shared = [k for k, names in mechanism.pins.items() if set(pair.members) <= set(names)]
-        if shared and len(set(pair.members)) == 2:
+            for value in _numbers_of(pair, key):
+                if not _is_finite(value):
+                    yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite")
+        both = set(pair.members[:2])
+        shared = [k for k, names in mechanism.pins.items() if both <= set(names)]
+        if shared and len(both) == 2:
             yield Problem(where, f"{pair.members[1]!r} and {pair.members[0]!r} are also pinned at {shared[0]}",
                           "give the two points different letters")  # fmt: skip
+
+
+def _numbers_of(pair: Pair, key: Key) -> tuple[Any, ...]:
+    """The numbers and arrays that a pair holds under a key."""
+    value = getattr(pair, key.name, None)
+    if value is None or key.kind not in ("length", "angle", "two"):
+        return ()
+    return value if key.kind == "two" else (value,)
+
+
+def misfits_of(mechanism: Mechanism) -> Iterator[Problem]:
+    """What is wrong with the dimensions of pairs, in a mechanism that has no other problems."""
+    for where, pair in _placed(mechanism.written_pairs):
+        yield from pair.misfits(mechanism.geometry, where)
 
 
 def _placed(pairs: Iterable[Pair]) -> Iterator[tuple[str, Pair]]:
@@ -202,14 +221,26 @@ def _drives(mechanism: Mechanism) -> Iterator[Problem]:
             value = getattr(drive, key)
             if value is not None and not _is_finite(value):
                 yield Problem(f"{where}.{key}", "the value is empty or not finite")
+        yield from _two_laws(drive, where)
+    if mechanism.time is not None and not _is_finite(mechanism.time):
+        yield Problem("time", "the times are empty or not finite", "give seconds, in order of the motion")
+
+
+def _two_laws(drive: Drive, where: str) -> Iterator[Problem]:
+    """What is given beside a law, which says it all."""
+    for key in drive.keys:
+        beside = key.name in ("values", "speed", "acceleration", "jerk")
+        if beside and drive.law is not None and not np.array_equal(getattr(drive, key.name), key.default):
+            remedy = f"leave the {key.name} or the law out"
+            yield Problem(f"{where}.{key.name}", "the driver has a law as well, which says how it moves", remedy)
 
 
 def drivable(mechanism: Mechanism, drive: Drive) -> list[str]:
     """The names of the pairs between a drive's two links that it can mean."""
     both = {drive.link, drive.on}
     pins = [k for k, names in mechanism.pins.items() if both <= set(names) and len(both) == 2]
-    slides = [p.name for p in mechanism.written_pairs if set(p.members) == both]
-    return [name for name in [*pins, *slides] if drive.pair in ("", name)]
+    others = [p.name for p in mechanism.written_pairs if p.is_drivable and set(p.members) == both]
+    return [name for name in [*pins, *others] if drive.pair in ("", name)]
 
 
 def _driven_pair(drive: Drive, choices: list[str], where: str) -> Iterator[Problem]:
@@ -241,7 +272,7 @@ def _expectations(mechanism: Mechanism) -> Iterator[Problem]:
         where = f"expected[{index}]"
         for key, value in expectation.at:
             driver, _, rate = key.partition(".")
-            if named and driver not in drives:
+            if named and driver not in drives and key != TIME:
                 yield Problem(f"{where}.at.{key}", f"there is no driver {driver!r}", nearest(driver, drives))
             if rate not in ("", "speed", "acceleration", "jerk"):
                 yield Problem(f"{where}.at.{key}", f"a driver has no {rate!r}", "known: speed, acceleration, jerk")
@@ -280,9 +311,7 @@ def _shapes(mechanism: Mechanism) -> Iterator[Problem]:
     shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
     for where, pair in _placed(mechanism.written_pairs):
         shapes += [
-            (f"{where}.{k.name}", np.shape(getattr(pair, k.name, 0.0)))
-            for k in pair.keys
-            if k.kind in ("length", "angle")
+            (f"{where}.{key.name}", np.shape(value)) for key in pair.keys for value in _numbers_of(pair, key)
         ]
     for index, drive in enumerate(mechanism.drives):
         shapes += [

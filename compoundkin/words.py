@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.errors import InvalidMechanism, Problem
 from compoundkin.keys import Key
+from compoundkin.laws import Law, as_law
 from compoundkin.pairs import Pair
 from compoundkin.series import Number
 
@@ -63,7 +64,7 @@ class Drive:
     """A driver: it prescribes the free coordinate of the pair between `link` and `on`.
 
     `values` (radians or a length, None for a full turn), `speed`, `acceleration` and `jerk` are numbers or
-    arrays; the last axis of `values` is the motion.
+    arrays; the last axis of `values` is the motion. Or `law` says how the coordinate moves in time.
     """
 
     name: str
@@ -74,6 +75,7 @@ class Drive:
     speed: Number = 1.0
     acceleration: Number = 0.0
     jerk: Number = 0.0
+    law: Law | None = None
 
     keys: ClassVar[tuple[Key, ...]] = (
         Key("name", "name", "What the driver is called; the driven link's name where it is left out."),
@@ -84,6 +86,7 @@ class Drive:
         Key("speed", "rate", "Rate of the driven coordinate: rad/s for a pin, length/s for a slide.", default=1.0),
         Key("acceleration", "length", "Second rate, rad/s^2 or length/s^2.", default=0.0),
         Key("jerk", "length", "Third rate, rad/s^3 or length/s^3.", default=0.0),
+        Key("law", "law", "How the coordinate moves in time, instead of values and rates."),
     )
 
 
@@ -151,16 +154,22 @@ def drive(
     speed: Any = 1.0,
     acceleration: Any = 0.0,
     jerk: Any = 0.0,
+    law: Any = None,
     name: str = "",
 ) -> Drive:
     """A driver of the pair between `link` and `on`; angles in radians.
 
+    `law` is one of `constant_speed`, `constant_acceleration`, `program`, `time_table`, or a Python function
+    of an array of times. Raises InvalidMechanism for anything else.
+
     >>> drive("crank").name
     'crank'
+    >>> drive("crank", law=lambda t: 0.5 * np.sin(t)).law.kind
+    'function'
     """
-    real = [_real(f"drives.{name or link}.{key}", v) for key, v in
-            (("values", values), ("speed", speed), ("acceleration", acceleration), ("jerk", jerk))]  # fmt: skip
-    return Drive(name or link, link, on, pair, *real)
+    given = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk}
+    numbers = {key: real(f"drives.{name or link}.{key}", value) for key, value in given.items()}
+    return Drive(name or link, link, on, pair, **numbers, law=as_law(f"drives.{name or link}.law", law))
 
 
 def drawn(**points: Any) -> Drawn:
@@ -190,7 +199,7 @@ def expect(quantity: str, value: Any, tolerance: float, **at: float) -> Expectat
     (('crank', 1.0),)
     """
     return Expectation(
-        quantity, complex(vector("expected", value)), float(_real("expected.tolerance", tolerance)), tuple(at.items())
+        quantity, complex(vector("expected", value)), float(real("expected.tolerance", tolerance)), tuple(at.items())
     )
 
 
@@ -236,7 +245,12 @@ def _points(where: str, points: Mapping[str, Any]) -> dict[str, Number]:
     return placed
 
 
-def _real(where: str, value: Any) -> Number:
+def real(where: str, value: Any) -> Number:
+    """A number, or an array that cannot be written to; None stays None. Raises InvalidMechanism naming `where`.
+
+    >>> real("time", [0, 1]).tolist()
+    [0.0, 1.0]
+    """
     if value is None:
         return None
     try:

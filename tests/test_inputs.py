@@ -9,7 +9,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.motion.inputs import FULL_TURN, fit, inputs
-from compoundkin.motion.plan import Plan, blocks, rates
+from compoundkin.motion.plan import Plan
+from compoundkin.motion.run import blocks, rates
 
 
 def arm(**words: Any) -> ck.Mechanism:

@@ -35,6 +35,13 @@ def test_it_holds_all_of_the_catalog_and_the_types_marker(unpacked):
     assert (unpacked / "compoundkin" / "py.typed").is_file()
 
 
+def test_it_holds_the_list_of_kinematic_chains(unpacked):
+    code = "import compoundkin.chains as c; print(c.__file__, len(c.chains(10)), c.number_of(c.chains(10)[136]))"
+    where, *numbers = run(unpacked, "-c", code).stdout.split()
+    assert Path(where).is_relative_to(unpacked)
+    assert numbers == ["230", "137"]
+
+
 def test_its_command_reports_a_shipped_mechanism(unpacked):
     where = run(unpacked, "-c", "import compoundkin; print(compoundkin.__file__)").stdout.strip()
     assert Path(where).is_relative_to(unpacked)

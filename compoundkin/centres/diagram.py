@@ -124,7 +124,7 @@ def _on_lines(primaries: tuple[Primary, ...], structure: Structure, number: dict
 
     That is where one link, such as the carrier of two gears, has a pair with both.
     """
-    turning = {pair.name for pair in structure.mechanism.written_pairs if pair.counts_turns}
+    turning = {pair.name for pair in structure.mechanism.written_pairs if pair.counts_turns and pair.held == 1}
     for primary in primaries:
         on: tuple[int, ...] = ()
         if primary.pair in turning:

@@ -24,6 +24,9 @@ OPTIONS: tuple[Any, ...] = (
     click.option("--step", "step", type=float, metavar="VALUE", help="Distance between its values."),
     click.option("--drive", "drives", multiple=True, metavar="NAME=VALUES",
                  help="Values of a driver: crank=35, crank=0,35,60 or crank=0:360:5 (from:to:step)."),
+    click.option("--time", "time", metavar="SECONDS",
+                 help="Solve at these times: 0:2:0.01 (from:to:step) or 0,0.5,1. Drivers move by their laws, others "
+                 "from their value by their speed and acceleration."),
     click.option("--speed", "speeds", multiple=True, metavar="[NAME=]VALUE",
                  help="Its rate in rad/s or length/s; also 300rpm or 90deg (a second)."),
     click.option("--acceleration", "accelerations", multiple=True, metavar="[NAME=]VALUE",
@@ -72,9 +75,10 @@ def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[st
 
     rates = {what: values.of_rates(structure, f"--{what}", asked[f"{what}s"]) for what in ("speed", "acceleration")}
     modes = values.of_modes(structure, asked["modes"])
+    time = values.of_times(asked.get("time"))
     with working("solving"), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UnassembledPoses)
-        motion = solve(structure, driven, **rates, order=_order(structure, asked), modes=modes)
+        motion = solve(structure, driven, time=time, **rates, order=_order(structure, asked), modes=modes)
     for warning in caught:
         _pass_on(warning, motion)
     return motion

@@ -56,7 +56,7 @@ def columns(motion: Motion, outputs: Sequence[str] = ()) -> Columns:
     found = [Values(name, units.get(name, ""), values) for name, values in tables.columns(motion).items()]
     if not outputs:
         return tuple(found)
-    kept = {"assembled", *(f"{name}.value" for name in motion.drives)}
+    kept = {"assembled", "time", *(f"{name}.value" for name in motion.drives)}
     designs = max(len(motion.shape) - 1, 0)
     *first, last = [*found[:designs], *(c for c in found[designs:] if c.name in kept)]
     return (*first, *chosen, last)

@@ -15,8 +15,10 @@ from compoundkin.quantities import degrees
 from compoundkin.reports.parts import driven_pairs
 from compoundkin.series import Number
 from compoundkin.structure import Structure
+from compoundkin.words import Drive
 
 HOW = "write 35, 0,35,60 or 0:360:5 (from:to:step)"
+TIMES = "write seconds: 0.5, 0,0.5,1 or 0:2:0.01 (from:to:step)"
 
 
 def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
@@ -38,8 +40,18 @@ def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Numb
         shown[name] = _spanned(structure, name, span)
     angles = _angles(structure)
     values = {name: np.deg2rad(v) if angles[name] else v for name, v in shown.items()}
-    _of_one_length(structure, values)
+    if asked.get("time") is None:
+        _of_one_length(structure, values)
     return {name: float(v[0]) if len(v) == 1 else v for name, v in values.items()}
+
+
+def of_times(text: str | None) -> Number | None:
+    """The times asked for, in seconds; None where none are.
+
+    >>> of_times("0:1:0.5").tolist()
+    [0.0, 0.5, 1.0]
+    """
+    return None if text is None else numbers(text, "--time", TIMES)
 
 
 def of_pose(structure: Structure, given: Sequence[str], option: str = "--at") -> dict[str, float]:
@@ -57,10 +69,18 @@ def of_pose(structure: Structure, given: Sequence[str], option: str = "--at") ->
 
 
 def _first(structure: Structure) -> dict[str, float]:
-    """The first value of every driver that has values or turns a full turn."""
-    angles = _angles(structure)
-    own = {d.name: FULL_TURN if d.values is None and angles[d.name] else d.values for d in structure.mechanism.drives}
+    """The first value of every driver that has values, a law, or turns a full turn."""
+    own = {drive.name: _values_of(structure, drive) for drive in structure.mechanism.drives}
     return {name: float(np.ravel(values)[0]) for name, values in own.items() if values is not None}
+
+
+def _values_of(structure: Structure, drive: Drive) -> Number | None:
+    """The values of a driver that it has itself; one that has a law, its first one."""
+    if drive.law is not None:
+        time = structure.mechanism.time
+        first = float(np.ravel(time)[0]) if time is not None else (drive.law.span or (0.0,))[0]
+        return drive.law.coordinate(np.array([first]), 0).c[0]
+    return FULL_TURN if drive.values is None and _angles(structure)[drive.name] else drive.values
 
 
 def _single(text: str, where: str, is_angle: bool) -> float:
@@ -71,7 +91,7 @@ def _single(text: str, where: str, is_angle: bool) -> float:
     return float(np.deg2rad(value)) if is_angle else value
 
 
-def numbers(text: str, where: str) -> Number:
+def numbers(text: str, where: str, how: str = HOW) -> Number:
     """Numbers written one by one, or as from:to:step.
 
     >>> numbers("0:10:5", "--at").tolist()
@@ -79,21 +99,21 @@ def numbers(text: str, where: str) -> Number:
     """
     parts = text.split(":")
     if len(parts) == 1:
-        return np.array([number(part, where) for part in text.split(",")])
+        return np.array([number(part, where, how) for part in text.split(",")])
     if len(parts) != 3:
-        raise _wrong(where, f"{text!r} is not a range", HOW)
-    start, stop, step = (number(part, where) for part in parts)
+        raise _wrong(where, f"{text!r} is not a range", how)
+    start, stop, step = (number(part, where, how) for part in parts)
     return stepped(start, stop, step, where)
 
 
-def number(text: str, where: str) -> float:
+def number(text: str, where: str, how: str = HOW) -> float:
     """One finite number."""
     try:
         value = float(text)
     except ValueError:
-        raise _wrong(where, f"{text!r} is not a number", HOW) from None
+        raise _wrong(where, f"{text!r} is not a number", how) from None
     if not isfinite(value):
-        raise _wrong(where, f"{text!r} is not finite", HOW)
+        raise _wrong(where, f"{text!r} is not finite", how)
     return value
 
 
@@ -194,9 +214,7 @@ def _angles(structure: Structure) -> dict[str, bool]:
 
 
 def _of_one_length(structure: Structure, values: Mapping[str, Number]) -> None:
-    own = {drive.name: drive.values for drive in structure.mechanism.drives}
-    angles = _angles(structure)
-    full = {name: FULL_TURN if v is None and angles[name] else v for name, v in own.items()}
+    full = {drive.name: _values_of(structure, drive) for drive in structure.mechanism.drives}
     lengths = {name: np.shape(v)[-1] for name, v in {**full, **values}.items() if v is not None and np.shape(v)}
     if len({length for length in lengths.values() if length > 1}) > 1:
         told = ", ".join(f"{name} has {length}" for name, length in lengths.items())

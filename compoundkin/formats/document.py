@@ -33,6 +33,7 @@ HEAD = (
     Key("source", "text", "Where the mechanism comes from: book, page, paper.", default=""),
     Key("description", "text", "What it is and what to look at.", default=""),
     Key("outputs", "names", 'The quantities a report tabulates, such as "bar.angle".', default=()),
+    Key("time", "times", "The times in seconds at which drivers with laws are solved unless others are asked for."),
 )
 
 LINK = (
@@ -52,7 +53,7 @@ MODE = (
 )
 
 EXPECTED = (
-    Key("at", "at", 'Driver values by driver; rates by "DRIVER.speed" or "DRIVER.acceleration".', default=()),
+    Key("at", "at", 'Driver values; rates by "DRIVER.speed" or "DRIVER.acceleration"; or the time.', default=()),
     Key("quantity", "name", 'What is expected, such as "G.velocity".', required=True),
     Key("value", "published", "The published value; degrees where the quantity is an angle.", required=True),
     Key("tolerance", "margin", "How far the solved value may be from it, in the same unit.", required=True),

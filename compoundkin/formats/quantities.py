@@ -10,6 +10,7 @@ import numpy as np
 from compoundkin.formats.values import (
     Reader,
     bad,
+    flag,
     held,
     name,
     names,
@@ -19,6 +20,8 @@ from compoundkin.formats.values import (
     single,
     table,
     text,
+    two,
+    whole,
     wrong,
 )
 from compoundkin.keys import Kind
@@ -56,6 +59,17 @@ def values(value: Any, where: str, angle: bool | None) -> Number:
     if isinstance(value, dict) and value.keys() & {"from", "to", "step"}:
         return coordinate(_range(value, where), where, angle)
     return coordinate(value, where, angle)
+
+
+def times(value: Any, where: str, angle: bool | None = None) -> Number:
+    """Seconds, also as ``{from, to, step}``.
+
+    >>> times({"from": 0, "to": 1, "step": 0.5}, "time").tolist()
+    [0.0, 0.5, 1.0]
+    """
+    if isinstance(value, dict) and not value.keys() & {"from", "to", "step"}:
+        raise wrong(where, value, "a list of times", "write seconds, or { from = 0, to = 2, step = 0.01 }")
+    return values(value, where, False)
 
 
 def _range(value: dict[str, Any], where: str) -> list[float]:
@@ -147,8 +161,14 @@ READERS: dict[Kind, Reader] = {
     "angle": degrees,
     "point": point,
     "sign": sign,
+    "flag": flag,
+    "two": two,
     "points": points,
     "drawing": table,
+    "whole": whole,
+    "span": single,
+    "times": times,
+    "coordinate": coordinate,
     "values": values,
     "rate": rate,
     "at": table,

@@ -10,9 +10,10 @@ from compoundkin.errors import InvalidMechanism, Problem
 from compoundkin.formats import document as doc
 from compoundkin.formats.quantities import rate, values
 from compoundkin.formats.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
-from compoundkin.formats.values import bad, described, wrong
+from compoundkin.formats.values import bad, described, single, wrong
 from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import WRITTEN, Pair
+from compoundkin.validation import TIME
 from compoundkin.words import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drive
 
 
@@ -154,6 +155,8 @@ def _expected(angles: Mapping[str, bool | None], raw: Any, where: str, log: Reco
 def _at(angles: Mapping[str, bool | None], key: str, raw: Any, where: str, log: Recovery) -> float:
     name, _, rated = key.partition(".")
     try:
+        if key == TIME and key not in angles:
+            return single(raw, where)
         if isinstance(raw, dict) and not rated and "rad" not in raw:
             raise wrong(where, raw, "a number", f'for rates write "{key}.speed" in quotes')
         out = (rate if rated else values)(raw, where, angles.get(name))

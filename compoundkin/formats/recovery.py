@@ -6,10 +6,11 @@ A problem of the mechanism that only a stand-in causes is told apart and not rep
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from compoundkin.errors import InvalidMechanism, Problem, nearest
+from compoundkin.formats import laws, profiles
 from compoundkin.formats.quantities import READERS
 from compoundkin.formats.values import bad, wrong
 from compoundkin.keys import Key, Kind
@@ -23,6 +24,15 @@ JOINED = (r"links\.[^.]+$", r"drives\[\d+\]$")
 LETTERS = (*JOINED, r"drawn\.", r"points\.")
 DRAWING = (r"links\..+\.points\.", r"drawn\.")
 ALL = (r".*",)
+
+
+# What is read table by table, each with its own problems.
+TAGGED: dict[Kind, Callable[[Recovery, Any, str, bool | None], Any]] = {
+    "law": laws.law,
+    "segments": laws.segments,
+    "profile": profiles.profile,
+    "program": profiles.program,
+}
 
 
 class Recovery:
@@ -82,6 +92,8 @@ class Recovery:
     def _value(self, kind: Kind, raw: Any, where: str, angle: bool | None) -> Any:
         if isinstance(raw, dict) and (kind == "drawing" or (kind == "points" and raw)):
             return self.points(raw, where)
+        if kind in TAGGED:
+            return TAGGED[kind](self, raw, where, angle)
         try:
             return READERS[kind](raw, where, angle)
         except InvalidMechanism as error:
@@ -100,7 +112,8 @@ class Recovery:
         point = complex(0.7310585 * self._count, 0.3678794 * self._count)
         values: dict[Kind, Any] = {
             "name": name, "text": name, "names": (), "point": point, "points": {name: point}, "drawing": {},
-            "sign": 1, "values": None, "rate": 1.0, "at": {},
+            "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
+            "profile": None, "program": None, "place": point, "places": (),
         }  # fmt: skip
         return values.get(kind, 0.0)
 

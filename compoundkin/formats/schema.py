@@ -8,7 +8,10 @@ from typing import Any
 
 from compoundkin.formats import document as doc
 from compoundkin.formats.atomic import write_atomically
+from compoundkin.formats.laws import KIND
 from compoundkin.keys import Key, Kind
+from compoundkin.laws import WRITTEN
+from compoundkin.programs import Segment
 from compoundkin.words import FRAME
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -37,7 +40,7 @@ def schema() -> dict[str, Any]:
             *(table.name for table in doc.TABLES if table.required),
         ],
         "additionalProperties": False,
-        "$defs": DEFINITIONS,
+        "$defs": {**DEFINITIONS, "law": _law(), "segment": _table(Segment.keys)},
     }
 
 
@@ -58,6 +61,17 @@ def _table(keys: tuple[Key, ...]) -> dict[str, Any]:
     out: dict[str, Any] = {"type": "object", "properties": {key.name: _key(key) for key in keys}}
     required = [key.name for key in keys if key.required]
     return {**out, **({"required": required} if required else {}), "additionalProperties": False}
+
+
+def _law() -> dict[str, Any]:
+    """One table for each kind of law."""
+    tables = [(name, _table(kind.keys)) for name, kind in WRITTEN.items()]
+    ways = [
+        {**table, "properties": {KIND: {"const": name}, **table["properties"]},
+         "required": [KIND, *table.get("required", ())]}
+        for name, table in tables
+    ]  # fmt: skip
+    return {"description": "How a driven coordinate moves in time.", "anyOf": ways}
 
 
 def _key(key: Key) -> dict[str, Any]:
@@ -101,6 +115,10 @@ DEFINITIONS: dict[str, Any] = {
         "description": "Degrees for a pin, lengths for a slide; {from, to, step}; {rad = ...}.",
         "anyOf": [_ref("angle"), _closed(**{"from": NUMBER, "to": NUMBER, "step": NUMBER})],
     },
+    "times": {
+        "description": "Seconds: a list or {from, to, step}.",
+        "anyOf": [_ref("numbers"), _closed(**{"from": NUMBER, "to": NUMBER, "step": NUMBER})],
+    },
     "rate": {
         "description": "rad/s for a pin, length/s for a slide; {rpm = ...}; {deg = ...} (a second).",
         "anyOf": [_ref("numbers"), _closed(rpm=_ref("numbers")), _closed(deg=_ref("numbers"))],
@@ -130,6 +148,8 @@ FRAGMENTS: dict[Kind, dict[str, Any]] = {
     "angle": _ref("angle"),
     "point": _ref("point"),
     "sign": {"enum": [1, -1]},
+    "flag": {"type": "boolean"},
+    "two": _pair_of(_ref("numbers"), _ref("numbers")),
     "points": {
         "anyOf": [
             {"type": "object", "additionalProperties": _ref("point"), "minProperties": 1},
@@ -137,6 +157,12 @@ FRAGMENTS: dict[Kind, dict[str, Any]] = {
         ]
     },
     "drawing": {"type": "object", "additionalProperties": _ref("point")},
+    "whole": {"type": "integer"},
+    "span": {"type": "number", "exclusiveMinimum": 0},
+    "times": _ref("times"),
+    "coordinate": _ref("angle"),
+    "segments": {"type": "array", "items": _ref("segment"), "minItems": 1},
+    "law": _ref("law"),
     "values": _ref("values"),
     "rate": _ref("rate"),
     "at": {

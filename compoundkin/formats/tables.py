@@ -29,7 +29,7 @@ PER_SECOND = ("", "/s", "/s^2", "/s^3")
 
 
 def columns(motion: Motion, *, degrees: bool = False) -> dict[str, Array]:
-    """The flat columns of a motion by name: drivers, points (.x and .y), links, pairs, `assembled`.
+    """The flat columns of a motion by name: `time` if it has any, drivers, points (.x, .y), links, pairs, `assembled`.
 
     Every array has one entry a pose, the last axis of the motion running fastest; where the motion has
     designs, index columns come first: `design`, or `design0`, `design1` ... Angles are radians, or degrees
@@ -115,6 +115,8 @@ def _quantities(motion: Motion) -> Iterator[tuple[str, str, Array]]:
     """Name, unit and values of every quantity; where a pin and a driver have one name, the driver's."""
     orders = range(motion.order + 1)
     length = motion.mechanism.unit or "length"
+    if motion.time is not None:
+        yield "time", "s", motion.time
     for name, driven in motion.drives.items():
         unit = "rad" if driven.is_angle else length
         yield from ((f"{name}.{DRIVE[k]}", unit + PER_SECOND[k], driven.derivative(k)) for k in orders)

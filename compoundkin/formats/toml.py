@@ -57,6 +57,11 @@ def _section_of(path: str, table: Mapping[str, Any]) -> Iterator[str]:
 def _has_own_heading(key: str, value: Any, nested: bool) -> bool:
     if isinstance(value, dict):
         return not nested or len(f"{_key(key)} = {_inline(value)}") > WIDTH
+    # tables listed in a table are short: the segments of a program
+    return not nested and _lists_tables(value)
+
+
+def _lists_tables(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and all(_is_table(entry) for entry in value)
 
 
@@ -72,7 +77,8 @@ def _wrapped(value: Any, room: int, indent: str = "") -> str:
     inner = f"{indent}    "
     lines: list[str] = []
     for entry in (_wrapped(entry, WIDTH - len(inner) - 1, inner) for entry in value):
-        if lines and len(lines[-1]) + len(entry) + 2 <= WIDTH and "\n" not in lines[-1] + entry:
+        fits = lines and len(lines[-1]) + len(entry) + 2 <= WIDTH and "\n" not in lines[-1] + entry
+        if fits and not _lists_tables(value):
             lines[-1] += f" {entry},"
         else:
             lines.append(f"{inner}{entry},")
@@ -85,6 +91,8 @@ def _inline(value: Any) -> str:
         return f"{{ {entries} }}" if entries else "{}"
     if isinstance(value, list):
         return f"[{', '.join(map(_inline, value))}]"
+    if isinstance(value, bool):
+        return str(value).lower()
     return _literal(value) if isinstance(value, str) else repr(value)
 
 

@@ -99,6 +99,31 @@ def sign(value: Any, where: str, angle: bool | None = None) -> int:
     return int(value)
 
 
+def flag(value: Any, where: str, angle: bool | None = None) -> bool:
+    """True or false."""
+    if not isinstance(value, bool):
+        raise wrong(where, value, "true or false")
+    return value
+
+
+def two(value: Any, where: str, angle: bool | None = None) -> tuple[Number, Number]:
+    """Two numbers, or two nested lists of them.
+
+    >>> two([20, 40], "gears[0].teeth")
+    (20.0, 40.0)
+    """
+    if not isinstance(value, list) or len(value) != 2:
+        raise wrong(where, value, "a list of two numbers", "write [20, 40]")
+    return numbers(value[0], f"{where}[0]"), numbers(value[1], f"{where}[1]")
+
+
+def whole(value: Any, where: str, angle: bool | None = None) -> int:
+    """A whole number."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise wrong(where, value, "a whole number")
+    return value
+
+
 def numbers(value: Any, where: str, angle: bool | None = None) -> Number:
     """A finite number, or a nested list of them as an array.
 
@@ -141,7 +166,7 @@ def _leaves(value: Any) -> Iterator[Any]:
         yield value
 
 
-def single(value: Any, where: str) -> float:
+def single(value: Any, where: str, angle: bool | None = None) -> float:
     """A single number, not a list."""
     if isinstance(value, list | dict):
         raise wrong(where, value, "a single number")

@@ -8,8 +8,10 @@ from typing import Any
 from compoundkin.errors import InvalidInput, Problem
 from compoundkin.formats import document as doc
 from compoundkin.formats import exact
+from compoundkin.formats.laws import KIND
 from compoundkin.formats.reading import default_name
 from compoundkin.keys import Key, Kind
+from compoundkin.laws import Function
 from compoundkin.mechanism import Mechanism, same
 from compoundkin.pairs import WRITTEN, Pair
 from compoundkin.series import Number
@@ -19,7 +21,7 @@ from compoundkin.words import Expectation, Link
 def document(mechanism: Mechanism) -> dict[str, Any]:
     """The document that says what a mechanism says, in the order in which files are written.
 
-    Raises InvalidInput for a link of which only some points have coordinates: files cannot say that.
+    Raises InvalidInput for what files cannot say: a link of which only some points have coordinates, a Python function.
 
     >>> from compoundkin.words import link
     >>> document(Mechanism("Pin", link("frame", A=(0, 0))))["links"]
@@ -68,8 +70,15 @@ def _pair(item: Pair) -> dict[str, Any]:
 
 def _drive(mechanism: Mechanism, index: int) -> dict[str, Any]:
     item = mechanism.drives[index]
+    if isinstance(item.law, Function):
+        what, remedy = "a Python function cannot be written to a file", "write a time_table of its values instead"
+        raise InvalidInput(Problem(f"drives.{item.name}.law", what, remedy))
     out = _table(item, type(item).keys, bool(doc.is_angle(mechanism, item)))
     return {key: value for key, value in out.items() if key != "name" or value != item.link}
+
+
+def _law(item: Any, angle: bool) -> dict[str, Any]:
+    return {KIND: item.kind, **_table(item, item.keys, angle)}
 
 
 def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
@@ -100,9 +109,17 @@ WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "text": lambda value, _: value,
     "names": lambda value, _: list(value),
     "sign": lambda value, _: int(value),
+    "flag": lambda value, _: bool(value),
+    "two": lambda value, _: [exact.plain(entry) for entry in value],
     "length": lambda value, _: exact.plain(value),
     "angle": lambda value, _: exact.degrees(value),
     "point": lambda value, _: exact.point(value),
+    "whole": lambda value, _: int(value),
+    "span": lambda value, _: exact.plain(value),
+    "times": lambda value, _: exact.values(value, False),
+    "segments": lambda value, angle: [_table(one, one.keys, angle) for one in value],
+    "law": _law,
+    "coordinate": exact.coordinate,
     "values": exact.values,
     "rate": exact.rate,
     "at": lambda value, _: None,

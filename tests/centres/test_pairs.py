@@ -26,7 +26,7 @@ def test_the_pair_allows_the_motion_about_its_centre(kind: type[Pair]) -> None:
     world = pair.generic(rng)
     ends = tuple(carrier.inverse().carry(end) for end in world)
     centre = pair.centre(ends, (carrier, carrier))  # type: ignore[arg-type]
-    if centre is None:
+    if centre is None or len(ends) > 2:  # with a carrier: tests/pairs/test_contract.py
         return
     matrix = pair.jacobian(ends, (carrier, carrier))  # type: ignore[arg-type]
     for x, y, w in _twists(centre):

@@ -1,0 +1,157 @@
+"""The shipped lists of chains and trusses; inversions and Assur groups from them.
+
+A chain is known by its place in the list of chains with as many links and the same mobility: "8-link chain 7".
+The lists are made by `compoundkin.chains.making`; their order is part of the names and stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from compoundkin.chains.canonical import Coloured, canonical
+from compoundkin.chains.chain import Chain
+from compoundkin.chains.generation import chains_of
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+FILE = Path(__file__).with_name("data") / "chains.txt"
+COMMENT = "#"
+# Larger chains are made where they are asked for: twelve links take half a minute.
+MOST_LINKS = 10
+
+
+@dataclass(frozen=True)
+class AssurGroup:
+    """A Baranov truss without one of its links: what was joined to it are the outer pairs.
+
+    >>> triad = assur_groups(4)[1]
+    >>> triad.links, triad.outer, triad.inner
+    (4, 3, 3)
+    """
+
+    truss: Chain
+    removed: int
+
+    @property
+    def links(self) -> int:
+        """How many links the group has."""
+        return self.truss.links - 1
+
+    @property
+    def outer(self) -> int:
+        """How many pairs attach the group: its order."""
+        return self.truss.degrees[self.removed]
+
+    @property
+    def inner(self) -> int:
+        """How many pairs its links have among themselves."""
+        return len(self.truss.pairs) - self.outer
+
+    @property
+    def code(self) -> str:
+        """A code equal exactly for groups that are the same but for the numbering of their links."""
+        colours = ["outside" if link == self.removed else "link" for link in range(self.truss.links)]
+        return canonical(Coloured.of(colours, self.truss.pairs)).code
+
+    def graph(self) -> nx.MultiGraph:
+        """The group as NetworkX has it; the attribute `outer` of a link says how many outer pairs it has."""
+        graph = self.truss.graph()
+        outside = self.truss.neighbours[self.removed]
+        graph.remove_node(self.removed)
+        for link in graph:
+            graph.nodes[link]["outer"] = int(link in outside)
+        return graph
+
+
+@dataclass(frozen=True)
+class Inversion:
+    """A chain with one of its links as the frame: the first of those that are equivalent to it."""
+
+    chain: Chain
+    frame: int
+
+
+def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
+    """All chains with so many links, in the order that numbers them; those of mobility 3 with a bridging pair too.
+
+    >>> [len(chains(links)) for links in (4, 6, 8, 10)]
+    [1, 2, 16, 230]
+    >>> len(chains(9, mobility=2)), len(chains(10, mobility=3))
+    (40, 98)
+    """
+    return _listed().get((links, mobility)) or _made(links, mobility)
+
+
+def trusses(links: int) -> tuple[Chain, ...]:
+    """All Baranov trusses with so many links: no mobility, but every part of them has.
+
+    >>> [len(trusses(links)) for links in (3, 5, 7, 9)]
+    [1, 1, 3, 28]
+    """
+    return chains(links, mobility=0)
+
+
+def inversions(links: int, mobility: int = 1) -> tuple[Inversion, ...]:
+    """All mechanisms that fixing one link of a chain gives, equivalent links once.
+
+    >>> [len(inversions(links)) for links in (4, 6, 8, 10)]
+    [1, 5, 71, 1834]
+    """
+    return tuple(Inversion(chain, alike[0]) for chain in chains(links, mobility) for alike in chain.inversions)
+
+
+def assur_groups(links: int) -> tuple[AssurGroup, ...]:
+    """All Assur groups of revolute pairs with so many links: every truss without one link, equivalent ones once.
+
+    Source: E. E. Peisakh, Structural analysis of planar jointed mechanisms: current state and problems,
+    J. Machinery Manufacture and Reliability 37 (2008) 207.
+
+    >>> [len(assur_groups(links)) for links in (2, 4, 6, 8)]
+    [1, 2, 10, 173]
+    """
+    return tuple(AssurGroup(truss, alike[0]) for truss in trusses(links + 1) for alike in truss.inversions)
+
+
+def number_of(chain: Chain) -> int | None:
+    """The place of a chain in its list, from 1; None if its list is not shipped or does not hold it.
+
+    >>> number_of(Chain.of(4, [(0, 1), (1, 2), (2, 3), (3, 0)]))
+    1
+    >>> number_of(Chain.of(3, [(0, 1), (1, 2)]))
+    """
+    return _numbers().get((chain.mobility, chain.code)) if chain.links <= MOST_LINKS else None
+
+
+def read(lines: Iterable[str]) -> dict[tuple[int, int], tuple[Chain, ...]]:
+    """The chains of a list by links and mobility: a line "links mobility code" each, other lines are comments.
+
+    >>> [chain.links for chain in read(["# a comment", "3 0 Bw"])[3, 0]]
+    [3]
+    """
+    found: dict[tuple[int, int], list[Chain]] = {}
+    for line in lines:
+        if line.strip() and not line.startswith(COMMENT):
+            links, mobility, code = line.split()
+            found.setdefault((int(links), int(mobility)), []).append(Chain.from_code(code))
+    return {key: tuple(listed) for key, listed in found.items()}
+
+
+@cache
+def _listed() -> dict[tuple[int, int], tuple[Chain, ...]]:
+    return read(FILE.read_text(encoding="ascii").splitlines())
+
+
+@cache
+def _made(links: int, mobility: int) -> tuple[Chain, ...]:
+    return chains_of(links, mobility, bridged=True)
+
+
+@cache
+def _numbers() -> dict[tuple[int, str], int]:
+    # the lists hold canonical forms, so that their own numbering gives the code
+    return {(m, chain.graph6): k for (_, m), listed in _listed().items() for k, chain in enumerate(listed, 1)}

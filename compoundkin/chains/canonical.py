@@ -1,0 +1,253 @@
+"""One code for all drawings of a graph: equal exactly for isomorphic graphs; and the symmetries of a graph.
+
+Vertices are told apart by colours, then by how many neighbours of each kind they have (refinement). Where
+that leaves alike vertices in one cell, each of them is singled out in turn (individualisation), which makes
+a tree whose leaves are orderings of the vertices; the best leaf is the canonical one. Two leaves that read
+the same are a symmetry, and what symmetries show to be alike is tried once.
+Source: B. D. McKay, Practical graph isomorphism, Congressus Numerantium 30 (1981) 45; B. D. McKay and
+A. Piperno, Practical graph isomorphism II, J. Symbolic Computation 60 (2014) 94.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+# Cells of vertices, each cell the bits of an integer; an ordering of the vertices where all cells are single.
+_Cells: TypeAlias = list[int]
+Permutation: TypeAlias = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Coloured:
+    """A graph with coloured vertices 0, 1, ...: the colour of each, and its neighbours as the bits of an integer."""
+
+    colours: tuple[str, ...]
+    masks: tuple[int, ...]
+
+    @classmethod
+    def of(cls, colours: Iterable[str], edges: Iterable[tuple[int, int]]) -> Coloured:
+        """The graph with these colours and edges; no edge may be there twice.
+
+        >>> Coloured.of("aab", [(0, 1), (1, 2)]).masks
+        (2, 5, 2)
+        """
+        names = tuple(colours)
+        masks = [0] * len(names)
+        for first, second in edges:
+            masks[first] |= 1 << second
+            masks[second] |= 1 << first
+        return cls(names, tuple(masks))
+
+
+@dataclass(frozen=True)
+class Canonical:
+    """The canonical form of a graph: its code, the vertices in canonical order, and its symmetries.
+
+    `adjacency` is the adjacency matrix in canonical order above its diagonal, column by column, as one number;
+    `code` puts the colours with their numbers of vertices before it. A generator g moves vertex v to g[v];
+    `symmetries` is the order of the automorphism group.
+    """
+
+    code: str
+    adjacency: int
+    order: Permutation
+    generators: tuple[Permutation, ...]
+    symmetries: int
+
+    @property
+    def orbits(self) -> tuple[tuple[int, ...], ...]:
+        """The vertices that symmetries carry into each other, together.
+
+        >>> canonical(Coloured.of("aaa", [(0, 1), (1, 2)])).orbits
+        ((0, 2), (1,))
+        """
+        return orbits(len(self.order), self.generators)
+
+
+def orbits(size: int, generators: Sequence[Sequence[int]]) -> tuple[tuple[int, ...], ...]:
+    """The classes into which permutations of 0, 1, ... part their points, in the order of their least.
+
+    >>> orbits(4, [(1, 0, 2, 3), (0, 1, 3, 2)])
+    ((0, 1), (2, 3))
+    """
+    leader = list(range(size))
+    for generator in generators:
+        for point, image in enumerate(generator):
+            first, second = _top(leader, point), _top(leader, image)
+            leader[max(first, second)] = min(first, second)
+    classes: dict[int, list[int]] = {}
+    for point in range(size):
+        classes.setdefault(_top(leader, point), []).append(point)
+    return tuple(tuple(members) for members in classes.values())
+
+
+def canonical(graph: Coloured) -> Canonical:
+    """The canonical form of a graph.
+
+    >>> path, same = [(0, 1), (1, 2), (2, 3)], [(2, 0), (0, 3), (3, 1)]
+    >>> canonical(Coloured.of("aaaa", path)).code == canonical(Coloured.of("aaaa", same)).code
+    True
+    >>> canonical(Coloured.of("aaaa", path)).symmetries
+    2
+    >>> canonical(Coloured.of("aaab", path)).symmetries
+    1
+    """
+    cells = [_bits(members) for _, members in _by_colour(graph.colours)]
+    search = _Search(graph.masks)
+    search.visit(refined(graph.masks, cells, cells), (), ())
+    code = f"{_colour_text(graph.colours)}:{search.best.adjacency:x}"
+    return Canonical(code, search.best.adjacency, search.best.order, tuple(search.generators), search.symmetries())
+
+
+def refined(masks: Sequence[int], cells: _Cells, splitters: Sequence[int]) -> _Cells:
+    """The coarsest splitting of cells in which all vertices of one have equally many neighbours in each other."""
+    cells, waiting = list(cells), list(splitters)
+    while waiting:
+        splitter = waiting.pop(0)
+        parted: _Cells = []
+        for cell in cells:
+            parts = _parts(masks, cell, splitter) if cell & (cell - 1) else [cell]
+            parted += parts
+            if len(parts) > 1:
+                waiting += parts
+        cells = parted
+    return cells
+
+
+def _parts(masks: Sequence[int], cell: int, splitter: int) -> list[int]:
+    """A cell's vertices by their number of neighbours among the splitter's, fewest first."""
+    parts: dict[int, int] = {}
+    for vertex in _vertices(cell):
+        count = (masks[vertex] & splitter).bit_count()
+        parts[count] = parts.get(count, 0) | 1 << vertex
+    return [parts[count] for count in sorted(parts)]
+
+
+@dataclass(frozen=True)
+class _Leaf:
+    """An ordering of the vertices and the adjacency matrix it gives, after the cell sizes on the way there."""
+
+    trace: tuple[tuple[int, ...], ...]
+    adjacency: int
+    order: Permutation
+
+    @property
+    def key(self) -> tuple[tuple[tuple[int, ...], ...], int]:
+        return self.trace, self.adjacency
+
+
+@dataclass
+class _Search:
+    """The tree of orderings: the first leaf, the best one so far, and the symmetries found between leaves."""
+
+    masks: Sequence[int]
+    leaves: list[_Leaf] = field(default_factory=list)
+    generators: list[Permutation] = field(default_factory=list)
+    singled: list[int] = field(default_factory=list)
+
+    @property
+    def best(self) -> _Leaf:
+        return self.leaves[-1]
+
+    def visit(self, cells: _Cells, prefix: tuple[int, ...], trace: tuple[tuple[int, ...], ...]) -> bool:
+        """Go through a node where the vertices of `prefix` are singled out; whether the first leaf came up again.
+
+        It came up as the image of a symmetry that carries the whole way from the first path to here: nothing
+        on that way can be new.
+        """
+        trace = (*trace, _profile(self.masks, cells))
+        if self._hopeless(trace):
+            return False
+        target = next((cell for cell in cells if cell & (cell - 1)), 0)
+        if not target:
+            return self._leaf(_Leaf(trace, _adjacency(self.masks, cells), tuple(c.bit_length() - 1 for c in cells)))
+        tried: list[int] = []
+        for vertex in _vertices(target):
+            if tried and self._alike(prefix, vertex, tried):
+                continue
+            if not self.leaves:
+                self.singled.append(vertex)
+            single = 1 << vertex
+            split = [part for cell in cells for part in ((single, cell ^ single) if cell & single else (cell,))]
+            repeated = self.visit(refined(self.masks, split, [single]), (*prefix, vertex), trace)
+            if repeated and list(prefix) != self.singled[: len(prefix)]:
+                return True
+            tried.append(vertex)
+        return False
+
+    def _hopeless(self, trace: tuple[tuple[int, ...], ...]) -> bool:
+        """Whether no leaf below can be better than the best, nor be like the first (a symmetry)."""
+        depth = len(trace)
+        return bool(self.leaves) and trace > self.best.trace[:depth] and trace != self.leaves[0].trace[:depth]
+
+    def _alike(self, prefix: Sequence[int], vertex: int, tried: Sequence[int]) -> bool:
+        fixing = [g for g in self.generators if all(g[p] == p for p in prefix)]
+        return bool(fixing) and any(
+            vertex in members and any(t in members for t in tried) for members in orbits(len(self.masks), fixing)
+        )
+
+    def _leaf(self, leaf: _Leaf) -> bool:
+        for other in self.leaves:
+            if leaf.key == other.key:
+                image = dict(zip(other.order, leaf.order, strict=True))
+                self.generators.append(tuple(image[v] for v in range(len(image))))
+                return other is self.leaves[0]
+        if not self.leaves or leaf.key < self.best.key:
+            self.leaves = [*self.leaves[:1], leaf]
+        return False
+
+    def symmetries(self) -> int:
+        """The order of the group: the product of orbits, each under the symmetries that fix those before."""
+        total, fixing = 1, self.generators
+        for vertex in self.singled:
+            total *= next(len(members) for members in orbits(len(self.masks), fixing) if vertex in members)
+            fixing = [g for g in fixing if g[vertex] == vertex]
+        return total
+
+
+def _profile(masks: Sequence[int], cells: _Cells) -> tuple[int, ...]:
+    """What two nodes of the tree must share for a symmetry between them: sizes of cells, and how they are joined."""
+    firsts = [masks[cell.bit_length() - 1] for cell in cells]
+    return (*(cell.bit_count() for cell in cells), *((mask & cell).bit_count() for mask in firsts for cell in cells))
+
+
+def _adjacency(masks: Sequence[int], cells: _Cells) -> int:
+    """The adjacency matrix above its diagonal, column by column, as one number."""
+    number = 0
+    for column, cell in enumerate(cells):
+        mask = masks[cell.bit_length() - 1]
+        for row in cells[:column]:
+            number = number << 1 | bool(mask & row)
+    return number
+
+
+def _by_colour(colours: Sequence[str]) -> list[tuple[str, list[int]]]:
+    members: dict[str, list[int]] = {}
+    for vertex, colour in enumerate(colours):
+        members.setdefault(colour, []).append(vertex)
+    return sorted(members.items())
+
+
+def _colour_text(colours: Sequence[str]) -> str:
+    return ",".join(f"{len(members)} {colour!r}" for colour, members in _by_colour(colours))
+
+
+def _vertices(bits: int) -> list[int]:
+    found = []
+    while bits:
+        low = bits & -bits
+        found.append(low.bit_length() - 1)
+        bits ^= low
+    return found
+
+
+def _bits(vertices: Iterable[int]) -> int:
+    return sum(1 << vertex for vertex in vertices)
+
+
+def _top(leader: list[int], point: int) -> int:
+    while leader[point] != point:
+        point = leader[point]
+    return point

@@ -1,0 +1,217 @@
+"""What a mechanism is called by its structure: its chain, its inversion, what it derives from, its symmetries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from compoundkin.chains.atlas import MOST_LINKS
+from compoundkin.chains.chain import ordinal
+from compoundkin.chains.chain_names import chain_name
+from compoundkin.chains.joints import MOST_CHAINS, REVOLUTE, Joint, Joints
+from compoundkin.chains.slides import SLIDE, slider_name
+from compoundkin.errors import Problem, UnknownName, nearest
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+_PINS = {2: "double pin", 3: "triple pin"}
+# More names than these are counted instead of written out.
+_MANY = 4
+# Half a second; the work grows with about the cube of the links.
+MOST_COMPARED = 120
+
+
+@dataclass(frozen=True)
+class ChainName:
+    """What is known of a mechanism from its graph alone.
+
+    `title` is the name; `also` are well-known mechanisms of that structure; `chain` is the name without a
+    frame; `driven` says which kind of link is driven. `derived_from` are the chains of revolute pairs between
+    two links, with their inversions, that slides, multiple pins and higher pairs derive it from (none if it is one
+    itself). `parts` are the names of what a fractionated chain falls apart into at the links and pins
+    `fractionated_at`. `equivalent_links` and `equivalent_pairs` are carried into each other by the
+    `symmetries` (their number) of the chain without frame. `code` is equal exactly for
+    mechanisms of the same structure, letters of pairs, frame and driver. Above `MOST_COMPARED` links parts,
+    symmetries and code are not worked out: they are empty and 0.
+    """
+
+    title: str
+    mobility: int
+    assortment: str
+    chain: str
+    also: tuple[str, ...] = ()
+    driven: str = ""
+    derived_from: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
+    fractionated_at: tuple[str, ...] = ()
+    symmetries: int = 0
+    equivalent_links: tuple[tuple[str, ...], ...] = ()
+    equivalent_pairs: tuple[tuple[str, ...], ...] = ()
+    code: str = ""
+
+    def __str__(self) -> str:
+        return self.title
+
+
+def name_of(graph: nx.MultiGraph, frame: str | None = None, driver: str | Iterable[str] | None = None) -> ChainName:
+    """The name of a mechanism, given its kinematic graph, the link that is its frame and the one or ones driven.
+
+    Edges are read as `Joints.of` has it. Raises UnknownName for a frame or driver that is not in the graph.
+
+    >>> import networkx
+    >>> stephenson = networkx.MultiGraph()
+    >>> networkx.add_cycle(stephenson, ["frame", "crank", "plate", "rocker"])
+    >>> networkx.add_path(stephenson, ["frame", "arm", "rod", "plate"])
+    >>> name = name_of(stephenson, "frame", "crank")
+    >>> name.title, name.assortment, name.equivalent_links
+    ('Stephenson III', '4 binary, 2 ternary', (('frame', 'plate'), ('crank', 'rocker'), ('arm', 'rod')))
+    """
+    joints = Joints.of(graph)
+    fixed = None if frame is None else _number(joints, frame)
+    drivers = [_number(joints, link) for link in ((driver,) if isinstance(driver, str) else driver or ())]
+    kinds = ", ".join(_driven(joints, fixed, link) for link in drivers)
+    name = replace(_titled(joints, fixed, drivers[0] if drivers else None), driven=kinds)
+    return _compared(name, joints, fixed, drivers) if len(joints.links) <= MOST_COMPARED else name
+
+
+def _compared(name: ChainName, joints: Joints, frame: int | None, drivers: Sequence[int]) -> ChainName:
+    """The name with what follows from comparing links: parts, symmetries, code."""
+    marks = {**dict.fromkeys(drivers, "driver"), **({} if frame is None else {frame: "frame"})}
+    form, links, blocks = joints.canonical(), len(joints.links), joints.blocks()
+    parts = () if blocks == (tuple(range(links)),) else blocks
+    return replace(
+        name,
+        parts=tuple(_part_name(joints, block, frame) for block in parts),
+        fractionated_at=joints.names(_shared(joints, parts)),
+        symmetries=form.symmetries,
+        equivalent_links=tuple(joints.names(orbit) for orbit in form.orbits if orbit[0] < links),
+        equivalent_pairs=tuple(joints.names(orbit) for orbit in form.orbits if orbit[0] >= links),
+        code=joints.canonical(marks).code,
+    )
+
+
+def _titled(joints: Joints, frame: int | None, driver: int | None) -> ChainName:
+    """The name with what counting and looking up give."""
+    derived, chains, changed = _derived(joints, frame), _derived(joints, None), _changes(joints)
+    plain = ChainName(_described(joints), joints.mobility, _assortment(joints), _described(joints))
+    if not changed:
+        return replace(plain, title=derived[0], chain=chains[0]) if derived else plain
+    plain = replace(plain, derived_from=derived)
+    slider = slider_name(joints, frame, driver)
+    if slider:
+        return replace(plain, title=slider.title, chain=slider.chain, also=slider.also)
+    if len(derived) == 1 and not joints.multiple and not any(joint.is_higher for joint in joints.joints):
+        name, comma, inversion = derived[0].partition(",")
+        return replace(plain, title=f"{name} with {changed}{comma}{inversion}", chain=f"{chains[0]} with {changed}")
+    bare = f"{plain.title} with {changed}"
+    return replace(plain, title=f"{bare}, {_derivation(derived)}" if derived else bare, chain=bare)
+
+
+def _derived(joints: Joints, frame: int | None) -> tuple[str, ...]:
+    """The names of the chains it derives from, each once, in alphabetical order, numbers by their value."""
+    if joints.number_of_chains > MOST_CHAINS:
+        return ()
+    names = {chain_name(chain, frame): None for chain in joints.chains() if chain.links}
+    return tuple(sorted((name for name in names if name), key=_by_number))
+
+
+def _changes(joints: Joints) -> str:
+    """What a mechanism has that a chain of revolute pairs between two links has not, in words."""
+    texts = []
+    for pairs in sorted({joint.pairs for joint in joints.multiple}):
+        number = sum(joint.pairs == pairs for joint in joints.multiple)
+        texts.append(_counted(number, _PINS.get(pairs, f"pin of {pairs + 1} links")))
+    kinds = [_kind(joint) for joint in joints.joints if joint.code != REVOLUTE]
+    texts += [_counted(kinds.count(kind), kind) for kind in dict.fromkeys(sorted(kinds))]
+    return " and ".join(texts)
+
+
+def _kind(joint: Joint) -> str:
+    if joint.code == SLIDE:
+        return "slide"
+    return joint.kind or ("higher pair" if joint.is_higher else f"pair {joint.code}")
+
+
+def _described(joints: Joints) -> str:
+    """A name from the numbers alone, for what is in no list."""
+    blocks = joints.blocks()
+    if not blocks:
+        return "open chain"
+    kind = "chain" if joints.mobility > 0 else "structure"
+    fractionated = "fractionated " if len(blocks) > 1 else ""
+    mobility = f" of mobility {joints.mobility}" if joints.mobility != 1 else ""
+    rigid = " with a rigid part" if _has_rigid_part(joints) else ""
+    return f"{fractionated}{len(joints.links)}-link {kind}{mobility}{rigid}"
+
+
+def _has_rigid_part(joints: Joints) -> bool:
+    """Whether a movable mechanism, small enough to look, is rigid in a part whatever chain its pins are taken for."""
+    if joints.mobility < 1 or len(joints.links) > MOST_LINKS or joints.number_of_chains > MOST_CHAINS:
+        return False
+    return all(chain.has_rigid_part for chain in joints.chains())
+
+
+def _part_name(joints: Joints, block: tuple[int, ...], frame: int | None) -> str:
+    """The name of a part; its frame is the frame, or the link that is nearest to it."""
+    part = joints.part(block)
+    own = None if frame is None else block.index(min(block, key=lambda link: _distances(joints, frame)[link]))
+    return _titled(part, own, None).title
+
+
+def _distances(joints: Joints, start: int) -> list[int]:
+    """How many joints each link is away from one of them; links that cannot be reached are farthest."""
+    far = len(joints.links)
+    found = [far] * far
+    found[start], step = 0, 0
+    while step in found:
+        for joint in joints.joints:
+            if any(found[link] == step for link in joint.links):
+                for link in joint.links:
+                    found[link] = min(found[link], step + 1)
+        step += 1
+    return found
+
+
+def _shared(joints: Joints, blocks: tuple[tuple[int, ...], ...]) -> list[int]:
+    """The links and, numbered after them, the joints that two parts at least have in common."""
+    links = [k for k in range(len(joints.links)) if sum(k in block for block in blocks) > 1]
+    # a part that has two links of a joint has the joint
+    held = [sum(len({*joint.links} & {*block}) > 1 for block in blocks) for joint in joints.joints]
+    return [*links, *(len(joints.links) + k for k, number in enumerate(held) if number > 1)]
+
+
+def _driven(joints: Joints, frame: int | None, driver: int) -> str:
+    """Which kind of link is driven, and whether it is joined to the frame."""
+    kind = f"{ordinal(joints.degrees[driver])} link"
+    if frame is None:
+        return kind
+    joined = any({frame, driver} <= set(joint.links) for joint in joints.joints)
+    return f"{kind} {'next to' if joined else 'away from'} the frame"
+
+
+def _assortment(joints: Joints) -> str:
+    numbers = sorted(set(joints.degrees))
+    return ", ".join(f"{joints.degrees.count(degree)} {ordinal(degree)}" for degree in numbers)
+
+
+def _number(joints: Joints, link: str) -> int:
+    if link not in joints.links:
+        raise UnknownName(Problem(link, "the graph has no such link", nearest(link, joints.links)))
+    return joints.links.index(link)
+
+
+def _derivation(names: tuple[str, ...]) -> str:
+    if len(names) > _MANY:
+        return f"derived from {len(names)} inversions of simple-jointed chains"
+    return f"derived from {' or '.join(names)}"
+
+
+def _by_number(name: str) -> list[tuple[int, str]]:
+    return [(int(word), "") if word.isdigit() else (0, word) for word in name.replace(",", " ").split()]
+
+
+def _counted(number: int, word: str) -> str:
+    count = "one" if number == 1 else str(number)
+    return f"{count} {word}{'' if number == 1 else 's'}"
