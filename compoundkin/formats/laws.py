@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from compoundkin.errors import InvalidMechanism, Problem, nearest
 from compoundkin.formats.values import bad, described, wrong
+from compoundkin.keys import Key
 from compoundkin.laws import WRITTEN, Law
 from compoundkin.programs import Segment
 
@@ -36,22 +37,26 @@ def of_kind(
         log.report(bad(f"{where}.{KIND}", what, nearest(str(kind), list(known))))
         return None
     entries = {key: value for key, value in raw.items() if key != KIND}
-    return _made(log, known[kind], entries, where, angle)
+    return made(log, known[kind], entries, where, angle)
 
 
-def segments(log: Recovery, raw: Any, where: str, angle: bool | None) -> tuple[Segment, ...]:
+def segments(
+    log: Recovery, raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] = Segment.keys
+) -> tuple[Segment, ...]:
     """The segments of a program; those that are broken are left out, which is reported."""
     if not isinstance(raw, list):
         log.report(wrong(where, raw, "a list of segments", 'write [{ law = "cycloidal", over = 1, rise = 90 }]'))
         return ()
-    made = (_made(log, Segment, table, f"{where}[{index}]", angle) for index, table in enumerate(raw))
-    return tuple(segment for segment in made if segment is not None)
+    found = (made(log, Segment, table, f"{where}[{index}]", angle, keys) for index, table in enumerate(raw))
+    return tuple(segment for segment in found if segment is not None)
 
 
-def _made(log: Recovery, kind: type[Any], raw: Mapping[str, Any], where: str, angle: bool | None) -> Any:
+def made(
+    log: Recovery, kind: type[Any], raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] | None = None
+) -> Any:
     """An object of a kind from its table; None where the table is broken or what it says cannot be meant."""
     before = len(log.problems)
-    found = log.table(raw, kind.keys, where, angle)
+    found = log.table(raw, kind.keys if keys is None else keys, where, angle)
     if len(log.problems) > before:
         return None
     try:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from compoundkin.formats.laws import made, of_kind, tables
+from compoundkin.formats.laws import made, of_kind, segments
+from compoundkin.keys import Key
 from compoundkin.profiles import WRITTEN, Profile
 from compoundkin.programs import Program, Segment
 
@@ -14,6 +15,11 @@ if TYPE_CHECKING:
 
 # The spans of a cam's program are of its rotation.
 SEGMENT = tuple(replace(key, kind="turn") if key.kind == "span" else key for key in Segment.keys)
+# It is told what repeats by the cam.
+PROGRAM = (
+    Key("segments", "turned", "Its dwells, rises and falls over a full turn, one after another.", required=True),
+    Key("start", "coordinate", "The lift at its beginning.", default=0.0),
+)
 
 
 def profile(log: Recovery, raw: Any, where: str, angle: bool | None) -> Profile | None:
@@ -21,14 +27,17 @@ def profile(log: Recovery, raw: Any, where: str, angle: bool | None) -> Profile 
 
     Where the follower turns about a pivot, the rises of its program are angles.
     """
-    return of_kind(log, "profile", WRITTEN, raw, where, isinstance(raw, dict) and "pivot" in raw)
+    found: Profile | None = of_kind(log, "profile", WRITTEN, raw, where, isinstance(raw, dict) and "pivot" in raw)
+    return found
 
 
 def program(log: Recovery, raw: Any, where: str, angle: bool | None) -> Program | None:
-    """A program over the rotation of a cam: its segments alone, or a table that also says where it starts."""
-    if isinstance(raw, dict):
-        keys = tuple(replace(key, kind="turns") if key.kind == "segments" else key for key in Program.keys)
-        found = made(log, Program, raw, where, angle, keys)
-    else:
-        found = segments(log, raw, where, angle)
+    """A program over a turn of a cam: its segments alone, or a table that also says where it starts."""
+    table = raw if isinstance(raw, dict) else {"segments": raw}
+    found: Program | None = made(log, Program, table, where, angle, PROGRAM)
     return found
+
+
+def turned(log: Recovery, raw: Any, where: str, angle: bool | None) -> tuple[Segment, ...]:
+    """The segments of a cam's program."""
+    return segments(log, raw, where, angle, SEGMENT)

@@ -153,6 +153,38 @@ def margin(value: Any, where: str, angle: bool | None) -> float:
     return out if isinstance(out, float) else single(value, where)
 
 
+def turn(value: Any, where: str, angle: bool | None = True) -> float:
+    """A single angle: degrees or ``{rad = ...}`` as radians.
+
+    >>> turn({"rad": 0.5}, "cams[0].profile.start")
+    0.5
+    """
+    return margin(value, where, True)
+
+
+def place(value: Any, where: str, angle: bool | None = None) -> complex:
+    """A point that is one for all designs.
+
+    >>> place([1, 2], "cams[0].profile.middle")
+    (1+2j)
+    """
+    found = point(value, where)
+    if np.ndim(found):
+        raise wrong(where, value[0] if isinstance(value, list) else value, "a single number")
+    return complex(found)
+
+
+def places(value: Any, where: str, angle: bool | None = None) -> tuple[complex, ...]:
+    """A list of such points.
+
+    >>> places([[1, 2], [3, 4]], "cams[0].profile.points")
+    ((1+2j), (3+4j))
+    """
+    if not isinstance(value, list):
+        raise wrong(where, value, "a list of points", "write [[x, y], [x, y]]")
+    return tuple(place(one, f"{where}[{index}]") for index, one in enumerate(value))
+
+
 READERS: dict[Kind, Reader] = {
     "name": name,
     "text": text,
@@ -169,6 +201,10 @@ READERS: dict[Kind, Reader] = {
     "span": single,
     "times": times,
     "coordinate": coordinate,
+    "number": single,
+    "turn": turn,
+    "place": place,
+    "places": places,
     "values": values,
     "rate": rate,
     "at": table,

@@ -54,7 +54,7 @@ def default_name(pair: Pair) -> str:
     >>> default_name(slide("block", on="bar", through="F", at="C"))
     'block/bar'
     """
-    return "/".join(reversed(pair.members))
+    return pair.called
 
 
 def _version(version: Any, log: Recovery) -> bool:

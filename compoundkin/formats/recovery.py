@@ -32,6 +32,7 @@ TAGGED: dict[Kind, Callable[[Recovery, Any, str, bool | None], Any]] = {
     "segments": laws.segments,
     "profile": profiles.profile,
     "program": profiles.program,
+    "turned": profiles.turned,
 }
 
 
@@ -113,7 +114,7 @@ class Recovery:
         values: dict[Kind, Any] = {
             "name": name, "text": name, "names": (), "point": point, "points": {name: point}, "drawing": {},
             "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
-            "profile": None, "program": None, "place": point, "places": (),
+            "two": (1.0, 1.0), "profile": None, "program": None, "place": point, "places": (), "turned": (),
         }  # fmt: skip
         return values.get(kind, 0.0)
 

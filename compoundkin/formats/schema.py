@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from typing import Any
 
 from compoundkin.formats import document as doc
+from compoundkin.formats import exact
 from compoundkin.formats.atomic import write_atomically
 from compoundkin.formats.laws import KIND
+from compoundkin.formats.profiles import PROGRAM, SEGMENT
 from compoundkin.keys import Key, Kind
-from compoundkin.laws import WRITTEN
+from compoundkin.laws import WRITTEN as LAWS
+from compoundkin.profiles import WRITTEN as PROFILES
 from compoundkin.programs import Segment
 from compoundkin.words import FRAME
 
@@ -40,7 +44,14 @@ def schema() -> dict[str, Any]:
             *(table.name for table in doc.TABLES if table.required),
         ],
         "additionalProperties": False,
-        "$defs": {**DEFINITIONS, "law": _law(), "segment": _table(Segment.keys)},
+        "$defs": {
+            **DEFINITIONS,
+            "law": _tagged(LAWS, "How a driven coordinate moves in time."),
+            "segment": _table(Segment.keys),
+            "turned": _table(SEGMENT),
+            "program": _table(PROGRAM),
+            "profile": _tagged(PROFILES, "The profile of a cam or curved slot, in the coordinates of its link."),
+        },
     }
 
 
@@ -63,21 +74,23 @@ def _table(keys: tuple[Key, ...]) -> dict[str, Any]:
     return {**out, **({"required": required} if required else {}), "additionalProperties": False}
 
 
-def _law() -> dict[str, Any]:
-    """One table for each kind of law."""
-    tables = [(name, _table(kind.keys)) for name, kind in WRITTEN.items()]
+def _tagged(kinds: Mapping[str, type[Any]], doc: str) -> dict[str, Any]:
+    """One table for each kind of law or profile."""
+    tables = [(name, _table(kind.keys)) for name, kind in kinds.items()]
     ways = [
         {**table, "properties": {KIND: {"const": name}, **table["properties"]},
          "required": [KIND, *table.get("required", ())]}
         for name, table in tables
     ]  # fmt: skip
-    return {"description": "How a driven coordinate moves in time.", "anyOf": ways}
+    return {"description": doc, "anyOf": ways}
 
 
 def _key(key: Key) -> dict[str, Any]:
     out = {**FRAGMENTS[key.kind], "description": key.doc}
     if key.default in (None, "", ()):
         return out
+    if key.kind in ("turn", "place"):
+        return {**out, "default": exact.degrees(key.default) if key.kind == "turn" else exact.point(key.default)}
     return {**out, "default": key.default}
 
 
@@ -163,6 +176,13 @@ FRAGMENTS: dict[Kind, dict[str, Any]] = {
     "coordinate": _ref("angle"),
     "segments": {"type": "array", "items": _ref("segment"), "minItems": 1},
     "law": _ref("law"),
+    "number": NUMBER,
+    "turn": _ref("single"),
+    "place": _ref("point"),
+    "places": {"type": "array", "items": _ref("point"), "minItems": 4},
+    "turned": {"type": "array", "items": _ref("turned"), "minItems": 1},
+    "program": {"anyOf": [{"type": "array", "items": _ref("turned"), "minItems": 1}, _ref("program")]},
+    "profile": _ref("profile"),
     "values": _ref("values"),
     "rate": _ref("rate"),
     "at": {

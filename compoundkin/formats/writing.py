@@ -9,11 +9,13 @@ from compoundkin.errors import InvalidInput, Problem
 from compoundkin.formats import document as doc
 from compoundkin.formats import exact
 from compoundkin.formats.laws import KIND
+from compoundkin.formats.profiles import PROGRAM, SEGMENT
 from compoundkin.formats.reading import default_name
 from compoundkin.keys import Key, Kind
 from compoundkin.laws import Function
 from compoundkin.mechanism import Mechanism, same
 from compoundkin.pairs import WRITTEN, Pair
+from compoundkin.programs import Program
 from compoundkin.series import Number
 from compoundkin.words import Expectation, Link
 
@@ -64,6 +66,10 @@ def _points(points: Mapping[str, Number]) -> dict[str, Any]:
 
 
 def _pair(item: Pair) -> dict[str, Any]:
+    for key in item.keys:
+        if key.kind == "profile" and not getattr(item, key.name).keys:
+            what, remedy = "a Python function cannot be written to a file", "write a profile of its points instead"
+            raise InvalidInput(Problem(f"{item.table}.{item.name}.{key.name}", what, remedy))
     out = _table(item, item.keys)
     return {key: value for key, value in out.items() if key != "name" or value != default_name(item)}
 
@@ -77,8 +83,14 @@ def _drive(mechanism: Mechanism, index: int) -> dict[str, Any]:
     return {key: value for key, value in out.items() if key != "name" or value != item.link}
 
 
-def _law(item: Any, angle: bool) -> dict[str, Any]:
+def _tagged(item: Any, angle: bool) -> dict[str, Any]:
     return {KIND: item.kind, **_table(item, item.keys, angle)}
+
+
+def _program(item: Program, angle: bool) -> Any:
+    """A cam's program: its segments alone where it starts on the base circle."""
+    table = _table(item, PROGRAM, angle)
+    return table if len(table) > 1 else table["segments"]
 
 
 def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
@@ -118,7 +130,14 @@ WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "span": lambda value, _: exact.plain(value),
     "times": lambda value, _: exact.values(value, False),
     "segments": lambda value, angle: [_table(one, one.keys, angle) for one in value],
-    "law": _law,
+    "law": _tagged,
+    "number": lambda value, _: exact.plain(value),
+    "turn": lambda value, _: exact.degrees(value),
+    "place": lambda value, _: exact.point(value),
+    "places": lambda value, _: [exact.point(one) for one in value],
+    "turned": lambda value, angle: [_table(one, SEGMENT, angle) for one in value],
+    "program": lambda value, angle: _program(value, angle),
+    "profile": lambda value, _: _tagged(value, value.oscillates),
     "coordinate": exact.coordinate,
     "values": exact.values,
     "rate": exact.rate,

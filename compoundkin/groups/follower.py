@@ -21,10 +21,16 @@ Placing: TypeAlias = Callable[[Series], Poses]
 
 
 class Follower:
-    """Mode +1: of the places where the contact may be, the one to which the coordinate has grown farthest."""
+    """A contact has two places at most that count; what the modes mean is that of the dyad for a round disc.
+
+    On a slide mode +1 is farthest along the guide. On a pin it is the most clockwise place for a roller or edge; a face
+    touches in its own direction, seen from the foot of the pin on it.
+    """
 
     modes: ClassVar[int] = 2
-    sign_means: ClassVar[str] = "the follower is on the side of the profile to which its coordinate grows"
+    sign_means: ClassVar[str] = (
+        "the follower is farther along its slide; on a pin, its roller is more clockwise, its face touches ahead of it"
+    )
 
     def __init__(self, pair: Pair, own: int, size: float) -> None:
         self.pair = pair
@@ -32,9 +38,9 @@ class Follower:
         self.size = size
 
     def start(self, ends: Ends, at_zero: Poses, freedom: Freedom, sign: Number) -> Number:
-        """The coordinate, nearly: the last meeting (mode +1) or the first; NaN where there is none."""
-        first, last = self.pair.meetings(ends, at_zero, self.own, freedom)
-        return np.where(sign > 0, last, first)
+        """The coordinate, nearly, in a mode; NaN where there is no contact."""
+        other, one = self.pair.meetings(ends, at_zero, self.own, freedom)
+        return np.where(sign > 0, one, other)
 
     def polished(self, ends: Ends, placing: Placing, start: Number) -> tuple[Number, Number, Number]:
         """The coordinate, where it closes the contact, and the slope of the contact's distance there."""

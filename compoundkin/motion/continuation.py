@@ -135,8 +135,7 @@ class _March:
         return self
 
     def _stride(self, slope: Number) -> float:
-        weights = np.tile([1 / self.solver.size, 1 / self.solver.size, 1.0], self.solver.n)
-        fastest = float(np.max(np.abs(slope[self.alive] * weights), initial=0.0))
+        fastest = float(np.max(np.abs(slope[self.alive] * self.solver.weights), initial=0.0))
         return STRIDE / fastest if fastest > 0 else np.inf
 
     def _setting(self, s: float, order: int) -> Setting:
@@ -147,24 +146,16 @@ class _March:
     def _slope(self, s: float) -> tuple[Number, Number]:
         """The state's slope by s, and on which side of a singularity the configuration is."""
         setting = self._setting(s, 1)
-        bodies = self.solver.series(self.state, setting, 1)
-        parts = [
-            v
-            for b in bodies
-            for v in (b.z.c[1].real, b.z.c[1].imag, b.u.c[0].real * b.u.c[1].imag - b.u.c[0].imag * b.u.c[1].real)
-        ]
-        slope = np.stack(np.broadcast_arrays(*parts, self.state[..., 0])[:-1], axis=-1)
-        return slope, self._side(self.state, setting)
+        return self.solver.slope(self.state, setting), self._side(self.state, setting)
 
     def _side(self, state: Number, setting: Setting) -> Number:
-        sign, _ = np.linalg.slogdet(self.solver.matrix(self.solver.poses(state), setting))
-        return np.broadcast_to(sign, state.shape[:2])
+        return np.broadcast_to(self.solver.side(state, setting), state.shape[:2])
 
     def _step(self, here: float, h: float, slope: Number, side: Number) -> tuple[Number, Number, Number, Number]:
         guess = self.state + h * slope
         setting = self._setting(here + h, 1)
         found = self.solver.newton(guess, setting)
-        weights = np.tile([1 / self.solver.size, 1 / self.solver.size, 1.0], self.solver.n)
+        weights = self.solver.weights
         strayed = np.abs((found.state - guess) * weights).max(axis=-1)
         predicted = np.abs(h * slope * weights).max(axis=-1)
         side_new = self._side(found.state, setting)

@@ -15,6 +15,8 @@ from compoundkin.series import Number, constant
 
 # The lead is sampled at least this finely: radians of a driver's angle, or parts of the size of its length.
 SPACING = np.pi / 36.0
+# No step of a driver is cut into more: a block may travel far on a mechanism whose own dimensions are tiny.
+MOST = 1000
 
 
 def approach(
@@ -96,7 +98,7 @@ def _nearest(plan: Plan, given: Inputs, values: Mapping[str, Number]) -> int:
 def spacings(plan: Plan, name: str, way: Number) -> int:
     """How many spacings the longest of some ways of a driver takes; 0 where it stands still."""
     size = 1.0 if plan.driven[name].pair.free_is_angle else plan.size
-    return max(0, int(np.ceil(float(np.max(np.abs(way))) / size / SPACING - CLOSE)))
+    return max(0, int(np.ceil(min(float(np.max(np.abs(way))) / size / SPACING - CLOSE, MOST))))
 
 
 def between(plan: Plan, given: Inputs) -> int:

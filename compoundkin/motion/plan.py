@@ -8,7 +8,7 @@ from functools import cached_property
 from compoundkin.groups import DYADS
 from compoundkin.groups.general import Setting
 from compoundkin.motion.run import Run
-from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep, GeneralStep, Step
+from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep, GeneralStep, Step, TrainStep
 from compoundkin.pairs import Pair
 from compoundkin.pairs.contract import Ends, Equivalent
 from compoundkin.poses import FIXED, Pose
@@ -50,12 +50,14 @@ class Plan:
                 if dyad.name in DYADS:
                     self.ends.update(found.ends)
                     return DyadStep(k, group, self.size, dyad)
-        return GeneralStep(k, group, self.size)
+        return TrainStep.of(k, group) or GeneralStep(k, group, self.size)
 
     @cached_property
     def turning(self) -> frozenset[str]:
-        """The links whose angles some pair asks for with full turns."""
-        return frozenset(name for pair in self.pairs.values() if pair.counts_turns for name in pair.members)
+        """The links whose angles some pair asks for with full turns, and those from which such angles count."""
+        asked = {name for pair in self.pairs.values() if pair.counts_turns for name in pair.members}
+        hung = (step.hangs_on for step in self.steps if isinstance(step, AffineStep | TrainStep))
+        return frozenset(asked.union(*hung))
 
     @cached_property
     def bodies(self) -> tuple[Body, ...]:

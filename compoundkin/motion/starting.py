@@ -22,6 +22,8 @@ STARTS = 200
 COMPARED = 50
 # Newton is given more steps here than when tracking: a random start is far away.
 STEPS = 40
+# and no step longer than this (of the size, or radians): from near a limit position it would lead anywhere.
+LONGEST = 0.3
 
 Letters = list[tuple[str, str]]
 
@@ -45,19 +47,19 @@ def distance(plan: Plan, letters: Letters, sketch: Mapping[str, Number], run: Ru
 def first_state(
     plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Number], designs: int
 ) -> tuple[Number, str]:
-    """A closed state (designs, 1, 3 n) of a group at a single pose, and what chose it; NaN for designs without.
+    """A closed state (designs, 1, width) of a group at a single pose, and what chose it; NaN for designs without.
 
     Raises NotAssembled where no design has any.
     """
     letters = shown(plan, step, sketch)
-    best = np.full((designs, 1, 3 * step.solver.n), np.nan)
+    best = np.full((designs, 1, step.solver.width), np.nan)
     least = np.full((designs, 1), np.inf)
     guesses = _guesses(plan, step, run, sketch)
-    complete = all(pose is not None for pose in guesses)
+    complete = all(guesses[k] is not None for k in step.solver.kept)
     batches = _batches(_starts(plan, step, guesses), together=designs == 1)
     count = 0
     for batch in batches:
-        found = step.solver.newton(batch, run.setting, steps=STEPS)
+        found = step.solver.newton(batch, run.setting, STEPS, LONGEST)
         trial = run.copy()
         step.run(trial, found.state)
         order = count + np.arange(len(batch), dtype=float)[:, None]
@@ -105,7 +107,7 @@ def _starts(plan: Plan, step: GeneralStep, guesses: list[Pose | None]) -> Iterat
 
     Newton may not get from what is shown to any closed state, so that later states are wholly random.
     """
-    held = 1 if all(guess is not None for guess in guesses) else COMPARED
+    held = 1 if all(guesses[k] is not None for k in step.solver.kept) else COMPARED
     rng = np.random.default_rng(step.solver.n)
     frame = list(plan.structure.mechanism.geometry.points[FRAME].values())
     centre = complex(np.mean([np.mean(p) for p in frame]))
@@ -116,7 +118,8 @@ def _starts(plan: Plan, step: GeneralStep, guesses: list[Pose | None]) -> Iterat
             angle = rng.uniform(-np.pi, np.pi)
             random = Pose.of(np.full((1, 1), spot), np.full((1, 1), np.exp(1j * angle)))
             bodies.append(random if guess is None or number >= held else column(guess))
-        yield step.solver.state(bodies)
+        state = step.solver.state(bodies)
+        yield state.reshape((1,) * (3 - state.ndim) + state.shape)
 
 
 def _unfound(step: GeneralStep) -> Problem:

@@ -11,9 +11,10 @@ from compoundkin.groups import DYADS, Attachment, Dyad
 from compoundkin.groups.contract import COINCIDENT, Root, clipped_root
 from compoundkin.groups.follower import Follower
 from compoundkin.groups.general import LEAP, General, Member, Setting
+from compoundkin.groups.linear import inverted
 from compoundkin.motion.run import Run
 from compoundkin.pairs import Pair
-from compoundkin.pairs.contract import Freedom, Poses
+from compoundkin.pairs.contract import Freedom, Poses, table
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series, constant
 from compoundkin.structure.model import Body, Group
@@ -98,6 +99,11 @@ class AffineStep:
         self.mounted = _Mounted(lower, higher, group.bodies[0])
         self.higher = higher
 
+    @property
+    def hangs_on(self) -> tuple[str, ...]:
+        """The links from which its coordinate counts."""
+        return (self.mounted.side.other,)
+
     def run(self, run: Run) -> None:
         """Close the group: the value of the closure where the coordinate is zero, by its slope, is the coordinate."""
         start = self._closure(run, constant(0.0))
@@ -120,6 +126,68 @@ class AffineStep:
     def explain(self, run: Run, at: int) -> str:
         """It can be assembled wherever what it hangs on can, unless the higher pair leaves it free."""
         return f"{self.mounted.side.pair.name} may move without any effect on {self.higher.name}"
+
+
+class TrainStep:
+    """Bodies that turn on pins, all of whose angles gear pairs give together: one system of linear equations.
+
+    Source: Willis's equation for every pair, e.g. R. L. Norton, Design of Machinery, section 9.8.
+    """
+
+    def __init__(self, index: int, group: Group, lowers: tuple[tuple[Pair, Body], ...], highers: tuple[Pair, ...]):
+        self.index = index
+        self.group = group
+        self.mounted = tuple(_Mounted(pair, highers[0], body) for pair, body in lowers)
+        self.highers = highers
+
+    @property
+    def hangs_on(self) -> tuple[str, ...]:
+        """The links from which its coordinates count."""
+        return tuple(mounted.side.other for mounted in self.mounted)
+
+    @classmethod
+    def of(cls, index: int, group: Group) -> TrainStep | None:
+        """The step for a group whose bodies hang on pins one after another, joined by gear pairs; None for others."""
+        pairs = (*group.inner, *group.outer)
+        highers = tuple(pair for pair in pairs if pair.adds_angles)
+        pins = [pair for pair in pairs if pair.is_simple and pair.free_is_angle]
+        if not highers or len(pins) + len(highers) < len(pairs) or len(pins) != len(group.bodies):
+            return None
+        left, found = list(group.bodies), list[tuple[Pair, Body]]()
+        for _ in pins:
+            hung = [(pair, body) for body in left for pair in pins if _hangs(pair, body, left)]
+            found += hung[:1]
+            left = [body for body in left if body not in [b for _, b in found]]
+        return None if left else cls(index, group, tuple(found), highers)
+
+    def run(self, run: Run) -> None:
+        """Close the group: the closures where all coordinates are zero, by their slopes, give the coordinates."""
+        rest = [constant(0.0)] * len(self.mounted)
+        start = self._closures(run.copy(), rest)
+        units = ([*rest[:j], Series((0.0, 1.0)), *rest[j + 1 :]] for j in range(len(rest)))
+        slopes = [[_second(c) for c in self._closures(run.leading(), unit)] for unit in units]
+        inverse = inverted(table(*zip(*slopes, strict=True)))
+        free = ~(np.abs(inverse).max(axis=(-1, -2)) < 1.0 / FLAT)
+        run.failed = np.where((run.failed == 0) & free, self.index + 1, run.failed)
+        inverse = np.where(free[..., None, None], np.nan, inverse)
+        solved = []
+        for k in range(max(len(c.c) for c in start)):
+            lacking = np.stack(np.broadcast_arrays(*(c.c[k] if len(c.c) > k else 0.0 for c in start)), -1)
+            solved.append(-np.einsum("...ij,...j->...i", inverse, lacking))
+        self._place(run, [Series(tuple([c[..., j] for c in solved])) for j in range(len(rest))])
+
+    def _closures(self, run: Run, coordinates: list[Series]) -> list[Series]:
+        self._place(run, coordinates)
+        members = (tuple(run.world[name] for name in pair.members) for pair in self.highers)
+        return [p.closure(run.setting.ends[p.name], m)[0] for p, m in zip(self.highers, members, strict=True)]
+
+    def _place(self, run: Run, coordinates: list[Series]) -> None:
+        for mounted, coordinate in zip(self.mounted, coordinates, strict=True):
+            run.publish(mounted.body, mounted.placed(run, coordinate))
+
+    def explain(self, run: Run, at: int) -> str:
+        """It can be assembled wherever what it hangs on can, unless its ratios leave it free."""
+        return f"the ratios of {', '.join(pair.name for pair in self.highers)} do not determine it"
 
 
 class FollowerStep:
@@ -145,11 +213,24 @@ class FollowerStep:
         found, closed, slope = self.kernel.polished(ends, lambda q: self.mounted.poses(leading, q), start)
         run.failed = np.where((run.failed == 0) & ~closed, self.index + 1, run.failed)
         coordinate = self.kernel.series(ends, lambda q: self.mounted.poses(run, q), found, slope, run.order)
-        run.publish(self.group.bodies[0], self.mounted.placed(run, coordinate))
+        pose = self.mounted.placed(run, coordinate)
+        # no turns are counted: the angle found may leap by one between poses
+        run.publish(self.group.bodies[0], Pose(pose.z, pose.u))
 
     def explain(self, run: Run, at: int) -> str:
         """Why it cannot be assembled at a pose."""
         return self.higher.lost()
+
+
+def _hangs(pair: Pair, body: Body, left: list[Body]) -> bool:
+    """Whether a pin joins a body to a link that is known, or to a body that is placed already."""
+    own = [name for name in pair.members if name in body.links]
+    waiting = [name for name in pair.members if any(name in other.links for other in left)]
+    return len(own) == 1 and waiting == own
+
+
+def _second(series: Series) -> Number:
+    return series.c[1] if len(series.c) > 1 else 0.0
 
 
 class _Mounted:
@@ -179,7 +260,8 @@ class _Mounted:
         pose = self.placed(run, Series((0.0, 1.0)))
         along = pose.z.c[1] if len(pose.z.c) > 1 else 0j
         if not self.side.pair.free_is_angle:
-            return Freedom(None, along, 1.0)
+            # along the guide, whichever of the two links has it
+            return Freedom(None, along, 1.0) if self.side.own else Freedom(None, -along, -1.0)
         sense = (pose.u.c[0].conjugate() * pose.u.c[1]).imag
         return Freedom(pose.z.c[0] + 1j * along / sense, None, sense)
 
@@ -212,7 +294,7 @@ class GeneralStep:
         return "the tracked configuration ends at a limit position, where the group's equations become singular"
 
 
-Step: TypeAlias = DyadStep | AffineStep | FollowerStep | GeneralStep
+Step: TypeAlias = DyadStep | AffineStep | TrainStep | FollowerStep | GeneralStep
 
 
 def _side(pair: Pair, body: Body) -> Side:

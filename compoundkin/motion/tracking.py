@@ -14,7 +14,7 @@ from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.run import Run
 from compoundkin.motion.starting import distance, first_state, shown
-from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep
+from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep, TrainStep
 from compoundkin.motion.turns import Turns, turns_of
 from compoundkin.series import Number
 from compoundkin.words import vector
@@ -73,7 +73,7 @@ class Tracker:
             if isinstance(step, DyadStep | FollowerStep):
                 sign = self.sign(k, designs, s, lead)
                 step.run(run, sign, double_root(doubles[k]) if doubles and k in doubles else clipped_root)
-            elif isinstance(step, AffineStep):
+            elif isinstance(step, AffineStep | TrainStep):
                 step.run(run)
             else:
                 step.run(run, paths[k].seeds(designs, s))
@@ -103,7 +103,7 @@ class Tracker:
             if isinstance(step, DyadStep | FollowerStep):
                 self.signs[k] = self._sign(k, step, run)
                 step.run(run, self.signs[k], nearest_root)
-            elif isinstance(step, AffineStep):
+            elif isinstance(step, AffineStep | TrainStep):
                 self.chosen_by[k] = "only one"
                 step.run(run)
             else:

@@ -9,13 +9,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.curves import Curve
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
 from compoundkin.pairs.arc import ArcSlot
-from compoundkin.pairs.contact import Contact, Path, Touch, centre_of_curvature, named_problems, outermost, path_of, row
+from compoundkin.pairs.contact import Path, Touch, centre_of_curvature, named_problems, outermost, path_of, row
 from compoundkin.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
+from compoundkin.pairs.profiled import Profiled
 from compoundkin.poses import End, Pose
 from compoundkin.profiles import Profile, side_of
 from compoundkin.series import Number, Series, as_series
@@ -25,12 +25,12 @@ THINNED = 4
 
 
 @dataclass(frozen=True, eq=False)
-class Cam(Contact):
+class Cam(Profiled):
     """The point `at` of `link`, or a roller of `radius` about it, runs on the profile of the link `on`.
 
-    A closed profile is touched from outside, or from `inside`; without a radius the point runs on the profile itself, as
-    a knife edge on a cam or a pin in a curved slot. Of several points of the profile the nearest one touches, so that no
-    roller cuts into its cam.
+    A closed profile is touched from outside, or from `inside`; without a radius the point runs on the profile itself,
+    as a knife edge on a cam or a pin in a curved slot. Of several points of the profile the nearest one touches, so
+    that no roller cuts into its cam.
 
     Held: the distance of the roller from the profile. Free: the profile's parameter at the contact, and the angle.
     """
@@ -48,7 +48,7 @@ class Cam(Contact):
     free: ClassVar[tuple[str, ...]] = ("parameter", "angle")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "cams"
-    leads: ClassVar[bool] = True
+    is_flat: ClassVar[bool] = False
     keys: ClassVar[tuple[Key, ...]] = (
         Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
         Key("link", "name", "The link with the point or roller: the follower, or the roller itself.", required=True),
@@ -65,14 +65,14 @@ class Cam(Contact):
         return (self.at,)
 
     @property
-    def curve(self) -> Curve:
-        """The profile as a curve."""
-        return self.profile.curve
-
-    @property
-    def side(self) -> float:
+    def outward(self) -> float:
         """+1 where the roller is on the side to which the curve's normal points, else -1."""
         return -side_of(self.curve) if self.inside else side_of(self.curve)
+
+    @property
+    def roller(self) -> float:
+        """The greatest radius."""
+        return float(np.max(self.radius))
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Unknown links and points, a radius that is none, a profile that is none."""
@@ -104,7 +104,7 @@ class Cam(Contact):
     def touch(self, ends: Ends, poses: Poses) -> Touch:
         """At the foot of the roller's middle."""
         frame, centre, foot = self._foot(ends, poses)
-        place, normal = frame.at(self.curve.at(foot)), frame.u * self.curve.normal(foot) * self.side
+        place, normal = frame.at(self.curve.at(foot)), frame.u * self.curve.normal(foot) * self.outward
         return Touch(place, normal, normal.dot(centre - place) - ends[1].measure)
 
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
@@ -122,6 +122,14 @@ class Cam(Contact):
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """The parameter of the contact."""
         return self._foot(ends, poses)[2]
+
+    def parameter(self, ends: Ends, poses: Poses) -> Number:
+        """The parameter of the profile at the contact."""
+        return self._foot(ends, poses)[2].c[0]
+
+    def led(self, ends: Ends, poses: Poses) -> Number:
+        """The middle of the roller."""
+        return poses[1].at(ends[1].point).c[0]
 
     def _foot(self, ends: Ends, poses: Poses) -> tuple[Pose, Series, Series]:
         """The frame of the profile, the roller's middle, and the parameter of its foot."""
@@ -145,7 +153,10 @@ class Cam(Contact):
         return arc.equivalent((End(middle, 1 + 0j, reach), End(ends[1].point)))
 
     def meetings(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
-        """Where the path of the roller's middle crosses the parallel curve."""
+        """Where the path of the roller's middle crosses the parallel curve.
+
+        On a slide it is farthest along the guide in mode +1; on a pin most clockwise, as with a bar for the profile.
+        """
         side = poses[0].carry(ends[0])
         path = path_of(Pose(as_series(side.point), side.along), poses[1].at(ends[1].point).c[0], own, freedom)
         middle = complex(np.mean(self._samples[0]))
@@ -156,8 +167,10 @@ class Cam(Contact):
         def coordinate(at: Sequence[Number], of: Sequence[Number]) -> Number:
             return Path(path.straight, *at[:3]).coordinate(of[0] + of[1] * at[3], middle)
 
-        numbers = (*path[1:], np.asarray(ends[1].measure) * self.side)
-        return outermost(level, coordinate, numbers, self._samples, self.curve.closed)
+        numbers = (*path[1:], np.asarray(ends[1].measure) * self.outward)
+        least, greatest = outermost(level, coordinate, numbers, self._samples, self.curve.closed)
+        forward = (freedom.sense > 0) == path.straight
+        return np.where(forward, least, greatest), np.where(forward, greatest, least)
 
     def lost(self) -> str:
         """The path does not meet the profile."""
@@ -182,7 +195,7 @@ class Cam(Contact):
         """The profile in a random direction, the roller somewhere on it."""
         angle, s = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(self.curve.low, self.curve.high)
         u, z = complex(np.cos(angle), np.sin(angle)), complex(*rng.standard_normal(2))
-        place = self.curve.at(s) + self.curve.normal(s) * self.side * float(np.ravel(self.radius)[0])
+        place = self.curve.at(s) + self.curve.normal(s) * self.outward * float(np.ravel(self.radius)[0])
         return End(z, u), End(z + u * place.c[0], None, float(np.ravel(self.radius)[0]))
 
     @property

@@ -71,8 +71,8 @@ def centre_of_curvature(curve: Curve, s: Number, place: Number, u: Number) -> Nu
 class Path(NamedTuple):
     """The way of a point past a profile as a body's coordinate grows, in the profile's frame.
 
-    It starts at `start` and turns about `centre`; or, where it is `straight`, goes in the direction `centre`. `sense` is
-    how it goes there as the coordinate grows. All but `straight` are numbers or arrays.
+    It starts at `start` and turns about `centre`; or, where it is `straight`, goes in the direction `centre`. `sense`
+    is how it goes there as the coordinate grows. All but `straight` are numbers or arrays.
     """
 
     straight: bool
@@ -124,7 +124,7 @@ def outermost(
 
     `numbers` are arrays of the poses' shape, `samples` what belongs to each sample of the profile.
     """
-    shape = np.broadcast_shapes(*(np.shape(v) for v in numbers))
+    shape: tuple[int, ...] = np.broadcast_shapes(*(np.shape(v) for v in numbers))
     flat = [np.broadcast_to(v, shape).ravel() for v in numbers]
     around = [np.append(v, v[:1]) if closed else v for v in samples]
     least, greatest = np.full(flat[0].size, np.inf), np.full(flat[0].size, -np.inf)

@@ -87,6 +87,7 @@ class Pair(ABC):
     counts_turns: ClassVar[bool] = False  # whether it asks for its members' angles with full turns
     is_simple: ClassVar[bool] = False  # whether its coordinate only turns a member about a point, or only shifts it
     leads: ClassVar[bool] = False  # whether it leads a member along a profile, so that it has `meetings`
+    adds_angles: ClassVar[bool] = False  # whether its closure is a sum of its members' angles times constants
     table: ClassVar[str] = ""  # its table in a mechanism file; "" for pairs that are not written out
     keys: ClassVar[tuple[Key, ...]] = ()
 
@@ -101,6 +102,11 @@ class Pair(ABC):
     @abstractmethod
     def letters(self) -> tuple[str, ...]:
         """The names of the points it uses; the first is where it is drawn."""
+
+    @property
+    def called(self) -> str:
+        """Its name where none is given."""
+        return "/".join(reversed(self.members))
 
     @abstractmethod
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
@@ -187,11 +193,16 @@ class Pair(ABC):
         return ends
 
     def meetings(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
-        """The least and greatest coordinate at which a member of one freedom is in contact, nearly; of pairs that lead.
+        """The coordinates at which a member of one freedom is in contact in mode -1 and +1, nearly; of pairs that lead.
 
-        `poses` are those where the coordinate is zero; NaN where there is no contact.
+        `poses` are those where the coordinate is zero; NaN where there is no contact. The modes are those of the lower
+        pairs that stand for a round disc.
         """
         raise NotImplementedError(f"a {self.title} has no profile")
+
+    def stretch(self, ends: Ends, poses: Poses) -> Number:
+        """On which smooth stretch of its profile a pair is, an index: derivatives may jump from one to the next."""
+        return 0
 
     def lost(self) -> str:
         """Why a member has no contact where there are no meetings, in a sentence."""

@@ -9,13 +9,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.curves import Curve
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
 from compoundkin.keys import Key
-from compoundkin.pairs.contact import Contact, Touch, centre_of_curvature, named_problems, nearest_angle, outermost, path_of, row
+from compoundkin.pairs.contact import Touch, centre_of_curvature, named_problems, nearest_angle, outermost, path_of, row
 from compoundkin.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
 from compoundkin.pairs.prismatic import Prismatic
+from compoundkin.pairs.profiled import Profiled
 from compoundkin.pairs.revolute import Revolute
 from compoundkin.poses import End, Pose
 from compoundkin.profiles import Profile, side_of
@@ -28,7 +28,7 @@ NEAR = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Face(Contact):
+class Face(Profiled):
     """A flat face of `link` rests on the profile of the link `on`.
 
     The face is the line through the point `at` of `link` in the direction `angle` (radians, from its x axis); the
@@ -52,7 +52,7 @@ class Face(Contact):
     free: ClassVar[tuple[str, ...]] = ("displacement", "angle")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "faces"
-    leads: ClassVar[bool] = True
+    is_flat: ClassVar[bool] = True
     keys: ClassVar[tuple[Key, ...]] = (
         Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
         Key("link", "name", "The link with the flat face: the follower.", required=True),
@@ -69,9 +69,9 @@ class Face(Contact):
         return (self.at,)
 
     @property
-    def curve(self) -> Curve:
-        """The profile as a curve."""
-        return self.profile.curve
+    def outward(self) -> float:
+        """+1 where the curve's normal points out of the profile, else -1."""
+        return side_of(self.curve)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Unknown links and points, a profile that is none."""
@@ -134,7 +134,10 @@ class Face(Contact):
         return Equivalent(block, pairs, sides)
 
     def meetings(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
-        """On a slide the face's direction tells the contact; on a pin the face also touches a circle about it."""
+        """On a slide the face's direction tells the contact; on a pin the face also touches a circle about it.
+
+        On a pin the contact may lie in the direction of the face (mode +1) or against it, as with a block on it.
+        """
         frame, face = self._sides(ends, poses)
         normal, start = self._normal(face).c[0], face.point.c[0]
         path = path_of(frame, start, own, freedom)
@@ -149,11 +152,13 @@ class Face(Contact):
             return _dot(of[1], of[0] - at[0]) - at[1]
 
         def coordinate(at: Sequence[Number], of: Sequence[Number]) -> Number:
-            # in contact the face is seen from the pin at a right angle to its normal, toward the profile
-            return at[3] * nearest_angle(of[1] / at[2], (middle - at[0]) / at[2] * (1j * self.side))
+            # seen from the pin the two tangents are on either side of the profile's middle
+            return nearest_angle(of[1] / at[2], (at[0] - middle) / at[2])
 
-        numbers = (path.centre, _dot(facing, path.start - path.centre), facing, path.sense)
-        return outermost(level, coordinate, numbers, self._samples, self.curve.closed)
+        numbers = (path.centre, _dot(facing, path.start - path.centre), facing)
+        right, left = outermost(level, coordinate, numbers, self._samples, self.curve.closed)
+        against, along = (right, left) if self.side > 0 else (left, right)
+        return path.sense * against, path.sense * along
 
     def lost(self) -> str:
         """The face does not reach the profile."""
@@ -188,6 +193,14 @@ class Face(Contact):
     def make_up(self) -> Hashable:
         """A face holds one distance, whatever the profile."""
         return type(self)
+
+    def parameter(self, ends: Ends, poses: Poses) -> Number:
+        """The parameter of the profile at the contact."""
+        return self._support(*self._sides(ends, poses)).c[0]
+
+    def led(self, ends: Ends, poses: Poses) -> Number:
+        """The contact."""
+        return self.touch(ends, poses).place.c[0]
 
     def _sides(self, ends: Ends, poses: Poses) -> tuple[Pose, End]:
         """The frame of the profile, and the face in the world."""

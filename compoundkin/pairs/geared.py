@@ -48,6 +48,7 @@ class Geared(Pair):
     free: ClassVar[tuple[str, ...]] = ("angle",)
     free_is_angle: ClassVar[bool] = True
     counts_turns: ClassVar[bool] = True
+    adds_angles: ClassVar[bool] = True
     keys: ClassVar[tuple[Key, ...]] = (
         Key("name", "name", "What the pair is called in reports; FIRST/SECOND where it is left out."),
         Key("first", "name", "The link with the first wheel.", required=True),
@@ -69,6 +70,11 @@ class Geared(Pair):
     def members(self) -> tuple[str, ...]:
         """The two wheels and their carrier."""
         return self.first, self.second, self.carrier
+
+    @property
+    def called(self) -> str:
+        """The two wheels."""
+        return f"{self.first}/{self.second}"
 
     @property
     def letters(self) -> tuple[str, ...]:

@@ -70,6 +70,11 @@ class Rack(OnLine):
         return self.rack, self.pinion
 
     @property
+    def called(self) -> str:
+        """The rack and the pinion."""
+        return f"{self.rack}/{self.pinion}"
+
+    @property
     def size(self) -> Number:
         """The pitch radius."""
         if self.radius is not None:

@@ -13,7 +13,6 @@ import numpy as np
 from compoundkin.curves import Curve
 from compoundkin.errors import InvalidMechanism, Problem
 from compoundkin.keys import Key
-from compoundkin.series import Number
 
 
 class Profile(ABC):
@@ -21,6 +20,11 @@ class Profile(ABC):
 
     kind: ClassVar[str]  # what it is called in a file
     keys: ClassVar[tuple[Key, ...]]  # none: it cannot be written to a file
+
+    @property
+    def oscillates(self) -> bool:
+        """Whether what is said of its follower are angles."""
+        return False
 
     @cached_property
     def curve(self) -> Curve:
@@ -60,6 +64,6 @@ def place_of(value: Any, where: str = "profile") -> complex:
         raise InvalidMechanism(Problem(where, f"{value!r} is not a point", "write (x, y)")) from None
 
 
-def side_of(curve: Curve) -> Number:
+def side_of(curve: Curve) -> float:
     """+1 where the normal of a closed curve points outward, -1 where inward; of an open one +1."""
     return 1.0 if not curve.closed or curve.is_counterclockwise else -1.0

@@ -10,6 +10,7 @@ E. Soylemez, Mechanisms, sections 8.4 and 8.5.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, asin, hypot, sqrt
 
@@ -36,6 +37,12 @@ class Lift:
         turned = self.start - s if self.clockwise else s - self.start
         return self.program.at(turned, repeat=True)
 
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The cam's angles at which a law or a part of it begins, so that derivatives may jump."""
+        sense = -1.0 if self.clockwise else 1.0
+        return tuple((self.start + sense * arc.start) % FULL_TURN for arc in self.program.arcs)
+
 
 class Way(ABC):
     """How a follower moves by its coordinate; see `Translating` and `Oscillating`."""
@@ -56,7 +63,7 @@ class Way(ABC):
 
     @abstractmethod
     def facing(self, coordinate: Series) -> tuple[Series, Series]:
-        """The normal of a flat face, away from the cam, and its distance from the cam's axis, in the carrier's frame."""
+        """A flat face in the carrier's frame: its normal, away from the cam, and its distance from the cam's axis."""
 
 
 @dataclass(frozen=True)
@@ -165,8 +172,8 @@ class Envelope:
         along = self.faced().derivatives(s, 1)[1]
         return dot(along, -1j * normal.c[0]) / np.abs(normal.turning().c[0])
 
-    def _curve(self, function: object) -> Analytic:
-        return Analytic(function, 0.0, FULL_TURN, closed=True)  # type: ignore[arg-type]
+    def _curve(self, function: Callable[[Series], Series]) -> Analytic:
+        return Analytic(function, 0.0, FULL_TURN, True, self.lift.breaks)
 
     def _facing(self, s: Series) -> tuple[Series, Series]:
         normal, distance = self.way.facing(self.coordinate(s))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Literal
 
@@ -42,7 +42,9 @@ class Synthesised(Profile):
         Key("base", "number", "Radius of the base circle, the least of the cam's.", required=True),
         Key("follower", "name", "knife, roller or flat.", default="knife"),
         Key("roller", "number", "Radius of the roller.", default=0.0),
-        Key("offset", "number", "How far a translating follower's guide is to the left of the cam's axis.", default=0.0),
+        Key(
+            "offset", "number", "How far a translating follower's guide is to the left of the cam's axis.", default=0.0
+        ),
         Key("angle", "turn", "The direction in which a translating follower rises.", default=np.pi / 2.0),
         Key("pivot", "place", "The pin of an oscillating follower, from the cam's axis; none if it translates."),
         Key("arm", "number", "The distance from the pivot to the knife edge or the roller's middle.", default=0.0),
@@ -51,6 +53,11 @@ class Synthesised(Profile):
         Key("clockwise", "flag", "Whether the cam turns clockwise as the program goes on.", default=False),
         Key("start", "turn", "The cam's angle at which the program begins.", default=0.0),
     )
+
+    def __post_init__(self) -> None:
+        if isinstance(self.program, Program):
+            # a cam goes round and round anyway
+            object.__setattr__(self, "program", replace(self.program, repeat=False))
 
     @property
     def oscillates(self) -> bool:
@@ -128,15 +135,16 @@ def synthesise(
     touches the point that has the parameter s when the cam's angle is s. `base` is the radius of the base circle, at
     which the program's value is 0. Lengths as in the mechanism, angles in radians; the program is over radians.
 
-    A translating follower rises in the direction `angle` on a guide `offset` to its left: ``slide("follower", on="frame",
-    through="A", angle=angle, offset=offset)``, A the cam's axis; a flat face is square to it and minds no offset. An
-    oscillating one turns about `pivot`, a point from the cam's axis or a distance along x, and the program rises by
-    angles: its edge or roller is at the end of its `arm`, in the direction of its link's x axis; its flat face is along
+    A translating follower rises in the direction `angle` on a guide `offset` to its left: ``slide("follower",
+    on="frame", through="A", angle=angle, offset=offset)``, A the cam's axis; a flat face is square to it and minds no
+    offset. An oscillating one turns about `pivot`, a point from the cam's axis or a distance along x, and the program
+    rises by angles: its edge or roller is at the end of its `arm`, in the direction of its link's x axis; its flat face is along
     that axis, beyond its pivot by `face`, ``face(..., angle=0, side=-side)``. `side` 1: it rises counterclockwise, -1:
     clockwise. The follower's mode is `Synthesised.mode`, its coordinate then `Synthesised.coordinate`.
 
-    Raises InvalidMechanism, with the cam's angles, for what cannot be made: a program that does not take one turn or does
-    not return, an arm that does not reach, an undercut (with the least base circle that will do), a hollow under a face.
+    Raises InvalidMechanism, with the cam's angles, for what cannot be made: a program that does not take one turn or
+    does not return, an arm that does not reach, an undercut (with the least base circle that will do), a hollow under a
+    face.
 
     Source: R. L. Norton, Cam Design and Manufacturing Handbook, 2nd ed., chapter 13.
 

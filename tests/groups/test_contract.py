@@ -141,9 +141,7 @@ def conditioned(kind: type[Dyad], case: Case) -> np.ndarray:
     general, setting = as_general(case)
     fit: np.ndarray = np.array(True)
     for sign in (1.0, -1.0):
-        matrix = general.matrix(
-            [Pose(Series(p.z.c[:1]), Series(p.u.c[:1])) for p in close(kind, case, sign)[0]], setting
-        )
+        matrix = general.matrix(general.state(list(close(kind, case, sign)[0])), setting)
         fit = fit & (np.linalg.cond(matrix) < 20.0)
     return fit
 
@@ -260,7 +258,7 @@ def as_general(case: Case) -> tuple[General, Setting]:
         members.append((found[0], found[1]))
         side = End(0j, None if not directed(pair) else 1 + 0j)
         ends[pair.name] = (side, side)
-    return General(2, case.pairs, tuple(members), 1.0), Setting(ends, world, local)
+    return General(2, case.pairs, tuple(members), 1.0, bars=False), Setting(ends, world, local)
 
 
 @every_dyad
@@ -273,9 +271,9 @@ def test_the_margin_is_negative_exactly_where_it_cannot_close(kind: type[Dyad], 
     case = loose(kind, rng, 0, (count,))
     poses, margin = close(kind, case, 1.0)
     general, setting = as_general(case)
-    starts = rng.uniform(-4.0, 4.0, (30, 1, 6))
+    starts = rng.uniform(-4.0, 4.0, (100, 1, general.width))
     with np.errstate(all="ignore"):
-        solution = general.newton(np.broadcast_to(starts, (30, count, 6)), setting, steps=60)
+        solution = general.newton(np.broadcast_to(starts, (100, count, general.width)), setting, steps=60)
     can = solution.closed.any(axis=0)
     clear = np.abs(margin) > 1e-3  # nearer to a limit position Newton may fail
     assert clear.sum() > count // 2

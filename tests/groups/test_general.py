@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.groups.general import inverted, solve
+from compoundkin.groups.linear import inverted, solve
 
 
 def test_one_singular_matrix_does_not_spoil_the_batch() -> None:
