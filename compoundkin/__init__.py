@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from compoundkin.cams import CamAnalysis, cam_analysis
 from compoundkin.centres import instant_centres
 from compoundkin.checks import Check, Finding, verify
 from compoundkin.equivalents import equivalent_linkage
@@ -31,7 +32,7 @@ from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
 from compoundkin.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
 from compoundkin.programs import dwell, fall, program, rise
-from compoundkin.profiles import disc, formula, profile
+from compoundkin.profiles import disc, formula, profile, synthesise
 from compoundkin.quantities import quantity
 from compoundkin.structure import Structure, decompose
 from compoundkin.words import deg, drawn, drive, expect, link, mode, polar
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "CamAnalysis",
     "Check",
     "CompoundkinError",
     "Finding",
@@ -58,6 +60,7 @@ __all__ = [
     "arc",
     "belt",
     "cam",
+    "cam_analysis",
     "constant_acceleration",
     "constant_speed",
     "decompose",
@@ -92,6 +95,7 @@ __all__ = [
     "slide",
     "slot",
     "solve",
+    "synthesise",
     "time_table",
     "to_pandas",
     "verify",

@@ -26,7 +26,8 @@ from typing import Any, Literal
 #   turn     a single angle in degrees, or {rad = ...}    float, radians
 #   place    [x, y], {polar = [radius, degrees]}, single  complex
 #   places   list of such points                          tuple of complex
-#   program  list of segments over degrees, or a table with the keys of Program   Program over radians
+#   turned   list of segments over degrees                tuple of Segment over radians
+#   program  such a list, or a table of it and a start    Program over radians
 #   profile  table with a kind, and the keys of that profile   Profile
 # Of a driven coordinate, an angle (degrees in files) or a length, as its pair has it:
 #   values   number or nested list, {from, to, step}, {rad = ...}   float or array
@@ -40,7 +41,7 @@ Kind = Literal[
     "name", "text", "names", "length", "angle", "point", "sign", "flag", "two", "points", "drawing",
     "values", "rate", "at", "published", "margin",
     "whole", "span", "times", "coordinate", "segments", "law",
-    "number", "turn", "place", "places", "program", "profile",
+    "number", "turn", "place", "places", "turned", "program", "profile",
 ]  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from functools import cached_property
 from typing import Any
 
@@ -182,6 +183,10 @@ def _plain(mechanism: Mechanism) -> list[Any]:
     """What is written, as nested builtins and arrays, for comparison."""
     about = [getattr(mechanism, k) for k in ("title", "unit", "source", "description", "outputs", "time")]
     drawing = [["Drawn", mechanism.sketch]] if mechanism.sketch else []
-    written = [[type(item).__name__, vars(item)] for item in mechanism.items if not isinstance(item, Drawn)]
+    written = [
+        [type(item).__name__, {field.name: getattr(item, field.name) for field in fields(item)}]
+        for item in mechanism.items
+        if not isinstance(item, Drawn)
+    ]
     # the order between different words says nothing; that within one kind does
     return [*about, *drawing, *sorted(written, key=lambda entry: str(entry[0]))]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import factorial
 
@@ -24,13 +24,16 @@ LIMITS = (0.0, 1e-9, 1e-7, 1e-5)
 
 
 def difference_findings(motion: Motion) -> Iterator[Finding]:
-    """Velocity, acceleration and jerk of every link against differences, outside change points and limits."""
+    """Velocity, acceleration and jerk of every link against differences, outside change points, limits and jumps."""
     counted = motion.regular & _away_from_change_points(motion)
     if motion.order < 1 or not counted.any():
         return
     step = STEP * _own_time(motion)
     counted = counted & np.isfinite(step)
     stencils = [_positions(motion, step * j) for j in OFFSETS]
+    counted = counted & _smooth(motion, stencils)
+    if not counted.any():
+        return
     for k in range(1, motion.order + 1):
         weights = _weights(k)
         parts: dict[str, Number] = {}
@@ -91,6 +94,17 @@ def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
         drives[name] = (moved,)
     everywhere = places(slice(0, given.designs), slice(0, given.poses))
     return dict(motion.tracker.run(given.driven(drives), 0, *everywhere).world)
+
+
+def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
+    """Poses between whose neighbours no contact passes a place where its profile's derivatives jump."""
+    good: Number = np.ones(motion.failed.shape, dtype=bool)
+    for pair in motion.structure.pairs:
+        ends = motion.inputs.ends[pair.name]
+        found = [pair.stretch(ends, tuple(poses[name] for name in pair.members)) for poses in stencils]
+        for stretch in found[1:]:
+            good = good & (stretch == found[0])
+    return good
 
 
 def _away_from_change_points(motion: Motion) -> Number:

@@ -38,7 +38,7 @@ def residuals(motion: Motion) -> Iterator[Finding]:
     fits = dict(_misfits(motion))
     if fits:
         scale = _scale(motion, 0, motion.failed == 0)
-        relative = {_off(name, gap): gap / scale for name, gap in fits.items()}
+        relative = {_off(name, gap, FITS * scale): gap / scale for name, gap in fits.items()}
         yield worst(motion, "fit of racks and wheels", FITS, relative, motion.failed == 0)
 
 
@@ -50,10 +50,9 @@ def _misfits(motion: Motion) -> Iterator[tuple[str, Number]]:
             yield name, np.abs(misfit.c[0])
 
 
-def _off(name: str, gap: Number) -> str:
-    """A pair's name with the length by which it is off, where it is."""
-    worst_gap = float(np.nanmax(gap, initial=0.0))
-    return f"{name}, off by {worst_gap:.6g}"
+def _off(name: str, gap: Number, limit: Number) -> str:
+    """A pair's name, with the length by which it is off where that is too much."""
+    return f"{name}, off by {float(np.nanmax(gap)):.6g}" if np.any(gap > limit) else name
 
 
 def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:

@@ -84,6 +84,16 @@ class Curve(ABC):
         """Whether parameters belong to the curve; an open one has two ends."""
         return np.isfinite(s) if self.closed else (self.low <= s) & (s <= self.high)
 
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The parameters, within the period, at which derivatives may jump: none of a curve smooth all along."""
+        return ()
+
+    def stretch(self, s: Number) -> Number:
+        """On which smooth stretch between two `breaks` parameters lie: an index."""
+        found = np.searchsorted(np.sort(self.breaks), self.wrapped(s))
+        return found % len(self.breaks) if self.closed and self.breaks else found
+
     # --- the curve as a whole ---
 
     @property
@@ -192,7 +202,7 @@ class Curve(ABC):
             along = composed(differentiated(coefficients), s)
             return composed(coefficients, s) + along.unit() * (-1j * distance)
 
-        return Analytic(parallel, self.low, self.high, self.closed)
+        return Analytic(parallel, self.low, self.high, self.closed, self.breaks)
 
     def offset_is_regular(self, distance: float) -> bool:
         """Whether the parallel curve has no cusp: nowhere is the curve's radius on that side less than the distance."""
@@ -223,6 +233,7 @@ class Analytic(Curve):
     low: float
     high: float
     closed: bool
+    breaks: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         checked_range(self.low, self.high)

@@ -66,6 +66,11 @@ class Spline(Curve):
         return interpolated(s, points, degree, self.closed)
 
     @property
+    def breaks(self) -> tuple[float, ...]:
+        """The given points: the highest derivatives jump there."""
+        return tuple(self._pieces.breaks[:-1].tolist())
+
+    @property
     def _count(self) -> int:
         return max(SAMPLES, SAMPLES_PER_PIECE * len(self.points))
 

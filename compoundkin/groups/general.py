@@ -29,8 +29,9 @@ from compoundkin.series import Number, Series, as_series, constant
 # step, so that the pose is then exact to rounding.
 CONVERGED = 1e-8
 STEPS = 12
-# A closed pose has every residual below this fraction of the size: rounding of some tens of additions.
-CLOSED = 1e-10
+# A closed pose has every residual below this fraction of the size: rounding of some tens of additions, far less than
+# what is left open a hundred-millionth of a radian beyond a limit position.
+CLOSED = 1e-12
 # Corrections above this (of the size, or radians) leave the region where Newton's answer is a neighbour.
 LEAP = 0.5
 
@@ -128,37 +129,45 @@ class General:
     def series(self, state: Number, setting: Setting, order: int) -> list[Pose]:
         """All bodies' poses to the given order, from a closed state."""
         kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
-        inverse = Inverse(self._rows(kept, _leading(setting)), self.width) if order else None
-        for k in range(1, order + 1):
-            trial = {j: _turned((*b.z.c, 0j), (*b.angle.c, np.zeros_like(b.angle.c[0]))) for j, b in kept.items()}
-            assert inverse is not None
-            step = inverse.times([-r for r in self._residual(trial, setting, k)])
-            kept = {
-                j: _turned((*b.z.c, step[3 * i] + 1j * step[3 * i + 1]), (*b.angle.c, step[3 * i + 2]))
-                for i, (j, b) in enumerate(kept.items())
-            }
+        if order:
+            inverse = Inverse(self._rows(kept, _leading(setting)), self.width)
+            for k in range(1, order + 1):
+                kept = self._grown(kept, self._next(kept, inverse, setting, k))
         found = {**kept, **{bar.body: self._bar_pose(bar, kept, setting, order) for bar in self.bars}}
         return [found[k] for k in range(self.n)]
 
-    def slope(self, state: Number, setting: Setting) -> Number:
-        """The state's rate, (..., width), in a setting of order 1."""
-        kept = self._kept_poses(list(np.moveaxis(state, -1, 0)))
+    def rates(self, state: Number, setting: Setting, order: int) -> tuple[list[Number], Number]:
+        """The state's coefficients 1 to `order`, each (..., width), in a setting of that order; and its side.
+
+        The side is the sign of the determinant of the equations: it changes across a singularity.
+        """
+        kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
         inverse = Inverse(self._rows(kept, _leading(setting)), self.width)
-        trial = {j: _turned((*b.z.c, 0j), (*b.angle.c, np.zeros_like(b.angle.c[0]))) for j, b in kept.items()}
-        step = inverse.times([-r for r in self._residual(trial, setting, 1)])
-        return np.stack(np.broadcast_arrays(*step, state[..., 0])[:-1], axis=-1)
+        found = []
+        for k in range(1, order + 1):
+            step = self._next(kept, inverse, setting, k)
+            kept = self._grown(kept, step)
+            found.append(np.stack(np.broadcast_arrays(*step, state[..., 0])[:-1], axis=-1))
+        return found, np.sign(inverse.determinant)
 
     def matrix(self, state: Number, setting: Setting) -> Number:
         """The matrix of all equations at a state, (..., width, width)."""
         kept = self._kept_poses(list(np.moveaxis(state, -1, 0)))
         return stacked(self._rows(kept, _leading(setting)), self.width)
 
-    def side(self, state: Number, setting: Setting) -> Number:
-        """On which side of a singularity a state is: the sign of the determinant of its equations."""
-        kept = self._kept_poses(list(np.moveaxis(state, -1, 0)))
-        return np.sign(Inverse(self._rows(kept, _leading(setting)), self.width).determinant)
-
     # --- equations ---
+
+    def _next(self, kept: Mapping[int, Pose], inverse: Inverse, setting: Setting, k: int) -> list[Number]:
+        """The k-th coefficients of the state, from poses known to the one before."""
+        trial = {j: _turned((*b.z.c, 0j), (*b.angle.c, np.zeros_like(b.angle.c[0]))) for j, b in kept.items()}
+        return inverse.times([-r for r in self._residual(trial, setting, k)])
+
+    def _grown(self, kept: Mapping[int, Pose], step: list[Number]) -> dict[int, Pose]:
+        """The poses with one more coefficient."""
+        return {
+            j: _turned((*b.z.c, step[3 * i] + 1j * step[3 * i + 1]), (*b.angle.c, step[3 * i + 2]))
+            for i, (j, b) in enumerate(kept.items())
+        }
 
     def _kept_poses(self, values: list[Number]) -> dict[int, Pose]:
         """The poses of the kept bodies, of order 0, from the numbers of a state."""

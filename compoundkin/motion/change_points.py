@@ -12,10 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.motion.continuation import CLOSE
-from compoundkin.motion.home import between
 from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.run import blocks, places
+from compoundkin.motion.spacing import CLOSE, between
 from compoundkin.motion.steps import DyadStep
 from compoundkin.motion.tracking import Tracker
 from compoundkin.poses import Pose

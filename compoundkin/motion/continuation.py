@@ -10,22 +10,28 @@ import numpy as np
 
 from compoundkin.groups.general import General, Setting
 from compoundkin.motion.inputs import Inputs
+from compoundkin.motion.spacing import CLOSE, pace
 from compoundkin.series import Number
 
 if TYPE_CHECKING:
     from compoundkin.motion.tracking import Tracker
 
-# The longest step of the continuation: no body may turn farther than this (radians) or move farther than
-# this part of the mechanism's size. Newton converges from there unless a limit position is near.
-STRIDE = 0.15
-# A corrector that moves farther than this part of the predicted step may have left its branch.
-STRAY = 0.3
+# What the terms of the prediction, first to third, may move at most (parts of the size, or radians) in one step: what
+# is left out is then below a hundredth, from which Newton converges unless a limit position is near.
+MOVES = (0.5, 0.2, 0.02)
+# A corrector that moves farther than this may have left its branch.
+STRAY = 0.03
+# What is interpolated may be off by this part of a step: near a limit position steps are so short that it is smooth.
+BENT = 0.05
+# Differences below this (of the size, or radians) are none.
+SAME = 1e-7
+# No step takes more spacings than this of the drivers (of five degrees each), even where nothing moves.
+SPACINGS = 6.0
 # The continuation gives up where its step falls below this part of the distance between two poses; what
 # is left is then known to be nearer to a limit than that.
 SHORTEST = 1e-12
-# Two places along the motion nearer than this part of a pose's distance are one: a double root is known to the
-# square root of rounding.
-CLOSE = 1e-6
+# Drivers that take less than this part of a spacing a pose stand still.
+SLOWEST = 1e-9
 
 
 @dataclass(frozen=True)
@@ -104,27 +110,28 @@ class _March:
         self.states: list[Number] = []
         self.slopes: list[Number] = []
         self.reached = np.zeros(len(state))
+        self.longest = SPACINGS / max(pace(tracker.plan, tracker.lead if lead else tracker.given), SLOWEST)
 
     def go(self, stops: Number) -> _March:
         """Step from stop to stop; stops that lie within one stride of each other are passed over."""
         here = float(stops[0])
-        slope, side = self._slope(here)
-        self._note(here, slope)
+        rates, side = self._rates(self.state, self._setting(here))
+        self._note(here, rates[0])
         self.reached = np.where(self.alive, here, np.nan)
         goal = 1
         step = np.inf
         while goal < len(stops) and self.alive.any():
-            farthest = self._stride(slope)
+            farthest = min(self._stride(rates), self.longest)
             within = int(np.searchsorted(np.abs(stops[goal:] - here), min(step, farthest), side="right"))
             goal = min(goal + max(within - 1, 0), len(stops) - 1)
             ahead = float(stops[goal]) - here
             h = np.sign(ahead) * min(abs(ahead), step, farthest)
-            state, slope_new, side_new, good = self._step(here, h, slope, side)
+            state, new_rates, new_side, good = self._step(here, h, rates, side)
             if good[self.alive].all():
                 here, step = here + h, abs(h) * 2.0
                 self.state = np.where(self.alive[:, None, None], state, self.state)
-                slope, side = slope_new, side_new
-                self._note(here, slope)
+                rates, side = new_rates, new_side
+                self._note(here, rates[0])
                 self.reached = np.where(self.alive, here, self.reached)
                 goal += here == stops[goal]
             elif abs(h) > SHORTEST * max(1.0, abs(here)):
@@ -134,37 +141,40 @@ class _March:
                 step = np.inf
         return self
 
-    def _stride(self, slope: Number) -> float:
-        fastest = float(np.max(np.abs(slope[self.alive] * self.solver.weights), initial=0.0))
-        return STRIDE / fastest if fastest > 0 else np.inf
+    def _stride(self, rates: list[Number]) -> float:
+        """How far the prediction is good: by the farthest move that each of its terms may make."""
+        weights = self.solver.weights
+        sizes = (float(np.max(np.abs(c[self.alive] * weights), initial=0.0)) for c in rates)
+        return min(((most / c) ** (1.0 / k) for k, (most, c) in enumerate(zip(MOVES, sizes, strict=True), 1) if c > 0),
+                   default=np.inf)  # fmt: skip
 
-    def _setting(self, s: float, order: int) -> Setting:
+    def _setting(self, s: float) -> Setting:
         place = np.array([s])
         designs = np.arange(len(self.state))[:, None]
-        return self.tracker.run(self.along(place), order, place[None], designs, self.k, self.lead).setting
+        run = self.tracker.run(self.along(place), len(MOVES), place[None], designs, self.k, self.lead)
+        return run.setting
 
-    def _slope(self, s: float) -> tuple[Number, Number]:
-        """The state's slope by s, and on which side of a singularity the configuration is."""
-        setting = self._setting(s, 1)
-        return self.solver.slope(self.state, setting), self._side(self.state, setting)
+    def _rates(self, state: Number, setting: Setting) -> tuple[list[Number], Number]:
+        """The state's coefficients by s, and on which side of a singularity the configuration is."""
+        rates, side = self.solver.rates(state, setting, len(MOVES))
+        return rates, np.broadcast_to(side, state.shape[:2])
 
-    def _side(self, state: Number, setting: Setting) -> Number:
-        return np.broadcast_to(self.solver.side(state, setting), state.shape[:2])
-
-    def _step(self, here: float, h: float, slope: Number, side: Number) -> tuple[Number, Number, Number, Number]:
-        guess = self.state + h * slope
-        setting = self._setting(here + h, 1)
+    def _step(
+        self, here: float, h: float, rates: list[Number], side: Number
+    ) -> tuple[Number, list[Number], Number, Number]:
+        """One step: the state there, its rates and side, and for which designs it is a neighbour."""
+        guess = self.state + sum(c * h**k for k, c in enumerate(rates, 1))
+        setting = self._setting(here + h)
         found = self.solver.newton(guess, setting)
-        weights = self.solver.weights
-        strayed = np.abs((found.state - guess) * weights).max(axis=-1)
-        predicted = np.abs(h * slope * weights).max(axis=-1)
-        side_new = self._side(found.state, setting)
-        good = found.closed & (strayed <= STRAY * predicted + 1e-9) & (side_new == side)
-        good = good.reshape(len(self.state))
-        kept, self.state = self.state, np.where(good[:, None, None], found.state, self.state)
-        slope_new, _ = self._slope(here + h)
-        self.state = kept
-        return found.state, slope_new, side_new, good & np.isfinite(slope_new).all(axis=(1, 2))
+        good = (found.closed & (found.moved <= STRAY)).reshape(len(self.state))
+        state = np.where(good[:, None, None], found.state, self.state)
+        new_rates, new_side = self._rates(state, setting)
+        # the middle of the step as it will be interpolated, against the prediction
+        between = (self.state + state) / 2.0 + (rates[0] - new_rates[0]) * (h / 8.0)
+        predicted = self.state + sum(c * (h / 2.0) ** k for k, c in enumerate(rates, 1))
+        off, moved = (np.abs(v * self.solver.weights).max(axis=(1, 2)) for v in (between - predicted, state - self.state))
+        near = off <= BENT * moved + SAME
+        return state, new_rates, new_side, good & near & (new_side == side).reshape(len(self.state))
 
     def path(self, begin: Number) -> Path:
         """What was tracked; `begin` is where each design's reach starts."""

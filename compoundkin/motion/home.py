@@ -7,16 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.motion.continuation import CLOSE
 from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.plan import Plan
+from compoundkin.motion.spacing import CLOSE, spacings
 from compoundkin.poses import Pose
 from compoundkin.series import Number, constant
-
-# The lead is sampled at least this finely: radians of a driver's angle, or parts of the size of its length.
-SPACING = np.pi / 36.0
-# No step of a driver is cut into more: a block may travel far on a mechanism whose own dimensions are tiny.
-MOST = 1000
 
 
 def approach(
@@ -93,21 +88,6 @@ def _nearest(plan: Plan, given: Inputs, values: Mapping[str, Number]) -> int:
             gap = np.abs(gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)))
         total = total + gap
     return int(np.argmin(np.broadcast_to(total.max(axis=0), given.poses)))
-
-
-def spacings(plan: Plan, name: str, way: Number) -> int:
-    """How many spacings the longest of some ways of a driver takes; 0 where it stands still."""
-    size = 1.0 if plan.driven[name].pair.free_is_angle else plan.size
-    return max(0, int(np.ceil(min(float(np.max(np.abs(way))) / size / SPACING - CLOSE, MOST))))
-
-
-def between(plan: Plan, given: Inputs) -> int:
-    """How many spacings the longest step of a driver from one pose of a motion to the next takes."""
-    return max((spacings(plan, name, _steps(values[0])) for name, values in given.drives.items()), default=0)
-
-
-def _steps(value: Number) -> Number:
-    return np.diff(value, axis=-1) if np.ndim(value) > 1 and np.shape(value)[-1] > 1 else np.zeros(1)
 
 
 def _side(given: Inputs, at: int, ways: Mapping[str, Number]) -> float:

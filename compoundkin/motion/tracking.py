@@ -8,11 +8,12 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.groups.contract import clipped_root, double_root, nearest_root
-from compoundkin.motion.continuation import CLOSE, Path, track
+from compoundkin.motion.continuation import Path, track
 from compoundkin.motion.home import approach, recounted
 from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.run import Run
+from compoundkin.motion.spacing import CLOSE
 from compoundkin.motion.starting import distance, first_state, shown
 from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep, TrainStep
 from compoundkin.motion.turns import Turns, turns_of

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compoundkin.motion.home import between, column
+from compoundkin.motion.home import column
 from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.run import blocks, places
+from compoundkin.motion.spacing import between
 from compoundkin.series import Number
 
 if TYPE_CHECKING:

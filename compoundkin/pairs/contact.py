@@ -120,14 +120,18 @@ Look: TypeAlias = Callable[[Sequence[Number], Sequence[Number]], Number]
 def outermost(
     level: Look, coordinate: Look, numbers: Sequence[Number], samples: Sequence[Number], closed: bool
 ) -> tuple[Number, Number]:
-    """The least and the greatest coordinate at which a level passes zero between two samples; NaN where none does.
+    """The least and the greatest coordinate at which a level passes zero between two samples.
+
+    Where none does, those of the samples beside the one nearest to it: what passes between two samples only, near a limit
+    position, is found from there.
 
     `numbers` are arrays of the poses' shape, `samples` what belongs to each sample of the profile.
     """
-    shape: tuple[int, ...] = np.broadcast_shapes(*(np.shape(v) for v in numbers))
+    shape = np.broadcast_shapes(*(np.shape(v) for v in numbers))
     flat = [np.broadcast_to(v, shape).ravel() for v in numbers]
     around = [np.append(v, v[:1]) if closed else v for v in samples]
-    least, greatest = np.full(flat[0].size, np.inf), np.full(flat[0].size, -np.inf)
+    least: Number = np.full(flat[0].size, np.inf)
+    greatest: Number = np.full(flat[0].size, -np.inf)
     step = max(1, TOGETHER // around[0].size)
     for first in range(0, least.size, step):
         found = level([v[first : first + step, None] for v in flat], [v[None] for v in around])
@@ -138,8 +142,22 @@ def outermost(
         at = coordinate([v[pose] for v in flat], [v[side] + share * (v[side + 1] - v[side]) for v in around])
         np.minimum.at(least, pose, at)
         np.maximum.at(greatest, pose, at)
+        lost = first + np.setdiff1d(np.arange(len(found)), pose - first)
+        both = _beside(np.abs(found[lost - first]), lost, coordinate, flat, around, closed)
+        least[lost], greatest[lost] = np.fmin(*both), np.fmax(*both)
     least, greatest = (np.where(np.isfinite(v), v, np.nan).reshape(shape) for v in (least, greatest))
     return least, greatest
+
+
+def _beside(
+    found: Number, pose: Number, coordinate: Look, flat: Sequence[Number], around: Sequence[Number], closed: bool
+) -> tuple[Number, Number]:
+    """The coordinates of the samples before and after that with the smallest level, for some poses."""
+    nearest, last = np.argmin(found, axis=1), found.shape[1] - 1
+    before = np.where(nearest > 0, nearest - 1, last - 1 if closed else 0)
+    after = np.where(nearest < last, nearest + 1, 1 if closed else last)
+    at = [v[pose] for v in flat]
+    return coordinate(at, [v[before] for v in around]), coordinate(at, [v[after] for v in around])
 
 
 def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:

@@ -129,7 +129,8 @@ class Face(Profiled):
             Revolute(f"{self.name} (pin)", "middle of the disc", self.on, block),
             Prismatic(f"{self.name} (slide)", block, self.link, "middle of the disc", self.at),
         )
-        track = End(ends[1].point + 1j * self.side * radius * ends[1].direction, ends[1].direction)
+        along = ends[1].along.c[0]
+        track = End(ends[1].point + 1j * self.side * radius * along, along)
         sides: dict[str, Ends] = {pairs[0].name: (End(middle), End(0j)), pairs[1].name: (track, End(0j, 1 + 0j))}
         return Equivalent(block, pairs, sides)
 

@@ -10,6 +10,7 @@ from compoundkin.checks import Check, verify
 from compoundkin.gaps import Gap, gaps
 from compoundkin.motion import Motion
 from compoundkin.quantities import order_of
+from compoundkin.reports.cams import cams_sections
 from compoundkin.reports.count import loops_section, mobility_section
 from compoundkin.reports.equivalent import equivalent_section
 from compoundkin.reports.findings import checks_section, gaps_section
@@ -74,6 +75,7 @@ def _of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
             drivers_section(structure, sample),
             *([equivalent] if (equivalent := equivalent_section(sample)) else []),
             moving,
+            *cams_sections(sample),
             *([gaps_section(sample, missing)] if missing else []),
             checks_section(sample, check),
             *([published_section(structure, published)] if published else []),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.linalg import null_space
 
@@ -16,6 +16,7 @@ from compoundkin.poses import FIXED, End, Pose
 from compoundkin.series import Series, constant
 from tests.support import ends_at, largest, random_planar, random_pose, random_real, random_unit, sample
 
+FAST = 8.0
 SEEDS = st.integers(0, 2**32 - 1)
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.code for kind in KINDS])
 every_drivable_kind = pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.held == 2], ids=lambda k: k.code)
@@ -44,6 +45,12 @@ def free_ends(pair: Pair, rng: np.random.Generator) -> Ends:
 def relative(pair: Pair, ends: Ends, state: np.ndarray) -> np.ndarray:
     poses = poses_at(state)
     return np.array([*[c.c[0] for c in pair.closure(ends, poses)], pair.coordinate(ends, poses).c[0]])
+
+
+def assume_no_centre_of_curvature(pair: Pair, ends: Ends, poses: Poses) -> None:
+    """A roller well outside its profile: near a centre of curvature the foot of its middle leaps."""
+    if not getattr(pair, "is_flat", True):
+        assume(bool(np.all(pair.closure(ends, still(poses))[0].c[0] > 0.4)))
 
 
 def still(poses: Poses) -> Poses:
@@ -75,6 +82,7 @@ def test_jacobian_against_central_differences(kind: type[Pair], seed: int) -> No
     pair = sample(kind)
     state = rng.standard_normal(3 * len(pair.members))
     ends = free_ends(pair, rng)
+    assume_no_centre_of_curvature(pair, ends, poses_at(state))
     matrix = pair.jacobian(ends, poses_at(state))
     assert matrix.shape == (kind.held + 1, len(state))
     for column in range(len(state)):
@@ -110,6 +118,7 @@ def test_rates_of_the_closure_are_jacobian_times_twist(kind: type[Pair], seed: i
     pair = sample(kind)
     poses = random_poses(pair, rng, 1, ())
     ends = free_ends(pair, rng)
+    assume_no_centre_of_curvature(pair, ends, poses)
     twist = np.concatenate([[p.z.c[1].real, p.z.c[1].imag, (p.u.c[1] / (1j * p.u.c[0])).real] for p in poses])
     rates = [*[c.c[1] for c in pair.closure(ends, poses)], pair.coordinate(ends, poses).c[1]]
     assert np.allclose(pair.jacobian(ends, still(poses)) @ twist, rates, atol=1e-12)
@@ -123,6 +132,7 @@ def test_higher_coefficients_of_the_closure_against_differences(kind: type[Pair]
     pair = sample(kind)
     poses = random_poses(pair, rng, 3, ())
     ends = free_ends(pair, rng)
+    assume_no_centre_of_curvature(pair, ends, poses)
     times = np.linspace(-0.04, 0.04, 9)
     values = []
     for t in times:
@@ -131,6 +141,8 @@ def test_higher_coefficients_of_the_closure_against_differences(kind: type[Pair]
         values.append(relative(pair, ends, np.ravel([[a.real, a.imag, b] for a, b in zip(z, theta, strict=True)])))
     fitted = np.linalg.solve(np.vander(times, increasing=True), np.unwrap(np.array(values), axis=0))
     found = [*pair.closure(ends, poses), pair.coordinate(ends, poses)]
+    # faster ones would need smaller times
+    assume(largest(c for series in found for c in series.c[1:]) < FAST)
     for column, series in enumerate(found):
         for k in range(1, 4):
             c = series.c[k] if k < len(series.c) else 0.0
@@ -206,6 +218,7 @@ def test_the_frame_of_reference_does_not_matter(kind: type[Pair], seed: int) -> 
     pair = sample(kind)
     ends = free_ends(pair, rng)
     poses = random_poses(pair, rng, 3, ())
+    assume_no_centre_of_curvature(pair, ends, poses)
     carrier = random_pose(rng, 3, ())
     moved = tuple(carrier.compose(pose) for pose in poses)
     one, other = pair.coordinate(ends, poses), pair.coordinate(ends, moved)
@@ -224,6 +237,7 @@ def test_the_links_own_frames_do_not_matter(kind: type[Pair], seed: int) -> None
     pair = sample(kind)
     ends = free_ends(pair, rng)
     poses = random_poses(pair, rng, 2, ())
+    assume_no_centre_of_curvature(pair, ends, poses)
     shift = random_poses(pair, rng, 0, ())
     if kind.free_is_angle or kind.counts_turns:  # an angle between links depends on their axes: shift all alike
         shift = tuple(Pose(p.z, shift[1].u, shift[1].theta) for p in shift)
