@@ -29,6 +29,8 @@ from compoundkin.series import Number, Series, as_series, constant
 # step, so that the pose is then exact to rounding.
 CONVERGED = 1e-8
 STEPS = 12
+# After a correction below this (of the size, or radians) the matrix has hardly changed and is used once more.
+CHORD = 1e-3
 # A closed pose has every residual below this fraction of the size: rounding of some tens of additions, far less than
 # what is left open a hundred-millionth of a radian beyond a limit position.
 CLOSED = 1e-12
@@ -110,8 +112,11 @@ class General:
         start = found = [np.asarray(v) for v in np.moveaxis(np.asarray(state, dtype=float), -1, 0)]
         bodies = self._kept_poses(found)
         residual = self._residual(bodies, leading, 0)
+        inverse, largest = None, np.inf
         for _ in range(steps):
-            correction = Inverse(self._rows(bodies, leading), self.width).times(residual)
+            if inverse is None or np.any(largest > CHORD):
+                inverse = Inverse(self._rows(bodies, leading), self.width)
+            correction = inverse.times(residual)
             largest = _largest([c * w for c, w in zip(correction, weights, strict=True)])
             if longest < np.inf:
                 share = np.minimum(1.0, longest / largest)

@@ -15,7 +15,7 @@ import numpy as np
 from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.run import blocks, places
 from compoundkin.motion.spacing import CLOSE, between
-from compoundkin.motion.steps import DyadStep
+from compoundkin.motion.steps import DyadStep, Step
 from compoundkin.motion.tracking import Tracker
 from compoundkin.poses import Pose
 from compoundkin.series import Number
@@ -51,12 +51,18 @@ class _Way:
 def near_groups(tracker: Tracker) -> set[int]:
     """The groups that come near a limit position on the lead, or between the poses of a coarse motion."""
     found: set[int] = set()
-    for way in _ways(tracker):
+    upto = 1 + max((k for k, step in enumerate(tracker.plan.steps) if _may_change(step)), default=-1)
+    for way in _ways(tracker) if upto else ():
         if way.lead or way.unit < 1.0:
             for _, _, part, s, designs in way.blocks():
-                margins = way.margins(tracker, part, s, designs, len(tracker.plan.steps))
+                margins = way.margins(tracker, part, s, designs, upto)
                 found |= {k for k, margin in margins.items() if np.any(margin < NEAR)}
     return found
+
+
+def _may_change(step: Step) -> bool:
+    """Whether a group has modes that may meet."""
+    return isinstance(step, DyadStep) and step.modes > 1
 
 
 def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
@@ -66,7 +72,7 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
     """
     for k in sorted(near):
         step = tracker.plan.steps[k]
-        if k in tracker.flips or not isinstance(step, DyadStep) or step.modes < 2:
+        if k in tracker.flips or not _may_change(step):
             continue
         found = False
         for way in _ways(tracker):

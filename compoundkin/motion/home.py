@@ -43,25 +43,48 @@ def recounted(plan: Plan, ways: tuple[Inputs, ...], home: Inputs) -> tuple[Input
 
     A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
     """
-    turns = dict(_turns_at(plan, home))
-    ends = dict(home.ends)
-    for pair in (pair for pair in plan.pairs.values() if pair.counts_turns):
-        ahead = tuple(turns.get(name, 0.0) for name in pair.members)
-        if any(np.any(turn != 0.0) for turn in ahead):
-            ends[pair.name] = pair.turned(ways[0].ends[pair.name], plan.structure.mechanism.geometry, ahead)
-    return tuple(replace(way, ends={**way.ends, **{k: ends[k] for k in ends if ends[k] is not home.ends[k]}})
-                 for way in ways)  # fmt: skip
+    drawn, rounds = _as_drawn(plan, home)
+    turns = dict(_turns_at(plan, _counted_on(plan, drawn, rounds, {})))
+    return tuple(_counted_on(plan, way, rounds, turns) for way in ways)
 
 
-def _turns_at(plan: Plan, home: Inputs) -> Iterator[tuple[str, Number]]:
+def _as_drawn(plan: Plan, home: Inputs) -> tuple[Inputs, dict[str, Number]]:
+    """The home with drivers as drawn, in the turn they are in at home; and that turn, by driven pair."""
+    rounds: dict[str, Number] = {}
+    for name, driven in plan.driven.items():
+        value = _drawn_value(plan, home, name, plan.structure.mechanism.geometry.drawn, {})
+        if value is None:
+            continue
+        if driven.pair.free_is_angle:
+            turns = np.round((home.drives[name][0] - value) / (2.0 * np.pi))
+            rounds[driven.pair.name] = turns * driven.pair.driven_by(driven.drive.link)
+            value = value + 2.0 * np.pi * turns
+        home = home.driven({**home.drives, name: (value,)})
+    return home, rounds
+
+
+def _counted_on(plan: Plan, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]) -> Inputs:
+    """A way with the phases of driven pairs taken on by their turns, those of others by the turns of their links."""
+    geometry = plan.structure.mechanism.geometry
+    ends = dict(way.ends)
+    for name, pair in plan.pairs.items():
+        ahead = tuple(turns.get(member, 0.0) for member in pair.members)
+        if pair.counts_turns and name in rounds:
+            ends[name] = pair.rounded(ends[name], geometry, rounds[name])
+        elif pair.counts_turns and any(np.any(turn != 0.0) for turn in ahead):
+            ends[name] = pair.turned(ends[name], geometry, ahead)
+    return replace(way, ends=ends)
+
+
+def _turns_at(plan: Plan, drawn: Inputs) -> Iterator[tuple[str, Number]]:
     """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
-    drawn = plan.structure.mechanism.geometry.drawn
-    start = plan.start(home.ends, home.series(0), 0)
+    poses = plan.structure.mechanism.geometry.drawn
+    start = plan.start(drawn.ends, drawn.series(0), 0)
     for body in plan.bodies:
         base = body.links[0]
-        for link in (link for link in body.links[1:] if link in drawn and base in drawn and link in plan.turning):
+        for link in (link for link in body.links[1:] if link in poses and base in poses and link in plan.turning):
             pose = start.world.get(link) or start.setting.local[link]
-            gap = column(drawn[base]).angle.c[0] + pose.angle.c[0] - column(drawn[link]).angle.c[0]
+            gap = column(poses[base]).angle.c[0] + pose.angle.c[0] - column(poses[link]).angle.c[0]
             yield link, np.round(gap / (2.0 * np.pi))
 
 

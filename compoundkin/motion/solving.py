@@ -67,7 +67,7 @@ def solve(
         raise InvalidInput(
             Problem("order", f"{order!r} is not an order", "0 position, 1 velocity, 2 acceleration, 3 jerk")
         )
-    plan = _plan_of(mechanism)
+    plan = plan_of(mechanism)
     with np.errstate(all="ignore"):
         values = by_name(plan.structure.mechanism, values)
         times = times_of(plan.structure.mechanism, values, time)
@@ -83,7 +83,7 @@ def solve(
     return motion
 
 
-def _plan_of(mechanism: Mechanism | Structure) -> Plan:
+def plan_of(mechanism: Mechanism | Structure) -> Plan:
     """The plan of a mechanism, made once and kept with it."""
     if not isinstance(mechanism, Mechanism | Structure):
         raise InvalidInput(Problem("mechanism", f"{mechanism!r} is not a mechanism", "load() one from a file"))
