@@ -54,14 +54,19 @@ def test_every_three_centres_are_in_line(name: str) -> None:
 
 @each
 def test_every_centre_is_found_or_said_why_not(name: str) -> None:
+    """One may be missing where the two links do not move relative to each other, such as pistons at dead centre."""
     centres = centres_of(name)
     assembled = centres.motion.assembled
+    twists, links = solved_twists(centres.motion, centres.scale), list(centres.motion.mechanism.links)
+    fastest = np.abs(twists).max()
     for couple in centres:
         centre = centres[couple]
         assert ((centre.status == Status.NOT_ASSEMBLED) == ~assembled).all()
         assert (np.isfinite(centre.homogeneous).all(axis=-1) == centre.found).all()
         if name not in CHANGE_POINTS:
-            assert (centre.found == assembled).all()
+            one, other = (twists[links.index(link)] for link in couple)
+            resting = np.abs(other - one).max(axis=0).reshape(assembled.shape) < EXACT * fastest
+            assert (centre.found | ~assembled | resting).all()
 
 
 @pytest.mark.parametrize("name", sorted(CHANGE_POINTS))
