@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Groove, Mark, Stud, arc_line, reach
 from compoundkin.keys import Key
 from compoundkin.pairs.contact import Contact, Touch, named_problems, row
 from compoundkin.pairs.contract import Ends, Equivalent, Osculation, Poses
@@ -110,6 +111,11 @@ class ArcSlot(Contact):
     def round_at(self, link: str) -> str | None:
         """The pin may turn in the slot, and the slot about its centre."""
         return self.at if link == self.link else self.centre_at
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """A groove as long as the pin's way, and the pin."""
+        way = reach(np.unwrap(np.ravel(self.coordinate(ends, poses).c[0])))
+        return Groove(0, arc_line(ends[0].point, ends[0].measure, *way)), Stud(1, ends[1].point)
 
 
 def arc(link: str, *, on: str, centre: str, radius: Number, at: str = "", name: str = "") -> ArcSlot:

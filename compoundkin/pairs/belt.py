@@ -10,7 +10,9 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Disc, Mark, Strap, strap_line
 from compoundkin.keys import Key
+from compoundkin.pairs.contract import Ends, Poses
 from compoundkin.pairs.geared import Geared, two_of
 from compoundkin.series import Number
 
@@ -52,6 +54,17 @@ class Belt(Geared):
                 f"{self.first_at} and {self.second_at} are too near to each other on {self.carrier!r} for the pulleys"
             )
             yield Problem(f"{where}.radii", what, "the distance of the axes must exceed both radii together")
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The pulleys and the belt around them."""
+        one, two = (abs(float(end.measure)) for end in ends[:2])
+        unit = float(self.reach(one, two, self.apart(ends, poses)))
+        radii = one * unit, two * unit
+        back = poses[2].inverse()
+        middles = [back.at(pose.at(end.point)).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True)]
+        first, second = (complex(np.ravel(middle)[0]) for middle in middles)
+        discs = (Disc(k, ends[k].point, radii[k]) for k in range(2))
+        return *discs, Strap(2, strap_line((first, second), radii, self.crossed))
 
 
 def belt(

@@ -11,6 +11,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Disc, Groove, Mark, Outline, Stud
 from compoundkin.keys import Key
 from compoundkin.pairs.arc import ArcSlot
 from compoundkin.pairs.contact import Path, Touch, centre_of_curvature, named_problems, outermost, path_of, row
@@ -206,6 +207,14 @@ class Cam(Profiled):
     def round_at(self, link: str) -> str | None:
         """A roller may turn about its middle."""
         return self.at if link == self.link else None
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The profile, as a groove where a pin runs in an open one; the roller, the pin or the edge."""
+        line = self.curve.at(self.curve.samples.s).c[0]
+        if ends[1].measure > 0:
+            return Outline(0, line, self.curve.closed), Disc(1, ends[1].point, ends[1].measure)
+        edge = Stud(1, ends[1].point)
+        return (Outline(0, line, True) if self.curve.closed else Groove(0, line)), edge
 
 
 def cam(

@@ -14,6 +14,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Mark
 from compoundkin.keys import Key
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series
@@ -155,6 +156,11 @@ class Pair(ABC):
         return True
 
     @property
+    def extent(self) -> float:
+        """The size of its profile, where it has one: a length scale of the mechanism."""
+        return 0.0
+
+    @property
     def is_drivable(self) -> bool:
         """Whether a driver may prescribe its coordinate: where nothing else is free."""
         return self.held == 2
@@ -212,9 +218,17 @@ class Pair(ABC):
         """The centres of curvature of a higher pair at the leading coefficient of the poses; None for other pairs."""
         return None
 
+    def rounded(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
+        """The ends of a driven pair that counts turns where its coordinate is by whole `turns` from the drawn one."""
+        return ends
+
     def round_at(self, link: str) -> str | None:
         """The point about which a member may turn without any effect on the pair, such as a roller's pin."""
         return None
+
+    @abstractmethod
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """What there is to see of it, in the members' frames: `ends` are numbers, `poses` a whole motion (poses,)."""
 
 
 def table(*rows: tuple[Number, ...]) -> Number:

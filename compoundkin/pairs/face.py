@@ -11,6 +11,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Mark, Outline, Track, reach
 from compoundkin.keys import Key
 from compoundkin.pairs.contact import Touch, centre_of_curvature, named_problems, nearest_angle, outermost, path_of, row
 from compoundkin.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
@@ -214,6 +215,13 @@ class Face(Profiled):
     def _normal(self, face: End) -> Series:
         """From the profile to the face."""
         return face.along * (-1j * self.side)
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The profile, and the part of the face that it touches."""
+        line = self.curve.at(self.curve.samples.s).c[0]
+        travel = reach(self.coordinate(ends, poses).c[0])
+        track = Track(1, ends[1].point, ends[1].along.c[0], *travel, float(self.side))
+        return Outline(0, line, self.curve.closed), track
 
 
 def _dot(a: Number, b: Number) -> Number:

@@ -10,12 +10,17 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Disc, Mark
 from compoundkin.keys import Key
+from compoundkin.pairs.contract import Ends, Poses
 from compoundkin.pairs.geared import Geared, check_distance, two_of
 from compoundkin.series import Number
 
 # The pressure angle of standard involute teeth; it shows in the equivalent linkage only, not in any motion.
 PRESSURE_ANGLE = np.deg2rad(20.0)
+
+# How many teeth a gear shows for which only a radius is known.
+UNCOUNTED = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +83,16 @@ class Gear(Geared):
         one, two = self.sizes
         distance = self.distance(geometry)
         return distance * np.abs(one / (one + two)), distance * np.abs(two / (one + two))
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The pitch circles."""
+        one, two = (abs(float(end.measure)) for end in ends[:2])
+        unit = self.apart(ends, poses) / (two - one if self.internal else two + one)
+        teeth = (0, 0) if self.teeth is None else (round(one), round(two))
+        return (
+            Disc(0, ends[0].point, one * unit, teeth[0] or UNCOUNTED),
+            Disc(1, ends[1].point, two * unit, teeth[1] or UNCOUNTED, self.internal),
+        )
 
 
 def gear(

@@ -219,6 +219,11 @@ class Geared(Pair):
         one, two = (float(np.ravel(size)[0]) for size in self.sizes)
         return type(self), one / two
 
+    def apart(self, ends: Ends, poses: Poses) -> float:
+        """The distance of the axes at the first pose."""
+        first, second = (np.ravel(pose.at(end.point).c[0])[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
+        return float(abs(second - first))
+
 
 def two_of(key: str, value: Any) -> Two | None:
     """Two sizes as numbers or arrays; raises InvalidMechanism naming the key for anything else.

@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Disc, Mark, Track, reach
 from compoundkin.pairs.contact import named_problems
 from compoundkin.pairs.contract import Ends, Pair, Point, Poses
 from compoundkin.poses import End
@@ -168,6 +169,20 @@ class OnLine(Pair):
         start, travel = complex(*rng.standard_normal(2)), rng.standard_normal()
         across = self.side * rng.uniform(0.5, 2.0)
         return End(start, along, travel), End(start + along * (travel + 1j * across), None, across)
+
+    @property
+    def pitch(self) -> float:
+        """The distance of teeth along the line; 0 where there are none."""
+        return 0.0
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The part of the line on which the wheel rolls, and the wheel."""
+        line, wheel = ends
+        low, high = reach(self.coordinate(ends, poses).c[0])
+        radius = abs(float(wheel.measure))
+        track = Track(0, line.point, line.along.c[0], low, high, float(self.side), self.pitch)
+        teeth = round(2.0 * np.pi * radius / self.pitch) if self.pitch else 0
+        return track, Disc(1, wheel.point, radius, teeth)
 
 
 def radius_problems(where: str, key: str, radius: Number | None) -> Iterator[Problem]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.errors import InvalidMechanism, Problem, nearest
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Mark, Sliding, reach
 from compoundkin.keys import Key
 from compoundkin.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.poses import End, Pose
@@ -185,6 +186,12 @@ class Prismatic(Pair):
         """Whether the guide does not lie in its block the wrong way round, which the sine alone does not see."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.dot(block.along).c[0] > 0
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """A block on the part of its guide that it uses."""
+        guide, block = ends
+        low, high = reach(self.coordinate(ends, poses).c[0])
+        return (Sliding(guide.point, guide.along.c[0], low, high, block.point, block.along.c[0]),)
 
 
 def slide(

@@ -31,6 +31,11 @@ class Profiled(Contact):
         raise NotImplementedError
 
     @property
+    def extent(self) -> float:
+        """The diagonal of the box around the profile."""
+        return self.curve.size
+
+    @property
     def roller(self) -> float:
         """The radius of the roller, of several designs the greatest; 0 without one."""
         return 0.0

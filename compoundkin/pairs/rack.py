@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.errors import Problem
 from compoundkin.keys import Key
 from compoundkin.pairs.contract import Ends, Pair, Poses, table
+from compoundkin.pairs.gear import UNCOUNTED
 from compoundkin.pairs.pitch_line import FITS, OnLine, radius_problems
 from compoundkin.pairs.revolute import Revolute
 from compoundkin.series import Number, Series
@@ -119,6 +120,13 @@ class Rack(OnLine):
         if not lower.free_is_angle:
             return lower.free == ("displacement",) and not lower.counts_turns
         return isinstance(lower, Revolute) and own == 1 and lower.at == self.at and self.pinion in lower.members
+
+    @property
+    def pitch(self) -> float:
+        """The distance of teeth: by the module, else by as many as a gear of unknown teeth shows."""
+        if self.module is not None:
+            return float(np.pi * np.ravel(self.module)[0])
+        return float(2.0 * np.pi * np.ravel(self.size)[0] / UNCOUNTED)
 
 
 def rack(

@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Mark, Pin
 from compoundkin.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.poses import End, Pose
 from compoundkin.series import Number, Series, as_series
@@ -91,3 +92,7 @@ class Revolute(Pair):
     def driven_by(self, link: str) -> int:
         """The angle of the driven link from the other one."""
         return 1 if link == self.second else -1
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """A pin."""
+        return (Pin(0, ends[0].point),)

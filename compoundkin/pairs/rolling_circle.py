@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Disc, Mark
 from compoundkin.keys import Key
 from compoundkin.pairs.contact import named_problems
 from compoundkin.pairs.contract import Ends, Pair, Point, Poses, table
@@ -112,6 +113,12 @@ class RollingOnCircle(Pair):
             return ends
         return ends[0]._replace(measure=ends[0].measure + TURN * (turns[1] - turns[0])), ends[1]
 
+    def rounded(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
+        """A phase that the drawing gave belongs to the line of centres after the turns it has made."""
+        if self.phase is not None or any(name not in geometry.drawn for name in self.members):
+            return ends
+        return ends[0]._replace(measure=ends[0].measure - TURN * turns * ends[1].measure), ends[1]
+
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """The gap in x and y between the wheel's middle and where its angle puts it."""
         on = poses[0].carry(ends[0])
@@ -164,6 +171,14 @@ class RollingOnCircle(Pair):
     def driven_by(self, link: str) -> int:
         """The direction as seen from the link that does not have the driver."""
         return 1 if link == self.link else -1
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The circle, as a ring where the wheel is inside, and the wheel."""
+        distance, turns = float(abs(ends[0].along.c[0])), float(ends[1].measure)
+        # turns = 1 + circle / radius, negative radius inside; the distance is their sum
+        radius = distance / turns
+        circle = Disc(0, ends[0].point, distance - radius, 0, self.inside)
+        return circle, Disc(1, ends[1].point, abs(radius))
 
 
 def roll_around(

@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.errors import Problem
 from compoundkin.geometry import Geometry
+from compoundkin.glyphs import Groove, Mark, Stud, reach
 from compoundkin.keys import Key
 from compoundkin.pairs.contact import Contact, Touch, named_problems, row
 from compoundkin.pairs.contract import Ends, Equivalent, Osculation, Poses
@@ -129,6 +130,11 @@ class Slot(Contact):
     def round_at(self, link: str) -> str | None:
         """The pin may turn in the slot."""
         return self.at if link == self.link else None
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """A groove as long as the pin's way, and the pin."""
+        travel = np.linspace(*reach(self.coordinate(ends, poses).c[0]), 2)
+        return Groove(0, ends[0].point + ends[0].along.c[0] * travel), Stud(1, ends[1].point)
 
 
 def slot(

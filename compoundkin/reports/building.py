@@ -11,6 +11,7 @@ from compoundkin.gaps import Gap, gaps
 from compoundkin.motion import Motion
 from compoundkin.quantities import order_of
 from compoundkin.reports.cams import cams_sections
+from compoundkin.reports.chain import chain_section
 from compoundkin.reports.count import loops_section, mobility_section
 from compoundkin.reports.equivalent import equivalent_section
 from compoundkin.reports.findings import checks_section, gaps_section
@@ -38,7 +39,7 @@ def report(subject: Structure | Motion, outputs: Sequence[str] = (), design: int
     >>> from compoundkin.structure import decompose
     >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
     >>> [section.key for section in report(decompose(crank)).sections]
-    ['about', 'links', 'pairs', 'mobility', 'loops', 'groups', 'drivers']
+    ['about', 'links', 'pairs', 'mobility', 'chain', 'loops', 'groups', 'drivers']
     """
     if isinstance(subject, Structure):
         return _of_structure(subject)
@@ -55,7 +56,7 @@ def _of_structure(structure: Structure) -> Report:
 
 def _counted(structure: Structure, design: int = 0) -> tuple[Section, ...]:
     parts = links_section(structure, design), pairs_section(structure)
-    return (*parts, mobility_section(structure), loops_section(structure))
+    return (*parts, mobility_section(structure), chain_section(structure), loops_section(structure))
 
 
 def _of_motion(sample: Sample, outputs: Sequence[str]) -> Report:

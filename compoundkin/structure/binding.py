@@ -60,11 +60,14 @@ class Binder:
         return self.system.bodies.pins.pair(letter, *links)
 
 
-def all_pairs(system: System, groups: Sequence[Group]) -> tuple[Pair, ...]:
-    """Every pair: the pins letter by letter, as drivers and groups use them, then those written out."""
+def all_pairs(system: System, groups: Sequence[Group], kept: Sequence[Pair] = ()) -> tuple[Pair, ...]:
+    """Every pair: the pins letter by letter, as drivers and groups use them, then those written out.
+
+    `kept` are what groups use in the place of pairs of which something is dropped: those themselves are listed.
+    """
     mechanism = system.mechanism
     used: dict[str, list[Pair]] = {letter: [] for letter in mechanism.pins}
-    written = {pair.name for pair in mechanism.written_pairs}
+    written = {pair.name for pair in (*mechanism.written_pairs, *kept)}
     bodies = (system.bodies.ground, *system.bodies.moving)
     driven = [step.pair for body in bodies for step in body.driven]
     for pair in (*driven, *(pair for group in groups for pair in (*group.inner, *group.outer))):

@@ -21,7 +21,7 @@ from compoundkin.structure.composites import composites
 from compoundkin.structure.faults import closed_drives, counted_faults, rank_faults
 from compoundkin.structure.matching import Matching, maximum_matching, overdetermined, underdetermined
 from compoundkin.structure.mobility import mobility_of
-from compoundkin.structure.model import Fault, Group, Structure
+from compoundkin.structure.model import Fault, Group, Relaxation, Structure
 from compoundkin.structure.ordering import solving_order, strong_components
 from compoundkin.structure.rank import Part, RankTest
 from compoundkin.structure.system import System, system_of
@@ -45,15 +45,22 @@ def decompose(mechanism: Mechanism) -> Structure:
     >>> [(group.name, group.links) for group in decompose(four_bar).groups]
     [('RRR', ('coupler', 'rocker'))]
     """
+    return decomposed(mechanism, None)
+
+
+def decomposed(mechanism: Mechanism, relaxation: Relaxation | None) -> Structure:
+    """Take a mechanism apart, part of some pairs left out."""
+    dropped = relaxation.dropped if relaxation else ()
     bodies = composites(mechanism)
-    system = system_of(mechanism, bodies)
+    system = system_of(mechanism, bodies, dropped)
     matching = maximum_matching(system.rows, system.freedoms)
     coarse = _Coarse(overdetermined(matching), underdetermined(matching))
     groups, faults = _groups(system, matching, coarse)
     faults = [*closed_drives(system), *counted_faults(system, matching, coarse.over, coarse.under), *faults]
-    pairs = all_pairs(system, groups)
+    pairs = all_pairs(system, groups, [part.kept for part in dropped if part.kept is not None])
     mobility = mobility_of(mechanism, pairs, bodies.passive)
-    return Structure(mechanism, pairs, bodies.ground, tuple(groups), mobility, tuple(faults), bodies.passive)
+    found = tuple(groups), mobility, tuple(faults), bodies.passive
+    return Structure(mechanism, pairs, bodies.ground, *found, relaxation)
 
 
 @dataclass(frozen=True)

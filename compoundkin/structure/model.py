@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from compoundkin.words import Drive
 if TYPE_CHECKING:
     import networkx as nx
 
+    from compoundkin.chains import ChainName
     from compoundkin.structure.loops import Loop
     from compoundkin.structure.mobility import Mobility
 
@@ -94,11 +96,37 @@ class Fault:
 
 
 @dataclass(frozen=True)
+class Dropped:
+    """Part of a pair that is left out when a mechanism is solved, since the other pairs hold it already.
+
+    `name` is the letter of a pin, taken off there are the links `off`, all of one body; or the name of a written
+    pair. What it still holds is the pair `kept`, None where that is nothing; `freed` says in words what is left out.
+    """
+
+    name: str
+    off: tuple[str, ...]
+    kept: Pair | None
+    freed: str
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.freed}"
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """What is dropped of a mechanism that moves though it is overconstrained, and the points of an assembled pose."""
+
+    dropped: tuple[Dropped, ...]
+    places: Mapping[str, complex]
+
+
+@dataclass(frozen=True)
 class Structure:
     """A mechanism taken apart: the frame with its driven links, then the Assur groups in solving order.
 
     `pairs` lists every pair, a multiple pin of k links as k - 1 of them. Where `faults` is not empty the
-    mechanism cannot be solved, and `groups` holds what could be decomposed.
+    mechanism cannot be solved, and `groups` holds what could be decomposed. Where there is a `relaxation`, part of
+    some pairs is left out in the groups.
     """
 
     mechanism: Mechanism
@@ -108,6 +136,17 @@ class Structure:
     mobility: Mobility
     faults: tuple[Fault, ...]
     passive: tuple[Passive, ...] = ()
+    relaxation: Relaxation | None = None
+
+    @cached_property
+    def redundant(self) -> tuple[Pair, ...]:
+        """The pairs that no driver and no group uses as they are: the others hold what they hold."""
+        if self.relaxation is None:
+            return ()
+        bodies = (self.ground, *(body for group in self.groups for body in group.bodies))
+        used = {step.pair.name for body in bodies for step in body.driven}
+        used.update(pair.name for group in self.groups for pair in (*group.inner, *group.outer))
+        return tuple(pair for pair in self.pairs if pair.name not in used)
 
     @cached_property
     def graph(self) -> nx.MultiGraph:
@@ -115,6 +154,13 @@ class Structure:
         from compoundkin.structure.graph import kinematic_graph
 
         return kinematic_graph(self)
+
+    @cached_property
+    def name(self) -> ChainName:
+        """What it is called by its graph, frame and drivers: "Stephenson III"."""
+        from compoundkin.chains import structure_name
+
+        return structure_name(self)
 
     @cached_property
     def loops(self) -> tuple[Loop, ...]:

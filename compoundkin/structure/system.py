@@ -7,13 +7,14 @@ would wrongly merge groups. A pin on the ground is simply fixed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import Pair
 from compoundkin.structure.composites import GROUND, Composites
+from compoundkin.structure.model import Dropped
 from compoundkin.structure.pins import pin_at
 
 LINK_FREEDOMS = 3
@@ -72,18 +73,21 @@ class System:
         return next(name for name in self.bodies.body(body).links if letter in links[name].points)
 
 
-def system_of(mechanism: Mechanism, bodies: Composites) -> System:
-    """The constraint system of a mechanism with its driven links already joined."""
+def system_of(mechanism: Mechanism, bodies: Composites, dropped: Sequence[Dropped] = ()) -> System:
+    """The constraint system of a mechanism with its driven links already joined, without what is dropped."""
     count = len(bodies.moving)
     vertices: list[str] = []
     constraints: list[Constraint] = []
+    off = {(part.name, link) for part in dropped for link in part.off}
     for letter, names in mechanism.pins.items():
-        on_pin = tuple(dict.fromkeys([bodies.body_of[name] for name in names]))
+        on_pin = tuple(dict.fromkeys([bodies.body_of[name] for name in names if (letter, name) not in off]))
         if len(on_pin) > 2 and GROUND not in on_pin:
             vertices.append(letter)
         sides = _pin_sides(on_pin, count + len(vertices) - 1)
         constraints += [_constraint(pin_at(letter), pair, letter) for pair in sides]
-    for pair in mechanism.written_pairs:
+    left_out = {part.name for part in dropped if not part.off}
+    kept = [part.kept for part in dropped if part.kept is not None]
+    for pair in (*(pair for pair in mechanism.written_pairs if pair.name not in left_out), *kept):
         members = tuple(bodies.body_of[name] for name in pair.members)
         if len(set(members)) > 1:
             constraints.append(_constraint(pair, members, ""))

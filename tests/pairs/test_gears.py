@@ -263,6 +263,27 @@ def test_the_phase_is_read_off_a_drawing_at_any_angle(drawn_at: float) -> None:
     assert abs(motion.points["Q"].position[at] - two) < 1e-12
 
 
+def test_the_phase_of_a_wheel_on_a_driven_arm() -> None:
+    """Crank on crank: the drawn angles of links that drivers turn together are counted on as one."""
+    a, b, c = ck.polar(4, ck.deg(170)), ck.polar(3, ck.deg(220)), ck.polar(1, ck.deg(-75))
+    mechanism = ck.Mechanism(
+        "Two driven arms",
+        ck.link("frame", O=0),
+        ck.link("upper", O=0, A=(4, 0)),
+        ck.link("lower", A=0, B=(3, 0)),
+        ck.link("wheel", O=0, W=(1, 0)),
+        ck.gear("lower", "wheel", carrier="upper", teeth=(17, 30)),
+        ck.drive("upper", values=ck.deg(np.arange(350, 711, 10))),
+        ck.drive("lower", on="upper", values=ck.deg(np.arange(230, 591, 10))),
+        ck.drawn(A=a, B=a + b, W=c),
+    )
+    motion = ck.solve(mechanism, speed={"upper": 1, "lower": 1})
+    assert passes(motion)
+    at = int(np.argmin(np.abs(motion.points["A"].position - a)))
+    assert abs(motion.points["B"].position[at] - a - b) < 1e-12
+    assert abs(motion.points["W"].position[at] - c) < 1e-12
+
+
 def test_a_long_motion_in_blocks_is_that_of_its_pieces() -> None:
     """More than 65,536 poses are solved in blocks; turns of a link on a coupler are counted across them."""
     crank = np.linspace(0.0, 40 * np.pi, 70_001)

@@ -185,6 +185,26 @@ def test_the_phase_of_a_drawing_is_that_of_the_words() -> None:
         assert np.max(np.abs(one.points["B"].position - two.points["B"].position)) < 1e-11
 
 
+@pytest.mark.parametrize("direction", [-170, -20, 60, 179, 200, 300, 700])
+def test_a_driven_wheel_comes_to_where_it_is_drawn(direction: float) -> None:
+    """On a circle, after a turn about which the wheel is turned otherwise."""
+    middle = ck.polar(5, ck.deg(direction))
+    rim = middle + ck.polar(1.5, ck.deg(75))
+    mechanism = ck.Mechanism(
+        "Wheel drawn on a circle",
+        ck.link("frame", O=0),
+        ck.link("wheel", C=0, P=(1.5, 0)),
+        ck.roll_around("wheel", on="frame", centre="O", at="C", circle=3, radius=2),
+        ck.drive("wheel", values=ck.deg(np.arange(direction - 90, direction + 91, 10))),
+        ck.drawn(C=middle, P=rim),
+    )
+    motion = ck.solve(mechanism)
+    assert abs(motion.points["C"].position[9] - middle) < 1e-12
+    assert abs(motion.points["P"].position[9] - rim) < 1e-12
+    turned = motion.links["wheel"].angle
+    np.testing.assert_allclose(np.diff(turned), 2.5 * ck.deg(10), atol=1e-12)
+
+
 def test_centres_of_a_rolling_wheel() -> None:
     motion = ck.solve(rim_rod(), {"crank": [0.4]})
     centres = ck.instant_centres(motion)
