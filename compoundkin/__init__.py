@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from compoundkin.cams import CamAnalysis, cam_analysis
 from compoundkin.centres import instant_centres
 from compoundkin.checks import Check, Finding, verify
+from compoundkin.circuits import circuits, configurations
 from compoundkin.equivalents import equivalent_linkage
 from compoundkin.errors import (
     CompoundkinError,
@@ -31,13 +32,15 @@ from compoundkin.laws import constant_acceleration, constant_speed, time_table
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
 from compoundkin.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
-from compoundkin.programs import dwell, fall, program, rise
 from compoundkin.profiles import disc, formula, profile, synthesise
+from compoundkin.programs import dwell, fall, program, rise
 from compoundkin.quantities import quantity
 from compoundkin.structure import Structure, decompose
 from compoundkin.words import deg, drawn, drive, expect, link, mode, polar
 
 if TYPE_CHECKING:
+    from compoundkin.drawing import Picture, draw, draw_structure, vector_polygon
+    from compoundkin.plots import plot
     from compoundkin.reports import rendered, report
 
 __version__ = "0.1.0"
@@ -54,6 +57,7 @@ __all__ = [
     "Motion",
     "NotAssembled",
     "NotDetermined",
+    "Picture",
     "Structure",
     "UnassembledPoses",
     "UnknownName",
@@ -61,11 +65,15 @@ __all__ = [
     "belt",
     "cam",
     "cam_analysis",
+    "circuits",
+    "configurations",
     "constant_acceleration",
     "constant_speed",
     "decompose",
     "deg",
     "disc",
+    "draw",
+    "draw_structure",
     "drawn",
     "drive",
     "dwell",
@@ -80,6 +88,7 @@ __all__ = [
     "link",
     "load",
     "mode",
+    "plot",
     "polar",
     "profile",
     "program",
@@ -98,6 +107,7 @@ __all__ = [
     "synthesise",
     "time_table",
     "to_pandas",
+    "vector_polygon",
     "verify",
 ]
 
@@ -108,8 +118,16 @@ def __getattr__(name: str) -> Any:
         from compoundkin import reports
 
         return getattr(reports, name)
-    if name == "catalog":
+    if name in ("Picture", "draw", "draw_structure", "vector_polygon"):
+        from compoundkin import drawing
+
+        return getattr(drawing, name)
+    if name == "plot":
+        from compoundkin import plots
+
+        return plots.plot
+    if name in ("catalog", "plots"):
         from importlib import import_module
 
-        return import_module("compoundkin.catalog")
+        return import_module(f"compoundkin.{name}")
     raise AttributeError(f"module 'compoundkin' has no attribute {name!r}")

@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.curves.undercut import spans
 from compoundkin.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.motion import Motion
 from compoundkin.pairs import Pair
@@ -19,9 +18,6 @@ from compoundkin.series import Number, as_series
 # Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and
 # Manufacturing Handbook, 2nd ed., Industrial Press 2009, section 7.1.
 TRANSLATING, OSCILLATING = 30.0, 35.0
-# A roller that cuts into the profile elsewhere by this part of the profile's size would touch there first; less is
-# rounding where it touches twice.
-CUTS = 1e-7
 # An open profile is nearly run off where less than this part of it is left.
 LEFT = 0.02
 # Slower than this part of the fastest, a velocity has no direction but that of rounding.
@@ -72,21 +68,15 @@ class CamAnalysis:
         """The angular velocity of the roller in its pin if it rolls without sliding; None without a roller."""
         return self.sliding / self.pair.roller if self.pair.roller else None
 
-    @cached_property
+    @property
     def undercut(self) -> tuple[tuple[float, float], ...]:
         """The spans of the parameter where a hollow is narrower than the roller, or under a flat face."""
-        curve = self.pair.curve
-        if self.pair.is_flat:
-            return spans(curve.samples, curve.low, curve.high, lambda s: CUTS + self._bend(s))
-        return curve.undercut(self.pair.outward * self.pair.roller) if self.pair.roller else ()
+        return self.pair.hollows
 
-    @cached_property
+    @property
     def untouched(self) -> tuple[tuple[float, float], ...]:
         """The spans of the parameter that the follower bridges, for it touches before and behind them."""
-        curve = self.pair.curve
-        if self.pair.is_flat:
-            return spans(curve.samples, curve.low, curve.high, self._above_face)
-        return spans(curve.samples, curve.low, curve.high, self._beside_roller) if self.pair.roller else ()
+        return self.pair.bridged
 
     @property
     def greatest_pressure_angle(self) -> float:
@@ -127,24 +117,6 @@ class CamAnalysis:
         """Spans of the parameter as points of the profile."""
         points = [(complex(self.pair.curve.at(a).c[0]), complex(self.pair.curve.at(b).c[0])) for a, b in found]
         return ", ".join(f"{_point(a)} to {_point(b)}" for a, b in points)
-
-    def _bend(self, s: Number) -> Number:
-        """The curvature by the profile's size, negative in a hollow."""
-        return self.pair.outward * self.pair.curve.curvature(s) * self.pair.curve.size
-
-    def _above_face(self, s: Number) -> Number:
-        """How little a face that touched here would cut into the profile elsewhere."""
-        curve = self.pair.curve
-        normal = curve.normal(s).c[0] * self.pair.outward
-        farther = curve.at(curve.support(normal)).c[0] - curve.at(s).c[0]
-        return CUTS * curve.size - (farther.real * normal.real + farther.imag * normal.imag)
-
-    def _beside_roller(self, s: Number) -> Number:
-        """How little a roller that touched here would cut into the profile elsewhere."""
-        curve, pair = self.pair.curve, self.pair
-        middle = curve.at(s).c[0] + curve.normal(s).c[0] * pair.outward * self.pair.roller
-        nearer = np.abs(middle - curve.at(curve.foot(middle).c[0]).c[0])
-        return CUTS * curve.size - (self.pair.roller - nearer)
 
 
 def cam_analysis(motion: Motion, name: str) -> CamAnalysis:

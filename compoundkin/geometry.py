@@ -23,13 +23,14 @@ class Geometry:
     drawn: Mapping[str, Pose]
     as_drawn: frozenset[str]
     sketch: Mapping[str, Number]
+    profiles: float = 0.0  # the size of the largest profile
 
     @property
     def size(self) -> float:
-        """The greatest distance between two points of one link, or between the frame's: the length scale."""
+        """The greatest distance between two points of one link, or the size of a profile: the length scale."""
         spans = [_span(list(points.values())) for points in self.points.values()]
         spans.append(_span(list(self.sketch.values())))
-        return max(spans, default=0.0) or 1.0
+        return max(*spans, self.profiles) or 1.0
 
 
 def _span(points: list[Number]) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -107,6 +107,28 @@ class Mechanism:
         return {letter: names for letter, names in self.carriers.items() if len(names) > 1}
 
     @cached_property
+    def pins_on(self) -> dict[str, dict[str, None]]:
+        """The letters of the pins on each link, as the keys of a dictionary in the order of `pins`."""
+        found: dict[str, dict[str, None]] = {name: {} for name in self.links}
+        for letter, names in self.pins.items():
+            for name in names:
+                found[name][letter] = None
+        return found
+
+    def pins_between(self, one: str, other: str) -> list[str]:
+        """The letters at which two links, which need not exist, are pinned to each other."""
+        fewer, more = sorted((self.pins_on.get(name, {}) for name in (one, other)), key=len)
+        return [letter for letter in fewer if letter in more and one != other]
+
+    @cached_property
+    def pairs_between(self) -> dict[frozenset[str], list[Pair]]:
+        """The written pairs by the links they join."""
+        found: dict[frozenset[str], list[Pair]] = {}
+        for pair in self.written_pairs:
+            found.setdefault(frozenset(pair.members), []).append(pair)
+        return found
+
+    @cached_property
     def geometry(self) -> Geometry:
         """The dimensions as numbers, those of links given as drawn read off the drawing."""
         points: dict[str, Mapping[str, Number]] = {}
@@ -126,7 +148,12 @@ class Mechanism:
                 pose = fitted_pose(points[name], seen) if self.sketch else None
                 if pose is not None:
                     poses[name] = pose
-        return Geometry(points, poses, frozenset(n for n, i in self.links.items() if i.is_drawn), seen)
+        return Geometry(points, poses, frozenset(n for n, i in self.links.items() if i.is_drawn), seen, self._profiles)
+
+    @property
+    def _profiles(self) -> float:
+        """The size of the largest profile."""
+        return max((pair.extent for pair in self.written_pairs), default=0.0)
 
     def replace(self, *items: Item, **changes: Any) -> Mechanism:
         """A copy in which each given item takes the place of the one of the same kind and name.
@@ -149,6 +176,12 @@ class Mechanism:
         if name not in self.links:
             raise UnknownName(Problem(name, "there is no such link", nearest(name, list(self.links))))
         return self.links[name]
+
+    def _repr_svg_(self) -> str:
+        """Its picture, for notebooks."""
+        from compoundkin.drawing import draw
+
+        return draw(self).svg
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Mechanism) and same(_plain(self), _plain(other))
@@ -184,7 +217,7 @@ def _plain(mechanism: Mechanism) -> list[Any]:
     about = [getattr(mechanism, k) for k in ("title", "unit", "source", "description", "outputs", "time")]
     drawing = [["Drawn", mechanism.sketch]] if mechanism.sketch else []
     written = [
-        [type(item).__name__, {field.name: getattr(item, field.name) for field in fields(item)}]
+        [type(item).__name__, {field.name: getattr(item, field.name) for field in fields(cast("Any", item))}]
         for item in mechanism.items
         if not isinstance(item, Drawn)
     ]

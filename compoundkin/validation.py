@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,11 @@ ZERO_LENGTH = 1e-12
 
 # Among the driver values of a published number, the time of a motion in time.
 TIME = "time"
+
+# What is no array, and is looked at without NumPy: most mechanisms hold nothing else.
+_NUMBERS = (complex, float, int)
+# A direction in which points of a drawing hardly ever lie one behind the other.
+_OBLIQUE = cmath.rect(1.0, 1.0)
 
 
 def problems_of(mechanism: Mechanism) -> Iterator[Problem]:
@@ -106,8 +112,10 @@ def _points(mechanism: Mechanism) -> Iterator[Problem]:
 
 def _is_finite(value: Any) -> bool:
     try:
+        if isinstance(value, _NUMBERS):
+            return cmath.isfinite(value)
         return bool(np.size(value)) and bool(np.all(np.isfinite(value)))
-    except (TypeError, ValueError):  # a text, a ragged list
+    except (TypeError, ValueError, OverflowError):  # a text, a ragged list, a whole number of hundreds of digits
         return False
 
 
@@ -130,20 +138,36 @@ def _lengths(mechanism: Mechanism, name: str, size: float) -> Iterator[Problem]:
 
 def _coincident(points: list[Any], nearer: float) -> Iterator[tuple[int, int]]:
     """The pairs of points that coincide in any design."""
-    if all(np.ndim(p) == 0 for p in points):
-        placed = np.array(points)
-        for i in range(len(points)):
-            yield from ((i, i + 1 + int(j)) for j in np.flatnonzero(np.abs(placed[i + 1 :] - placed[i]) <= nearer))
+    if all(isinstance(p, _NUMBERS) for p in points):
+        yield from sorted(_near_in_order(points, nearer))
     else:
         for i, p in enumerate(points):
             yield from ((i, j) for j in range(i + 1, len(points)) if np.any(np.abs(points[j] - p) <= nearer))
 
 
+def _near_in_order(points: list[complex], nearer: float) -> Iterator[tuple[int, int]]:
+    """The pairs of points that coincide; each is held against those next to it along one direction only."""
+    along = sorted(((p * _OBLIQUE).real, i) for i, p in enumerate(points) if cmath.isfinite(p))
+    for here, (t, i) in enumerate(along):
+        for there in range(here + 1, len(along)):
+            farther, j = along[there]
+            # twice: rounding of the products
+            if farther - t > 2.0 * nearer:
+                break
+            if abs(points[j] - points[i]) <= nearer:
+                yield min(i, j), max(i, j)
+
+
 def _size(mechanism: Mechanism) -> float:
     values = [p for link in mechanism.links.values() for p in link.points.values() if p is not None]
-    values += list(mechanism.sketch.values())
-    finite = [np.abs(np.asarray(v))[np.isfinite(v)] for v in values]
-    return max((float(np.max(v, initial=0.0)) for v in finite), default=0.0)
+    return max(map(_greatest, [*values, *mechanism.sketch.values()]), default=0.0)
+
+
+def _greatest(value: Any) -> float:
+    """The greatest absolute value, of what is finite."""
+    if isinstance(value, _NUMBERS):
+        return abs(value) if cmath.isfinite(value) else 0.0
+    return float(np.max(np.abs(np.asarray(value))[np.isfinite(value)], initial=0.0))
 
 
 def _pairs(mechanism: Mechanism) -> Iterator[Problem]:
@@ -154,9 +178,8 @@ def _pairs(mechanism: Mechanism) -> Iterator[Problem]:
             for value in _numbers_of(pair, key):
                 if not _is_finite(value):
                     yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite")
-        both = set(pair.members[:2])
-        shared = [k for k, names in mechanism.pins.items() if both <= set(names)]
-        if shared and len(both) == 2:
+        shared = mechanism.pins_between(*pair.members[:2])
+        if shared:
             yield Problem(where, f"{pair.members[1]!r} and {pair.members[0]!r} are also pinned at {shared[0]}",
                           "give the two points different letters")  # fmt: skip
 
@@ -237,9 +260,9 @@ def _two_laws(drive: Drive, where: str) -> Iterator[Problem]:
 
 def drivable(mechanism: Mechanism, drive: Drive) -> list[str]:
     """The names of the pairs between a drive's two links that it can mean."""
-    both = {drive.link, drive.on}
-    pins = [k for k, names in mechanism.pins.items() if both <= set(names) and len(both) == 2]
-    others = [p.name for p in mechanism.written_pairs if p.is_drivable and set(p.members) == both]
+    pins = mechanism.pins_between(drive.link, drive.on)
+    between = mechanism.pairs_between.get(frozenset((drive.link, drive.on)), ())
+    others = [pair.name for pair in between if pair.is_drivable]
     return [name for name in [*pins, *others] if drive.pair in ("", name)]
 
 
@@ -287,14 +310,14 @@ def _expectations(mechanism: Mechanism) -> Iterator[Problem]:
 
 def _quantities(mechanism: Mechanism) -> Iterator[Problem]:
     """Outputs and published numbers of what there is not; a multiple pin's pairs are named by their links."""
-    known = [*mechanism.carriers, *mechanism.links, *(p.name for p in mechanism.written_pairs)]
-    known += [drive.name for drive in mechanism.drives]
+    named = [*mechanism.carriers, *mechanism.links, *(p.name for p in mechanism.written_pairs)]
+    known = dict.fromkeys([*named, *(drive.name for drive in mechanism.drives)])
     asked = [(f"outputs[{k}]", name) for k, name in enumerate(mechanism.outputs)]
     asked += [(f"expected[{k}].quantity", e.quantity) for k, e in enumerate(mechanism.expectations)]
     for where, name in asked:
         owner = name.split("(")[0].split(".")[0]
         if owner not in known:
-            yield Problem(where, f"there is no point, link, pair or driver {owner!r}", nearest(owner, known))
+            yield Problem(where, f"there is no point, link, pair or driver {owner!r}", nearest(owner, list(known)))
     for k, e in enumerate(mechanism.expectations):
         owner, _, attribute = e.quantity.partition(".")
         # a file must tell by the word alone whether the number is in degrees
@@ -307,7 +330,8 @@ def _shapes(mechanism: Mechanism) -> Iterator[Problem]:
     """Arrays that do not broadcast together."""
     shapes: list[tuple[str, tuple[int, ...]]] = []
     for name, link in mechanism.links.items():
-        shapes += [(f"links.{name}.points.{k}", np.shape(p)) for k, p in link.points.items() if p is not None]
+        arrays = ((k, p) for k, p in link.points.items() if not (p is None or isinstance(p, _NUMBERS)))
+        shapes += [(f"links.{name}.points.{k}", np.shape(p)) for k, p in arrays]
     shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
     for where, pair in _placed(mechanism.written_pairs):
         shapes += [

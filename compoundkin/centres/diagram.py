@@ -105,18 +105,29 @@ def _primaries(structure: Structure, number: dict[str, int]) -> Iterator[Primary
     written = {pair.name for pair in structure.mechanism.written_pairs}
     by_letter = {pair.letters[0]: pair for pair in structure.pairs if pair.name not in written}
     still = {spin.link: spin for spin in structure.passive}
+    dropped = structure.relaxation.dropped if structure.relaxation else ()
     for letter, carriers in structure.mechanism.pins.items():
         pair = by_letter[letter]
-        moving = [name for name in carriers if name not in still or still[name].at != letter]
-        if len(moving) > 1:
-            yield Primary(f"pin {letter}", pair.name, tuple(number[name] for name in moving), _kind(pair))
+        off = tuple(part.off for part in dropped if part.name == letter and part.off)
+        for on_pin in _apart(carriers, off):
+            moving = [name for name in on_pin if name not in still or still[name].at != letter]
+            if len(moving) > 1:
+                yield Primary(f"pin {letter}", pair.name, tuple(number[name] for name in moving), _kind(pair))
     for spin in structure.passive:
         text = f"pin {spin.at}, passive"
         yield Primary(text, by_letter[spin.at].name, (number[spin.on], number[spin.link]), "weld")
-    for pair in structure.mechanism.written_pairs:
+    left_out = {part.name for part in dropped if not part.off}
+    kept = [part.kept for part in dropped if part.kept is not None]
+    for pair in (*(pair for pair in structure.mechanism.written_pairs if pair.name not in left_out), *kept):
         if _kind(pair):
             members = tuple(number[name] for name in pair.members[:2])
             yield Primary(f"{pair.title} {pair.name}", pair.name, members, _kind(pair))
+
+
+def _apart(carriers: tuple[str, ...], off: tuple[tuple[str, ...], ...]) -> list[tuple[str, ...]]:
+    """The links on a pin; those that are taken off it because others hold them already, on their own."""
+    taken = {name for links in off for name in links}
+    return [tuple(name for name in carriers if name not in taken), *off]
 
 
 def _on_lines(primaries: tuple[Primary, ...], structure: Structure, number: dict[str, int]) -> Iterator[Primary]:

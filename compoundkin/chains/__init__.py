@@ -5,8 +5,10 @@ from __future__ import annotations
 from compoundkin.chains.atlas import (
     AssurGroup,
     Inversion,
+    assur_group,
     assur_groups,
     chains,
+    group_name,
     inversions,
     number_of,
     trusses,
@@ -16,7 +18,9 @@ from compoundkin.chains.chain import Chain
 from compoundkin.chains.chain_names import chain_name
 from compoundkin.chains.generation import chains_of
 from compoundkin.chains.joints import Joint, Joints
-from compoundkin.chains.naming import ChainName, name_of
+from compoundkin.chains.naming import ChainName, name_of, named
+from compoundkin.chains.skeletons import mechanism_from, symmetric_drivers
+from compoundkin.chains.structures import group_truss, structure_name
 
 __all__ = [
     "AssurGroup",
@@ -27,13 +31,20 @@ __all__ = [
     "Inversion",
     "Joint",
     "Joints",
+    "assur_group",
     "assur_groups",
     "canonical",
     "chain_name",
     "chains",
     "chains_of",
+    "group_name",
+    "group_truss",
     "inversions",
+    "mechanism_from",
     "name_of",
+    "named",
     "number_of",
+    "structure_name",
+    "symmetric_drivers",
     "trusses",
 ]

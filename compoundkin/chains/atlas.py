@@ -6,6 +6,7 @@ The lists are made by `compoundkin.chains.making`; their order is part of the na
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING
 from compoundkin.chains.canonical import Coloured, canonical
 from compoundkin.chains.chain import Chain
 from compoundkin.chains.generation import chains_of
+from compoundkin.errors import Problem, UnknownName, nearest
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -23,6 +25,10 @@ FILE = Path(__file__).with_name("data") / "chains.txt"
 COMMENT = "#"
 # Larger chains are made where they are asked for: twelve links take half a minute.
 MOST_LINKS = 10
+_GROUP = re.compile(r"(\d+)-link group (\d+)")
+_GROUP_LINKS = (2, 4, 6, 8)
+# The groups that books call by a name.
+_OWN_GROUPS = {"dyad": "2-link group 1", "triad": "4-link group 2", "class iii triad": "4-link group 2"}
 
 
 @dataclass(frozen=True)
@@ -115,6 +121,36 @@ def assur_groups(links: int) -> tuple[AssurGroup, ...]:
     [1, 2, 10, 173]
     """
     return tuple(AssurGroup(truss, alike[0]) for truss in trusses(links + 1) for alike in truss.inversions)
+
+
+def assur_group(name: str, also: Iterable[str] = ()) -> AssurGroup:
+    """A group of revolute pairs by its name: "4-link group 2", or "triad" for that one, the class III group of order 3.
+
+    The number is its place in `assur_groups`. Raises UnknownName; `also` are names that the caller knows.
+
+    >>> assur_group("triad").outer, assur_group("4-link group 1").outer
+    (3, 2)
+    """
+    found = _GROUP.fullmatch(_OWN_GROUPS.get(name.strip().lower(), name.strip()))
+    if found and int(found[1]) in _GROUP_LINKS and 1 <= int(found[2]) <= len(assur_groups(int(found[1]))):
+        return assur_groups(int(found[1]))[int(found[2]) - 1]
+    known = [*also, *_OWN_GROUPS, "2-link group 1", "4-link group 1 or 2", "6-link group 1 to 10", "8-link group 1 to 173"]
+    raise UnknownName(Problem(name, "there is no such Assur group", nearest(name, known)))
+
+
+def group_name(group: AssurGroup) -> str:
+    """The name of a group by its place in the list of those with as many links; "" where it is in none.
+
+    >>> group_name(assur_group("triad"))
+    '4-link group 2'
+    """
+    codes = _group_codes(group.links) if group.links in _GROUP_LINKS else ()
+    return f"{group.links}-link group {codes.index(group.code) + 1}" if group.code in codes else ""
+
+
+@cache
+def _group_codes(links: int) -> tuple[str, ...]:
+    return tuple(group.code for group in assur_groups(links))
 
 
 def number_of(chain: Chain) -> int | None:

@@ -20,7 +20,7 @@ from compoundkin.chains.chain import Chain
 if TYPE_CHECKING:
     import networkx as nx
 
-REVOLUTE = "R"
+REVOLUTE, SLIDE = "R", "P"
 _LOWER_HOLDS = 2
 # A pin of five links alone stands for 125 chains; above this number they are not told one by one.
 MOST_CHAINS = 2000
@@ -141,6 +141,63 @@ class Joints:
             chain = Chain.of(links, [*simple, *(pair for tree in chosen for pair in tree)])
             if len(set(chain.pairs)) == len(chain.pairs):
                 yield chain
+
+    def merged(self, link: str, into: str) -> Joints:
+        """The same with one link taken for a part of another: what joins the two is gone.
+
+        >>> Joints(("a", "b", "c"), (Joint((0, 1)), Joint((1, 2)))).merged("b", "a").joints[0].links
+        (0, 1)
+        """
+        gone, kept = self.links.index(link), self.links.index(into)
+        left = [k for k in range(len(self.links)) if k != gone]
+        number = {**{k: n for n, k in enumerate(left)}, gone: left.index(kept)}
+        joints = []
+        for joint in self.joints:
+            links = tuple(dict.fromkeys(number[k] for k in joint.links))
+            if len(links) > 1:
+                guide = None if joint.guide is None else number[joint.guide]
+                joints.append(replace(joint, links=links, guide=guide))
+        return Joints(tuple(self.links[k] for k in left), tuple(joints))
+
+    @property
+    def has_loop_of_slides(self) -> bool:
+        """Whether slides alone close a loop: no link of it turns, and it moves where the count says it does not.
+
+        >>> Joints(("a", "b", "c"), tuple(Joint(ends, "P") for ends in ((0, 1), (1, 2), (2, 0)))).has_loop_of_slides
+        True
+        """
+        leader = list(range(len(self.links)))
+        for joint in self.joints:
+            if joint.code == SLIDE:
+                first, second = (self._leader(leader, link) for link in joint.links)
+                if first == second:
+                    return True
+                leader[second] = first
+        return False
+
+    @staticmethod
+    def _leader(leader: list[int], link: int) -> int:
+        while leader[link] != link:
+            leader[link] = leader[leader[link]]
+            link = leader[link]
+        return link
+
+    def distances(self, start: int) -> list[int]:
+        """How many joints each link is away from one of them; links that cannot be reached are farthest.
+
+        >>> Joints(("a", "b", "c"), (Joint((0, 1)), Joint((1, 2)))).distances(0)
+        [0, 1, 2]
+        """
+        far = len(self.links)
+        found = [far] * far
+        found[start], step = 0, 0
+        while step in found:
+            for joint in self.joints:
+                if any(found[link] == step for link in joint.links):
+                    for link in joint.links:
+                        found[link] = min(found[link], step + 1)
+            step += 1
+        return found
 
     def part(self, links: Sequence[int]) -> Joints:
         """Some of the links, with the joints that join two of them at least."""

@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 from compoundkin.chains.atlas import MOST_LINKS
 from compoundkin.chains.chain import ordinal
 from compoundkin.chains.chain_names import chain_name
-from compoundkin.chains.joints import MOST_CHAINS, REVOLUTE, Joint, Joints
-from compoundkin.chains.slides import SLIDE, slider_name
+from compoundkin.chains.joints import MOST_CHAINS, REVOLUTE, SLIDE, Joint, Joints
+from compoundkin.chains.slides import slider_name
 from compoundkin.errors import Problem, UnknownName, nearest
 
 if TYPE_CHECKING:
     import networkx as nx
 
 _PINS = {2: "double pin", 3: "triple pin"}
+# The fewest links that slides alone can join into a loop that moves.
+_WEDGE = 3
 # More names than these are counted instead of written out.
 _MANY = 4
 # Half a second; the work grows with about the cube of the links.
@@ -32,9 +34,12 @@ class ChainName:
     two links, with their inversions, that slides, multiple pins and higher pairs derive it from (none if it is one
     itself). `parts` are the names of what a fractionated chain falls apart into at the links and pins
     `fractionated_at`. `equivalent_links` and `equivalent_pairs` are carried into each other by the
-    `symmetries` (their number) of the chain without frame. `code` is equal exactly for
-    mechanisms of the same structure, letters of pairs, frame and driver. Above `MOST_COMPARED` links parts,
-    symmetries and code are not worked out: they are empty and 0.
+    `symmetries` (their number) of the chain without frame. `variety` is the degree of variety, where all chains it
+    derives from have the same one. `code` is equal exactly for mechanisms of the same structure, letters of pairs,
+    frame and driver. Above `MOST_COMPARED` links parts, symmetries and code are not worked out: they are empty and 0.
+
+    All of it is by count. A structure of mobility 0 is called a truss or a structure; where it moves, as a
+    parallelogram with two couplers does, that is due to its dimensions, of which nothing is known here.
     """
 
     title: str
@@ -47,6 +52,7 @@ class ChainName:
     parts: tuple[str, ...] = ()
     fractionated_at: tuple[str, ...] = ()
     symmetries: int = 0
+    variety: int | None = None
     equivalent_links: tuple[tuple[str, ...], ...] = ()
     equivalent_pairs: tuple[tuple[str, ...], ...] = ()
     code: str = ""
@@ -68,7 +74,15 @@ def name_of(graph: nx.MultiGraph, frame: str | None = None, driver: str | Iterab
     >>> name.title, name.assortment, name.equivalent_links
     ('Stephenson III', '4 binary, 2 ternary', (('frame', 'plate'), ('crank', 'rocker'), ('arm', 'rod')))
     """
-    joints = Joints.of(graph)
+    return named(Joints.of(graph), frame, driver)
+
+
+def named(joints: Joints, frame: str | None = None, driver: str | Iterable[str] | None = None) -> ChainName:
+    """The name of a mechanism given by its links and joints, as `name_of` has it.
+
+    >>> named(Joints(("frame", "crank", "rod"), (Joint((0, 1)), Joint((1, 2)), Joint((0, 2))))).title
+    '3-link truss 1'
+    """
     fixed = None if frame is None else _number(joints, frame)
     drivers = [_number(joints, link) for link in ((driver,) if isinstance(driver, str) else driver or ())]
     kinds = ", ".join(_driven(joints, fixed, link) for link in drivers)
@@ -86,14 +100,34 @@ def _compared(name: ChainName, joints: Joints, frame: int | None, drivers: Seque
         parts=tuple(_part_name(joints, block, frame) for block in parts),
         fractionated_at=joints.names(_shared(joints, parts)),
         symmetries=form.symmetries,
+        variety=_variety(joints),
         equivalent_links=tuple(joints.names(orbit) for orbit in form.orbits if orbit[0] < links),
         equivalent_pairs=tuple(joints.names(orbit) for orbit in form.orbits if orbit[0] >= links),
         code=joints.canonical(marks).code,
     )
 
 
+def titled(joints: Joints, frame: int | None = None, driver: int | None = None) -> str:
+    """The name alone, of links by their numbers, without what takes comparing.
+
+    >>> titled(Joints(tuple("abcd"), tuple(Joint((k, (k + 1) % 4)) for k in range(4))), 0)
+    'four-bar'
+    """
+    return _titled(joints, frame, driver).title
+
+
+def _variety(joints: Joints) -> int | None:
+    """The degree of variety of the one chain that it is or derives from; None where there is none or several."""
+    if joints.mobility < 1 or joints.number_of_chains > 1 or joints.has_loop_of_slides:
+        return None
+    chains = [chain for chain in joints.chains() if chain.links <= MOST_LINKS and chain.is_connected]
+    return chains[0].variety if chains else None
+
+
 def _titled(joints: Joints, frame: int | None, driver: int | None) -> ChainName:
     """The name with what counting and looking up give."""
+    if joints.has_loop_of_slides:
+        return _with_loop_of_slides(joints)
     derived, chains, changed = _derived(joints, frame), _derived(joints, None), _changes(joints)
     plain = ChainName(_described(joints), joints.mobility, _assortment(joints), _described(joints))
     if not changed:
@@ -107,6 +141,15 @@ def _titled(joints: Joints, frame: int | None, driver: int | None) -> ChainName:
         return replace(plain, title=f"{name} with {changed}{comma}{inversion}", chain=f"{chains[0]} with {changed}")
     bare = f"{plain.title} with {changed}"
     return replace(plain, title=f"{bare}, {_derivation(derived)}" if derived else bare, chain=bare)
+
+
+def _with_loop_of_slides(joints: Joints) -> ChainName:
+    """A name that promises nothing: a slide in a loop of slides is no pin at infinity, and the count is too low."""
+    if len(joints.links) == len(joints.joints) == _WEDGE and all(joint.code == SLIDE for joint in joints.joints):
+        title = "wedge mechanism (3 slides)"
+    else:
+        title = f"{len(joints.links)}-link chain with {_changes(joints)}, some of them a loop of slides alone"
+    return ChainName(title, joints.mobility, _assortment(joints), title)
 
 
 def _derived(joints: Joints, frame: int | None) -> tuple[str, ...]:
@@ -156,22 +199,8 @@ def _has_rigid_part(joints: Joints) -> bool:
 def _part_name(joints: Joints, block: tuple[int, ...], frame: int | None) -> str:
     """The name of a part; its frame is the frame, or the link that is nearest to it."""
     part = joints.part(block)
-    own = None if frame is None else block.index(min(block, key=lambda link: _distances(joints, frame)[link]))
+    own = None if frame is None else block.index(min(block, key=lambda link: joints.distances(frame)[link]))
     return _titled(part, own, None).title
-
-
-def _distances(joints: Joints, start: int) -> list[int]:
-    """How many joints each link is away from one of them; links that cannot be reached are farthest."""
-    far = len(joints.links)
-    found = [far] * far
-    found[start], step = 0, 0
-    while step in found:
-        for joint in joints.joints:
-            if any(found[link] == step for link in joint.links):
-                for link in joint.links:
-                    found[link] = min(found[link], step + 1)
-        step += 1
-    return found
 
 
 def _shared(joints: Joints, blocks: tuple[tuple[int, ...], ...]) -> list[int]:

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from compoundkin.chains.joints import REVOLUTE, Joints
+from compoundkin.chains.joints import REVOLUTE, SLIDE, Joints
 
-SLIDE = "P"
 FOUR = 4
 SLIDER_CRANK, INVERTED = "slider-crank", "inverted slider-crank"
 # By the letters around the loop, then by those of the frame: the slide's own link, or the pins' link.

@@ -77,6 +77,12 @@ def _largest(motion: Motion, k: int) -> Number:
         for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
             if series.order >= k:
                 found = np.maximum(found, np.abs(series.c[k]) / size)
+    for pair in motion.structure.pairs:
+        # in a sharp hollow the contact is faster than any link
+        if pair.leads:
+            poses = tuple(motion.poses[name] for name in pair.members)
+            series = pair.coordinate(motion.inputs.ends[pair.name], poses)
+            found = np.maximum(found, np.abs(series.c[k]) / pair.spread) if series.order >= k else found
     return found
 
 

@@ -35,6 +35,9 @@ def residuals(motion: Motion) -> Iterator[Finding]:
         for name, parts in _parts(motion, k):
             relative = {label: residual / scale for label, residual in parts.items()}
             yield worst(motion, name, TOLERANCE, relative, counted)
+        if motion.structure.redundant:
+            relative = {pair.name: _pair(motion, pair, k) / scale for pair in motion.structure.redundant}
+            yield worst(motion, f"redundant pairs, {ORDERS[k]}", FITS, relative, counted)
     fits = dict(_misfits(motion))
     if fits:
         scale = _scale(motion, 0, motion.failed == 0)
@@ -57,7 +60,8 @@ def _off(name: str, gap: Number, limit: Number) -> str:
 
 def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
     """The residuals of one order, by what is checked and by pair, link or driver."""
-    pairs = motion.tracker.plan.pairs
+    redundant = {pair.name for pair in motion.structure.redundant}
+    pairs = {name: pair for name, pair in motion.tracker.plan.pairs.items() if name not in redundant}
     yield ORDERS[k], {name: _pair(motion, pair, k) for name, pair in pairs.items()}
     yield f"rigid links, {ORDERS[k]}", {name: _rigid(motion, name, k) for name in motion.poses}
     if motion.inputs.drives:

@@ -6,12 +6,14 @@ each path. Source: E. L. Allgower and K. Georg, Introduction to Numerical Contin
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from compoundkin.circuits.equations import Equations
-from compoundkin.groups.general import solve
+from compoundkin.groups.linear import solve
 from compoundkin.series import Number
 
 # Newton has converged when its correction is below this; it is quadratic, so that the next would be rounding.
@@ -24,8 +26,10 @@ SHORTEST = 1e-9
 TURNED = 0.97
 STRAYED = 0.3
 MOST_STEPS = 4000
-# Halvings of a step by which a turning point is found: the angle is flat there, and known to the square.
-HALVINGS = 34
+# A turning point is found when the tangent's last component is below this; the angle is flat there, and known to the
+# square. False position takes some eight steps.
+FLAT = 1e-13
+MOST_TRIALS = 40
 
 
 @dataclass
@@ -50,6 +54,7 @@ class Paths:
         self.y = np.array(y)
         self.arcs = [Arc([start]) for start in y]
         self.alive = np.ones(len(y), dtype=bool)
+        self.turnings: list[_Turning] = []
         self.h = np.full(len(y), LONGEST)
         matrix = equations.at(rows, y)[1]
         forward = np.zeros_like(y)
@@ -66,6 +71,7 @@ class Paths:
             if not len(alive):
                 break
             self._step(alive, longest)
+        self._find_turnings()
         return self.arcs
 
     def _step(self, i: Number, longest: float) -> None:
@@ -91,11 +97,13 @@ class Paths:
     def _take(self, i: Number, good: Number, new: Number, tangent: Number, side: Number, arriving: Number,
               goal: Number) -> None:  # fmt: skip
         turned = good & (tangent[:, -1] * self.tangent[i, -1] < 0)
-        if np.any(turned):
-            place = self._turning(i[turned])
-            for j, y in zip(i[turned].tolist(), place, strict=True):
-                self.arcs[j].turns.append(len(self.arcs[j].nodes))
-                self.arcs[j].nodes.append(y)
+        for a in np.flatnonzero(turned).tolist():
+            arc, j = self.arcs[i[a]], int(i[a])
+            self.turnings.append(
+                _Turning(j, len(arc.nodes), self.y[j].copy(), self.tangent[j].copy(), self.h[j], tangent[a, -1])
+            )
+            arc.turns.append(len(arc.nodes))
+            arc.nodes.append(new[a])
         for a in np.flatnonzero(good).tolist():
             arc = self.arcs[i[a]]
             arc.nodes.append(new[a])
@@ -106,19 +114,58 @@ class Paths:
         self.y[done], self.tangent[done], self.side[done] = new[good], tangent[good], side[good]
         self.alive[done] = ~arriving[good]
 
-    def _turning(self, i: Number) -> Number:
-        """The turning points within the step that was just tried, by bisection along the tangent."""
-        y, t, rows = self.y[i], self.tangent[i], self.rows[i]
-        low, high = np.zeros(len(i)), self.h[i]
-        for _ in range(HALVINGS):
-            middle = (low + high) / 2.0
-            new, matrix, _, _ = corrected(self.equations, rows, y + middle[:, None] * t, t)
-            before = _tangent(matrix, t)[0][:, -1] * t[:, -1] > 0
-            low, high = np.where(before, middle, low), np.where(before, high, middle)
-        return corrected(self.equations, rows, y + low[:, None] * t, t)[0]
+    def _find_turnings(self) -> None:
+        """Put the turning points in their places, all found at once."""
+        if not self.turnings:
+            return
+        rows = self.rows[[one.path for one in self.turnings]]
+        y, t = (np.array([getattr(one, name) for one in self.turnings]) for name in ("y", "tangent"))
+        end, after = (np.array([getattr(one, name) for one in self.turnings]) for name in ("h", "after"))
+
+        def slope(h: Number) -> tuple[Number, Number]:
+            new, matrix, _, _ = corrected(self.equations, rows, y + h[:, None] * t, t)
+            return _tangent(matrix, t)[0][:, -1], new
+
+        for one, state in zip(self.turnings, _false_position(slope, end, t[:, -1], after), strict=True):
+            self.arcs[one.path].nodes[one.place] = state
 
 
-def corrected(equations: Equations, rows: Number, guess: Number, across: Number) -> tuple[Number, Number, Number, Number]:
+class _Turning(NamedTuple):
+    """A turning point in a step `h` along the tangent from `y`; `after` is the tangent's last component behind it."""
+
+    path: int
+    place: int
+    y: Number
+    tangent: Number
+    h: float
+    after: float
+
+
+def _false_position(
+    slope: Callable[[Number], tuple[Number, Number]], end: Number, first: Number, last: Number
+) -> Number:
+    """The states where a slope is zero between 0 and `end`; the Illinois method, for all at once."""
+    low, high, f_low, f_high = np.zeros_like(end), end, first, last
+    moved = np.zeros(len(end))
+    for _ in range(MOST_TRIALS):
+        h = low - f_low * (high - low) / (f_high - f_low)
+        f, states = slope(h)
+        if not np.any((np.abs(f) > FLAT) & (high - low > FLAT)):
+            break
+        before = f * f_low > 0
+        # the end that stays a second time counts half, so that it gives way
+        f_low, f_high = (
+            np.where(before, f, np.where(moved < 0, f_low / 2.0, f_low)),
+            np.where(before, np.where(moved > 0, f_high / 2.0, f_high), f),
+        )
+        low, high = np.where(before, h, low), np.where(before, high, h)
+        moved = np.where(before, 1.0, -1.0)
+    return states
+
+
+def corrected(
+    equations: Equations, rows: Number, guess: Number, across: Number
+) -> tuple[Number, Number, Number, Number]:
     """The states nearest to guesses in the hyperplanes across a direction: states, Jacobians, distances, which are."""
     y = guess
     for _ in range(CORRECTIONS):

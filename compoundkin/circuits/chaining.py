@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -44,11 +45,13 @@ class Chain:
         if not self.closed:
             cuts = [-1, *cuts, n - 1]
         bounds = zip(cuts, [*cuts[1:], cuts[0] + n] if self.closed else cuts[1:], strict=False)
-        return tuple(tuple(self.visits[k % n] for k in range(a + 1, b + 1)) for a, b in bounds)
+        parts = [tuple(self.visits[k % n] for k in range(a + 1, b + 1)) for a, b in bounds]
+        # that of the first strand comes first
+        return tuple([parts[-1], *parts[:-1]] if self.closed else parts)
 
     def _steps(self) -> list[tuple[Visit, Visit]]:
         around = [*self.visits, self.visits[0]] if self.closed else list(self.visits)
-        return list(zip(around[:-1], around[1:], strict=True))
+        return list(pairwise(around))
 
 
 def chains(strands: Strands) -> tuple[Chain, ...]:

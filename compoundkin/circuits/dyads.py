@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from compoundkin.series import Number
 
 # Each strand is sampled in so many cells; the curve of a margin between two samples is that of half a turn of the
 # driver or less, divided by it.
-CELLS = 96
+CELLS = 72
 # So many places at once keep arrays in a cache.
 BLOCK = 16384
 # A margin (a squared sine, or a length) that is below this at its least touches zero: rounding times its curvature.
@@ -21,6 +22,8 @@ TOUCHING = 1e-12
 # A margin whose neighbours exceed it by less than this part of itself does not come near zero between them.
 SHALLOW = 0.25
 HALVINGS = 52
+# How far aside of a double zero the margin is looked at: it then has digits enough, and the last time no curvature.
+BESIDE = (1e-3, 1e-5, 1e-5)
 STEPS = 60
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
@@ -33,7 +36,7 @@ class Event(NamedTuple):
 
 
 class Cut(NamedTuple):
-    """A strand of the lifted curve: its parent row, its angles there, what its ends are (None: the parent's), its sign."""
+    """A strand of the lifted curve: its parent row, its angles there, its ends (None: the parent's), its sign."""
 
     parent: int
     first: float
@@ -43,9 +46,9 @@ class Cut(NamedTuple):
     sign: int
 
 
-def lifted(sweep: Sweep, strands: Strands, k: int) -> Strands:
-    """The strands of the first `k` groups and group `k`, which has one mode or two."""
-    margins = _Margins(sweep, strands, k)
+def lifted(sweep: Sweep, strands: Strands, k: int, fineness: int = 1) -> Strands:
+    """The strands of the first `k` groups and group `k`, which has one mode or two; cells are divided by `fineness`."""
+    margins = _Margins(sweep, strands, k, CELLS * fineness)
     events = _events(margins)
     modes = (1, -1) if sweep.plan.steps[k].modes == 2 else (1,)
     cuts = list(_cuts(margins, events, modes))
@@ -55,17 +58,17 @@ def lifted(sweep: Sweep, strands: Strands, k: int) -> Strands:
 class _Margins:
     """The margin of a group along strands: negative where it cannot be assembled."""
 
-    def __init__(self, sweep: Sweep, strands: Strands, k: int) -> None:
+    def __init__(self, sweep: Sweep, strands: Strands, k: int, cells: int) -> None:
         self.sweep, self.k = sweep, k
         rows = np.arange(strands.rows)
         self.strands = with_sign(strands, k)
-        self.phi = np.linspace(0.0, np.pi, CELLS + 1)
-        sides = np.full(CELLS + 1, NONE)
+        self.phi = np.linspace(0.0, np.pi, cells + 1)
+        sides = np.full(cells + 1, NONE)
         sides[0], sides[-1] = 0, 1
-        per_block = max(1, BLOCK // (CELLS + 1))
+        per_block = max(1, BLOCK // (cells + 1))
         parts = [rows[i : i + per_block] for i in range(0, len(rows), per_block)]
         sampled = [self._at(part, self.strands.at(part, self.phi), sides) for part in parts]
-        self.samples = np.concatenate(sampled) if sampled else np.zeros((0, CELLS + 1))
+        self.samples = np.concatenate(sampled) if sampled else np.zeros((0, cells + 1))
 
     def __call__(self, rows: Number, phi: Number) -> Number:
         """At one angle of each of the given rows."""
@@ -104,6 +107,7 @@ def _events(margins: _Margins) -> list[list[Event]]:
     r, p = rows[crossing], place[crossing]
     brackets += [(r, phi[at - 1][crossing], p), (r, p, phi[at + 1][crossing])]
     touching = ~crossing & (least <= TOUCHING) & good[rows, at]
+    place = np.where(touching, _centred(margins, rows, place), place)
     found = [[] for _ in range(len(m))]  # type: list[list[Event]]
     for row, angle in zip(rows[touching].tolist(), place[touching].tolist(), strict=True):
         found[row].append(Event(angle, True))
@@ -140,6 +144,14 @@ def _extreme(margins: _Margins, rows: Number, low: Number, high: Number, sense: 
     return np.where(fa < fb, a, b), np.minimum(fa, fb)
 
 
+def _centred(margins: _Margins, rows: Number, place: Number) -> Number:
+    """Double zeros to more digits than their flat minimum shows: where the root of the margin, a line, is zero."""
+    for aside in BESIDE:
+        before, after = (np.sqrt(np.abs(margins(rows, place + d))) if len(rows) else place for d in (-aside, aside))
+        place = place + aside * (before - after) / (before + after)
+    return place
+
+
 def _bisected(margins: _Margins, rows: Number, low: Number, high: Number) -> Number:
     """The zero of the margin in every bracket, from the side where the group is assembled."""
     if not len(rows):
@@ -157,7 +169,7 @@ def _cuts(margins: _Margins, events: list[list[Event]], modes: tuple[int, ...]) 
     parts = []
     for row, found in enumerate(events):
         marks = [None, *found, None]
-        for start, end in zip(marks[:-1], marks[1:], strict=True):
+        for start, end in pairwise(marks):
             parts.append((row, start.phi if start else 0.0, end.phi if end else np.pi, start, end))
     middle = np.array([(first + last) / 2.0 for _, first, last, _, _ in parts])
     inside = margins(np.array([row for row, *_ in parts]), middle) >= 0 if parts else []
@@ -172,7 +184,12 @@ def _glued(strands: Strands, k: int, cuts: list[Cut], at_ends: Number) -> Strand
     first, last = (np.array([getattr(cut, name) for cut in cuts]) for name in ("first", "last"))
     low, high = (strands.at(parent, phi[:, None])[:, 0] for phi in (first, last))
     signs = {**{j: sign[parent] for j, sign in strands.signs.items()}, k: np.array([cut.sign for cut in cuts], float)}
-    kind, group, partner, side = strands.kind[parent], strands.group[parent], strands.partner[parent], strands.side[parent]
+    kind, group, partner, side = (
+        strands.kind[parent],
+        strands.group[parent],
+        strands.partner[parent],
+        strands.side[parent],
+    )
     single = not any(cut.sign < 0 for cut in cuts)
     ends = _Ends(cuts)
     for new, cut in enumerate(cuts):

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from compoundkin.circuits.equations import Equations
-from compoundkin.circuits.group_states import apart
 from compoundkin.circuits.strands import LIMIT, NONE, Strands, Way
 from compoundkin.circuits.sweep import Sweep
-from compoundkin.circuits.web import Port, Web
+from compoundkin.circuits.web import STRIPS, Port, Web
+from compoundkin.motion.group_states import apart
 from compoundkin.series import Number
 
 
@@ -28,9 +29,9 @@ class Piece:
     after: int
 
 
-def lifted(sweep: Sweep, strands: Strands, k: int) -> tuple[Strands, int]:
-    """The strands of the first `k` groups and group `k`; and how many arcs were lost."""
-    web = Web(Equations(sweep, strands, k))
+def lifted(sweep: Sweep, strands: Strands, k: int, fineness: int = 1) -> tuple[Strands, int]:
+    """The strands of the first `k` groups and group `k`, slices `fineness` times as dense; how many arcs were lost."""
+    web = Web(Equations(sweep, strands, k), STRIPS * fineness)
     pieces: list[Piece] = []
     seen: set[tuple[int, int, int]] = set()
     every = [Port(row, j, c, 1) for (row, j), found in web.known.items() for c in range(len(found))]
@@ -77,7 +78,7 @@ def _add(pieces: list[Piece], row: int, y: Number, turns: list[int], closed: boo
         turns = [t - turns[0] for t in turns]
     marks = [*turns, len(y) - 1] if closed else [0, *turns, len(y) - 1]
     count = len(marks) - 1
-    for i, (a, b) in enumerate(zip(marks[:-1], marks[1:], strict=True)):
+    for i, (a, b) in enumerate(pairwise(marks)):
         before = first + (i - 1) % count if closed or i else NONE
         after = first + (i + 1) % count if closed or i < count - 1 else NONE
         part = y[a : b + 1]

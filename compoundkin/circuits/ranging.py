@@ -7,15 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from compoundkin.circuits.strands import Strands, base
-from compoundkin.circuits.sweep import Sweep
+from compoundkin.circuits.sweep import Sweep, count_turns, edge_root
 from compoundkin.errors import InvalidInput, Problem
 from compoundkin.motion.plan import Plan
-from compoundkin.motion.steps import AffineStep, TrainStep
+from compoundkin.motion.steps import AffineStep, GeneralStep, TrainStep
 from compoundkin.series import Number
 
 # A turn begins here: special positions lie at round angles, and none of them shall fall on the seam.
 BEGIN = -2.5066282746310002
-# Gears are tried for so many turns of the driver before their mechanism counts as one that never repeats.
+# Gears are tried for so many turns of the driver before they count as ones that never come back: what racks carry
+# away, and trains of many teeth. Then the driver is followed one turn each way.
 MOST_TURNS = 60
 # Orientations this near are one: rounding of angles of many turns.
 SAME = 1e-9
@@ -24,19 +25,21 @@ TURN = 2.0 * np.pi
 BEYOND = 1.25
 
 
-def range_of(sweep: Sweep, between: Sequence[float] | None) -> tuple[Strands, float]:
-    """The strand of the driver alone, and the period of its value (0 where it has none).
+def range_of(sweep: Sweep, between: Sequence[float] | None, start: float) -> tuple[Strands, float]:
+    """The strand of the driver alone, and the period of its value (0 where it has none); `start` is one of its values.
 
-    Raises InvalidInput for a range that is none, and for gears that never come back to where they were.
+    Raises InvalidInput for a range that is none, and for gears whose turns cannot be told.
     """
     if between is not None:
         low, high = _checked(between)
         return base(low, high, periodic=False), 0.0
     driven = sweep.plan.driven[sweep.driver]
     if driven.pair.free_is_angle:
-        period = TURN * _turns(sweep)
-        return base(BEGIN, BEGIN + period, periodic=True), period
-    reach = BEYOND * reach_of(sweep.plan)
+        turns = _turns(sweep)
+        if turns is None:
+            return base(start - TURN, start + TURN, periodic=False), 0.0
+        return base(BEGIN, BEGIN + TURN * turns, periodic=True), TURN * turns
+    reach = BEYOND * (reach_of(sweep.plan) + abs(start))
     on_frame = driven.link in sweep.plan.structure.ground.links
     return base(-reach if on_frame else 0.0, reach, periodic=False), 0.0
 
@@ -65,21 +68,41 @@ def _extent(points: list[Number]) -> float:
     return float(np.hypot(wide, high))
 
 
-def _turns(sweep: Sweep) -> int:
-    """After how many turns of the driver the bodies of gear trains are where they were."""
-    geared = [k for k, step in enumerate(sweep.plan.steps) if isinstance(step, AffineStep | TrainStep)]
-    if not geared:
+def _turns(sweep: Sweep) -> int | None:
+    """After how many turns of the driver gears and racks are where they were; None where they do not come back.
+
+    Raises InvalidInput where gears ride on links that groups solve, and it matters how often those have turned.
+    """
+    if not any(isinstance(step, AffineStep | TrainStep) for step in sweep.plan.steps):
         return 1
-    hung = {link for k in geared for link in sweep.plan.steps[k].hangs_on}  # type: ignore[union-attr]
-    turns = TURN * np.arange(MOST_TURNS + 1)[None]
-    run = sweep.start(BEGIN + turns)
-    for k, step in enumerate(sweep.plan.steps):
-        if k in geared and hung <= set(run.world):
-            step.run(run)  # type: ignore[call-arg]
-    bodies = [run.world[link].u.c[0] for k in geared for link in sweep.plan.steps[k].group.links if link in run.world]
-    back = np.max([np.abs(np.broadcast_to(u, turns.shape) - np.ravel(u)[0])[0] for u in bodies], axis=0)
-    again = np.flatnonzero(back[1:] < SAME)
-    if not len(again):
-        what = f"its gears do not come back to where they were within {MOST_TURNS} turns of {sweep.driver!r}"
-        raise InvalidInput(Problem(f"drivers.{sweep.driver}", what, "give a range of the driver: between=(low, high)"))
-    return int(again[0]) + 1
+    places = _geared(sweep, BEGIN + TURN * np.arange(MOST_TURNS + 1), 0.0)
+    again = np.flatnonzero(_apart(sweep, places, places[:, :1])[1:] < SAME)
+    if np.max(_apart(sweep, places[:, :1], _geared(sweep, np.array([BEGIN]), TURN))) > SAME:
+        what = "its gears ride on links whose full turns circuits do not count"
+        raise InvalidInput(Problem("circuits", what, "follow it with solve(), which counts them"))
+    return int(again[0]) + 1 if len(again) else None
+
+
+def _geared(sweep: Sweep, s: Number, more: float) -> Number:
+    """Origins and orientations of all bodies that gears and racks place, (2 bodies, values).
+
+    Links that groups solve have turned by `more` than their orientations show.
+    """
+    run, found = sweep.start(s[None]), list[Number]()
+    for step in sweep.plan.steps:
+        if isinstance(step, GeneralStep):
+            break
+        if isinstance(step, AffineStep | TrainStep):
+            step.run(run)
+            poses = [run.world[link] for link in step.group.links]
+            found += [np.broadcast_to(value, (1, len(s)))[0] for p in poses for value in (p.z.c[0], p.u.c[0])]
+        else:
+            step.run(run, 1.0, edge_root)
+            count_turns(sweep.plan, run, step.group.links, more)
+    return np.array(found).reshape(-1, len(s))
+
+
+def _apart(sweep: Sweep, one: Number, other: Number) -> Number:
+    """The largest difference of any body, at each value."""
+    size = np.tile([sweep.plan.size, 1.0], len(one) // 2)[:, None]
+    return np.max(np.nan_to_num(np.abs(one - other) / size), axis=0, initial=0.0)

@@ -24,7 +24,7 @@ NONE = -1
 class Way:
     """The states of a group's bodies along a strand: x, y, theta of each at `nodes`, angles from 0 to pi.
 
-    The angle is that by which `low` and `high` are the ends of a half circle, so that states are smooth at limit positions.
+    By that angle `low` and `high` are the ends of a half circle, so that states are smooth at limit positions.
     """
 
     low: float
@@ -84,7 +84,10 @@ class Strands:
         return ((self.high - self.low)[rows][:, None]) * np.sin(phi) / 2.0
 
     def sign(self, k: int, rows: Number, sides: Number | None) -> Number:
-        """The mode of a group, a column; zero where the columns' `sides` (0 low, 1 high, NONE inside) are its limit."""
+        """The mode of a group, a column; zero where `sides` (0 low, 1 high, NONE inside) say that its limit is meant.
+
+        They are those of the columns (columns,), or of every place (rows, columns).
+        """
         sign = self.signs[k][rows][:, None]
         if sides is None:
             return sign
@@ -93,7 +96,18 @@ class Strands:
     def is_limit(self, k: int, rows: Number, sides: Number) -> Number:
         """Where the given sides are limit positions or change points of a group."""
         own = (self.group[rows] == k) & np.isin(self.kind[rows], (LIMIT, CHANGE))
-        return np.where(sides == NONE, False, own[:, np.maximum(sides, 0)])
+        wide = np.broadcast_to(sides, (len(rows), np.shape(sides)[-1]))
+        return (wide != NONE) & np.take_along_axis(own, np.maximum(wide, 0), axis=1)
+
+    def kept(self, good: Number) -> Strands:
+        """Those rows only; ends glued to others end there."""
+        rows = np.flatnonzero(good)
+        new = np.full(self.rows + 1, NONE)
+        new[rows] = np.arange(len(rows))
+        signs = {k: sign[rows] for k, sign in self.signs.items()}
+        ways = {k: tuple(way[row] for row in rows) for k, way in self.ways.items()}
+        return Strands(self.low[rows], self.high[rows], signs, ways, self.kind[rows], self.group[rows],
+                       new[self.partner[rows]], self.side[rows])  # fmt: skip
 
     def seeds(self, k: int, rows: Number, s: Number) -> Number:
         """About the states of a group without modes, (rows, columns, 3 n)."""

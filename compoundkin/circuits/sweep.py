@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from compoundkin.circuits.strands import Strands
+from compoundkin.motion.group_states import states_of
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.run import Run
 from compoundkin.motion.steps import DyadStep, FollowerStep, GeneralStep
 from compoundkin.pairs.contract import Ends
-from compoundkin.poses import Pose
 from compoundkin.series import Number, Series, constant
 
 # A seed is at its configuration within this (of the size, or radians), or Newton has left it.
@@ -52,6 +52,7 @@ class Sweep:
                 self._general(run, step, strands.seeds(k, rows, s))
             else:
                 step.run(run)
+            count_turns(self.plan, run, step.group.links, 0.0)
         return run
 
     def _general(self, run: Run, step: GeneralStep, seeds: Number) -> None:
@@ -63,16 +64,13 @@ class Sweep:
             run.publish(body, pose)
 
 
-def states_of(step: GeneralStep, seeds: Number) -> Number:
-    """A group's states, as its solver has them, from x, y, theta of each body."""
-    return step.solver.state(bodies_at(seeds))
-
-
-def bodies_at(states: Number) -> list[Pose]:
-    """The poses of bodies from states (..., 3 n): x, y, theta of each."""
-    x, y, theta = states[..., 0::3], states[..., 1::3], states[..., 2::3]
-    u, z = np.cos(theta) + 1j * np.sin(theta), x + 1j * y
-    return [Pose(constant(z[..., k]), constant(u[..., k]), constant(theta[..., k])) for k in range(x.shape[-1])]
+def count_turns(plan: Plan, run: Run, links: Iterable[str], more: float) -> None:
+    """Give links whose turns some pair asks for the angle that is nearest to the drawn one, or to 0, and `more`."""
+    for link in links:
+        pose = run.world[link]
+        if link in plan.turning and pose.theta is None:
+            drawn = plan.structure.mechanism.geometry.drawn.get(link)
+            run.world[link] = pose.counted((0.0 if drawn is None else drawn.angle.c[0]) + more)
 
 
 def edge_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:

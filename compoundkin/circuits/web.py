@@ -12,7 +12,7 @@ import numpy as np
 
 from compoundkin.circuits.arcs import LONGEST, Arc, Paths
 from compoundkin.circuits.equations import Equations
-from compoundkin.circuits.group_states import apart, group_states
+from compoundkin.motion.group_states import apart, group_states
 from compoundkin.series import Number
 
 # Every strand is cut by so many slices.
@@ -40,12 +40,13 @@ class Port(NamedTuple):
 class Web:
     """The configurations at all slices and the arcs between them; `lost` counts arcs that ended nowhere."""
 
-    def __init__(self, equations: Equations, strips: int = STRIPS) -> None:
+    def __init__(self, equations: Equations, strips: int) -> None:
         self.equations = equations
         self.slices = np.linspace(0.0, np.pi, strips + 1)
         shape = (equations.strands.rows, strips + 1)
         setting = equations.settings(self.slices)
-        states = group_states(equations.step, setting, shape, equations.sweep.plan.size).states
+        states = group_states(equations.step, setting, equations.sweep.plan.size).states
+        states = np.broadcast_to(states, (*shape, *states.shape[-2:]))
         self.known = {
             (row, j): [self._scaled(state, j) for state in states[row, j] if np.isfinite(state).all()]
             for row, j in np.ndindex(*shape)

@@ -58,12 +58,12 @@ def command(
     """
     from dataclasses import replace
 
+    from compoundkin.freedom import solvable
     from compoundkin.reports import Report, report
     from compoundkin.reports.instant_centres import derivation_section
     from compoundkin.reports.partial import NOT_SOLVED, centres_report
-    from compoundkin.structure import decompose
 
-    structure = decompose(loaded(file))
+    structure = solvable(loaded(file))
     if structure.faults:
         put_report(report(structure), form, path)
         return unsolvable(len(structure.faults))

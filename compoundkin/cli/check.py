@@ -34,11 +34,11 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     where it is worst are named.
     """
     from compoundkin.cli.progress import working
+    from compoundkin.freedom import solvable
     from compoundkin.reports import report
     from compoundkin.reports.partial import check_report
-    from compoundkin.structure import decompose
 
-    structure = decompose(loaded(file))
+    structure = solvable(loaded(file))
     if structure.faults:
         put_report(report(structure), form, path)
         return unsolvable(len(structure.faults))

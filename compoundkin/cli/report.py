@@ -43,10 +43,10 @@ def command(file: str, design: int, centres: str | None, form: str | None, path:
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
+    from compoundkin.freedom import solvable
     from compoundkin.reports import report
-    from compoundkin.structure import decompose
 
-    structure = decompose(loaded(file))
+    structure = solvable(loaded(file))
     if structure.faults:
         put_report(report(structure), form, path)
         return unsolvable(len(structure.faults))

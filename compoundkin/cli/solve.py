@@ -34,10 +34,10 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     Where a pose cannot be assembled its numbers are nan (null in JSON); stderr says why, and the exit code is 3.
     """
     from compoundkin.cli import table
-    from compoundkin.structure import decompose
+    from compoundkin.freedom import solvable
 
     write = table.writer(path) if path else None
-    structure = decompose(loaded(file))
+    structure = solvable(loaded(file))
     motion = solved(structure, asked)
     found = table.columns(motion, asked["outputs"])
     if write is None:
@@ -46,10 +46,10 @@ def command(file: str, path: str | None, **asked: Any) -> int:
         write(found)
         rows = len(found[0].values)
         say(f"Wrote {rows:,} {'row' if rows == 1 else 'rows'} of {len(found)} columns to {path}.")
-    return 0 if motion.assembled.all() else _explained(motion)
+    return 0 if motion.assembled.all() else explained(motion)
 
 
-def _explained(motion: Motion) -> int:
+def explained(motion: Motion) -> int:
     """Say which poses cannot be assembled, and why; the exit code for that."""
     from compoundkin.gaps import gaps
     from compoundkin.reports.findings import MOST_GAPS, gap_sentence

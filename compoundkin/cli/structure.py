@@ -14,19 +14,23 @@ from compoundkin.cli.shell import say
 Examples:
   compoundkin structure six-bar
   compoundkin structure linkage.toml --format markdown
+  compoundkin structure stephenson-ii --alternatives
+  compoundkin structure slider-crank --equations -o loops.md
 """
 )
 @mechanism_argument
+@click.option("--alternatives", is_flag=True, help="Add every other choice of frame and driver, and what it gives.")
+@click.option("--equations", is_flag=True, help="Add the vector-loop equations; as LaTeX in Markdown and JSON.")
 @report_options
-def command(file: str, form: str | None, path: str | None) -> int:
+def command(file: str, alternatives: bool, equations: bool, form: str | None, path: str | None) -> int:
     """Take a mechanism apart: links, pairs, mobility, loops, Assur groups in solving order.
 
     Nothing is solved. What keeps a mechanism from being solved is named with its remedies (exit code 2).
     """
+    from compoundkin.freedom import solvable
     from compoundkin.reports import report
-    from compoundkin.structure import decompose
 
-    structure = decompose(loaded(file))
+    structure = solvable(loaded(file))
     put_report(report(structure), form, path)
     return unsolvable(len(structure.faults)) if structure.faults else 0
 

@@ -89,10 +89,11 @@ class Curve(ABC):
         """The parameters, within the period, at which derivatives may jump: none of a curve smooth all along."""
         return ()
 
-    def stretch(self, s: Number) -> Number:
-        """On which smooth stretch between two `breaks` parameters lie: an index."""
-        found = np.searchsorted(np.sort(self.breaks), self.wrapped(s))
-        return found % len(self.breaks) if self.closed and self.breaks else found
+    def stretch(self, s: Number, more: tuple[float, ...] = ()) -> Number:
+        """On which smooth stretch between two `breaks`, or some `more`, parameters lie: an index."""
+        breaks = np.sort([*self.breaks, *more])
+        found = np.searchsorted(breaks, self.wrapped(s))
+        return found % breaks.size if self.closed and breaks.size else found
 
     # --- the curve as a whole ---
 

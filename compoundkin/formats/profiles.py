@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from compoundkin.formats.laws import made, of_kind, segments
 from compoundkin.keys import Key
-from compoundkin.profiles import WRITTEN, Profile
+from compoundkin.profiles import WRITTEN, Disc, Profile
 from compoundkin.programs import Program, Segment
 
 if TYPE_CHECKING:
@@ -22,13 +22,17 @@ PROGRAM = (
 )
 
 
-def profile(log: Recovery, raw: Any, where: str, angle: bool | None) -> Profile | None:
-    """The profile that a table says; None where it is broken, which is reported.
+# What takes the place of a broken profile: any roller fits into it.
+STAND_IN = Disc(1e9)
+
+
+def profile(log: Recovery, raw: Any, where: str, angle: bool | None) -> Profile:
+    """The profile that a table says; a disc where it is broken, which is reported.
 
     Where the follower turns about a pivot, the rises of its program are angles.
     """
     found: Profile | None = of_kind(log, "profile", WRITTEN, raw, where, isinstance(raw, dict) and "pivot" in raw)
-    return found
+    return STAND_IN if found is None else found
 
 
 def program(log: Recovery, raw: Any, where: str, angle: bool | None) -> Program | None:

@@ -114,7 +114,8 @@ class Recovery:
         values: dict[Kind, Any] = {
             "name": name, "text": name, "names": (), "point": point, "points": {name: point}, "drawing": {},
             "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
-            "two": (1.0, 1.0), "profile": None, "program": None, "place": point, "places": (), "turned": (),
+            "two": (1.0, 1.0), "profile": profiles.STAND_IN, "program": None, "place": point, "places": (),
+            "turned": (),
         }  # fmt: skip
         return values.get(kind, 0.0)
 

@@ -42,7 +42,9 @@ class Configuration:
     @cached_property
     def points(self) -> Mapping[str, complex]:
         """Where every point is."""
-        placed = ((letter, self.poses[link].at(p).c[0]) for link, ps in self.dimensions.items() for letter, p in ps.items())
+        placed = (
+            (letter, self.poses[link].at(p).c[0]) for link, ps in self.dimensions.items() for letter, p in ps.items()
+        )
         return {letter: complex(place) for letter, place in placed}
 
     @cached_property

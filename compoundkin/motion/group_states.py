@@ -6,16 +6,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.circuits.sweep import states_of
 from compoundkin.configurations import all_configurations, from_group
 from compoundkin.errors import InvalidInput
 from compoundkin.groups.general import Setting
 from compoundkin.motion.steps import GeneralStep
-from compoundkin.series import Number
+from compoundkin.poses import Pose
+from compoundkin.series import Number, constant
 
 # Where no theory counts a group's configurations, Newton searches them from so many random states.
 STARTS = 60
 STEPS = 40
+# Groups of more bodies are searched too: the work for all configurations grows some sixtyfold with every two bodies.
+MOST_BODIES = 8
 # Configurations nearer than this (parts of the size, radians) are one.
 SAME = 1e-6
 
@@ -31,23 +33,33 @@ class GroupStates(NamedTuple):
     certified: Number
 
 
-def group_states(step: GeneralStep, setting: Setting, shape: tuple[int, ...], size: float) -> GroupStates:
-    """The real configurations in surroundings of the given shape, in a fixed order."""
+def group_states(step: GeneralStep, setting: Setting, size: float) -> GroupStates:
+    """The real configurations in any surroundings, in a fixed order."""
+    found = every_state(step, setting, size)
+    if found is not None:
+        return found
+    states = _searched(step, setting, size)
+    return GroupStates(states, 0, np.zeros(states.shape[:-2], dtype=bool))
+
+
+def every_state(step: GeneralStep, setting: Setting, size: float, most: int = MOST_BODIES) -> GroupStates | None:
+    """As `group_states`, without any search: None for groups with higher pairs, and those of very many bodies."""
+    if len(step.group.bodies) > most:
+        return None
     try:
         found = all_configurations(from_group(step.group, setting, size))
     except InvalidInput:
-        states = _searched(step, setting, shape, size)
-        return GroupStates(states, 0, np.zeros(shape, dtype=bool))
-    states = np.broadcast_to(found.states, (*shape, *found.states.shape[-2:]))
-    return GroupStates(states, found.expected, np.broadcast_to(found.certified, shape))
+        return None
+    return GroupStates(found.states, found.expected, np.asarray(found.certified))
 
 
-def _searched(step: GeneralStep, setting: Setting, shape: tuple[int, ...], size: float) -> Number:
+def _searched(step: GeneralStep, setting: Setting, size: float) -> Number:
     """What Newton finds from random states around the origins of what the group is attached to."""
     n = step.solver.n
     rng = np.random.default_rng(n)
-    around = [np.broadcast_to(setting.world[link].z.c[0], shape) for link in step.group.uses]
+    around = np.broadcast_arrays(*(setting.world[link].z.c[0] for link in step.group.uses))
     centre = np.mean(around, axis=0)
+    shape = np.shape(centre)
     spots = centre + size / 2.0 * _spots(rng, n, shape)
     turns = rng.uniform(-np.pi, np.pi, (STARTS, n)).reshape(STARTS, n, *[1] * len(shape))
     parts = [v for k in range(n) for v in np.broadcast_arrays(spots[:, k].real, spots[:, k].imag, turns[:, k])]
@@ -90,3 +102,15 @@ def apart(one: Number, other: Number, size: float) -> Number:
     turn = np.abs(np.angle(np.exp(1j * gap[..., 2::3])))
     shift = np.maximum(np.abs(gap[..., 0::3]), np.abs(gap[..., 1::3])) / size
     return np.maximum(turn, shift).max(axis=-1)
+
+
+def states_of(step: GeneralStep, seeds: Number) -> Number:
+    """A group's states, as its solver has them, from x, y, theta of each body."""
+    return step.solver.state(bodies_at(seeds))
+
+
+def bodies_at(states: Number) -> list[Pose]:
+    """The poses of bodies from states (..., 3 n): x, y, theta of each."""
+    x, y, theta = states[..., 0::3], states[..., 1::3], states[..., 2::3]
+    u, z = np.cos(theta) + 1j * np.sin(theta), x + 1j * y
+    return [Pose(constant(z[..., k]), constant(u[..., k]), constant(theta[..., k])) for k in range(x.shape[-1])]

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from compoundkin.poses import FIXED, Pose
 from compoundkin.series import Number, Series
 from compoundkin.structure.model import Structure
 from compoundkin.words import FRAME, vector
+
+if TYPE_CHECKING:
+    from compoundkin.plots import Plot
 
 HIGHEST_ORDER = 3
 
@@ -262,6 +266,12 @@ class Motion:
         """The prescribed coordinate of every driver by its name."""
         return _Table("driver", tuple(self.inputs.drives), self._drive)
 
+    def plot(self, *names: str, **options: Any) -> Plot:
+        """Draw quantities over the driver, the time or any other quantity: `compoundkin.plot` of this motion."""
+        # found by its name: plots come after motions, and only who draws pays for them
+        drawn: Plot = import_module("compoundkin.plots").plot(self, *names, **options)
+        return drawn
+
     @property
     def _plan(self) -> Plan:
         return self.tracker.plan
@@ -285,6 +295,12 @@ class Motion:
             return Pose(put(pose.z, other.z), put(pose.u, other.u), put(pose.angle, other.angle) if known else None)
 
         return replace(self, poses={n: FIXED if n == FRAME else mended(p, poses[n]) for n, p in self.poses.items()})
+
+    def _repr_svg_(self) -> str:
+        """Its picture, for notebooks."""
+        drawing = import_module("compoundkin.drawing")
+        made: str = drawing.draw(self).svg
+        return made
 
     def _point(self, name: str) -> PointMotion:
         link = self.mechanism.carriers[name][0]

@@ -10,12 +10,15 @@ from typing import Any
 import numpy as np
 
 from compoundkin.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses
+from compoundkin.freedom import relaxed
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion.change_points import NEAR, near_groups, pass_through, rates_at
+from compoundkin.motion.configuration import Configuration, read_name
 from compoundkin.motion.gathering import Gathering
 from compoundkin.motion.inputs import Inputs, by_name, inputs
 from compoundkin.motion.model import HIGHEST_ORDER, Motion
 from compoundkin.motion.plan import Plan
+from compoundkin.motion.redundant import because, explained, hold_redundant
 from compoundkin.motion.run import Run, blocks, places
 from compoundkin.motion.timing import times_of
 from compoundkin.motion.tracking import Tracker, read_hint
@@ -38,7 +41,7 @@ def solve(
     acceleration: Any = None,
     jerk: Any = None,
     order: int = 2,
-    modes: Mapping[str, int] | None = None,
+    modes: Mapping[str, int] | str | Configuration | None = None,
     hint: Mapping[str, Any] | None = None,
 ) -> Motion:
     """Solve a mechanism group by group, for position and all derivatives up to `order` (0 to 3).
@@ -52,11 +55,16 @@ def solve(
     acceleration and jerk. Where `time` is not given, drivers with laws that are given no values move at the mechanism's
     own times, else over the range on which their laws agree.
 
-    The assembly mode of each group is that of `modes` (a link of the group: +1 or -1), else the one nearest
-    to `hint` (points near their places at the first pose), else nearest to the mechanism's drawing, else +1.
+    The assembly mode of each group is that of `modes` (a link of the group: +1 or -1, or its configuration's number),
+    else the one nearest to `hint` (points near their places at the first pose), else nearest to the mechanism's
+    drawing, else +1. `modes` may also be one of `configurations()`, from which the motion then starts, or the name of
+    one, which counts where a drawing would.
+
+    A mechanism that moves though it is overconstrained is solved without what is redundant, which is then checked.
 
     Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
-    NotAssembled where a group has no pose at all; warns UnassembledPoses where some poses do not close.
+    NotAssembled where a group has no pose at all or a redundant pair opens; warns UnassembledPoses where some poses do
+    not close.
 
     >>> from compoundkin.words import drive, link
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
@@ -72,8 +80,12 @@ def solve(
         values = by_name(plan.structure.mechanism, values)
         times = times_of(plan.structure.mechanism, values, time)
         given = inputs(plan, values, speed, acceleration, jerk, times)
-        tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint))
+        start = _start(plan, modes)
+        with explained(plan.structure):
+            tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint), start)
         motion = replace(_settled(plan, tracker.given, tracker, order), time=times)
+        if plan.structure.relaxation:
+            hold_redundant(motion)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         text = (
@@ -92,15 +104,31 @@ def plan_of(mechanism: Mechanism | Structure) -> Plan:
     if plan is None:
         structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
         if structure.faults:
+            structure = relaxed(structure)
+        if structure.faults:
             problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
-            raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved")
+            raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved{because(structure)}")
         plan = owner.__dict__["_plan"] = Plan(structure)
     return plan
 
 
-def _signs(plan: Plan, modes: Mapping[str, int] | None) -> dict[int, int]:
+def _start(plan: Plan, modes: Any) -> Configuration | None:
+    """The configuration that is given; raises InvalidInput for one of another mechanism."""
+    if not isinstance(modes, Configuration):
+        return None
+    if list(modes.structure.mechanism.links) != list(plan.structure.mechanism.links):
+        raise InvalidInput(Problem("modes", "the configuration is one of another mechanism"))
+    return modes
+
+
+def _signs(plan: Plan, modes: Mapping[str, int] | str | Configuration | None) -> dict[int, int]:
     """The modes chosen by sign, by group; those of the call go before those of the mechanism."""
     mechanism = plan.structure.mechanism
+    if isinstance(modes, Configuration):
+        return {}
+    if isinstance(modes, str):
+        written = {link: mode.sign for mode in mechanism.modes for link in mode.links}
+        return {**_by_group(plan, written), **read_name(plan, modes)}
     if modes is not None and not isinstance(modes, Mapping):
         raise InvalidInput(Problem("modes", f"{modes!r} does not name a link", "write {'link of the group': -1}"))
     called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
@@ -112,10 +140,10 @@ def _by_group(plan: Plan, modes: Mapping[str, int]) -> dict[int, int]:
     where = {link: k for k, step in enumerate(plan.steps) for link in step.group.links}
     for name, sign in modes.items():
         plan.structure.mechanism.link(name)
-        if sign not in (1, -1):
-            raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
         if name not in where:
             raise InvalidInput(Problem(f"modes.{name}", "this link is driven or fixed: it has no assembly mode"))
+        if sign not in (1, -1) and not (plan.steps[where[name]].modes == 0 and isinstance(sign, int) and sign > 0):
+            raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
         if signs.setdefault(where[name], sign) != sign:
             raise InvalidInput(Problem(f"modes.{name}", "another link of its group has the opposite mode"))
     return signs

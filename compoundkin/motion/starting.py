@@ -1,4 +1,7 @@
-"""The first closed pose of a group without a closed form: from a drawing or hint, otherwise from random starts."""
+"""The first closed pose of a group without a closed form: from a drawing or hint, among all its configurations.
+
+Groups with higher pairs, and those of very many bodies, are searched from random starts instead.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,9 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from compoundkin.errors import NotAssembled, Problem
+from compoundkin.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.geometry import fitted_pose
+from compoundkin.motion.group_states import every_state, states_of
 from compoundkin.motion.home import column, first_of
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.run import Run
@@ -24,6 +28,9 @@ COMPARED = 50
 STEPS = 40
 # and no step longer than this (of the size, or radians): from near a limit position it would lead anywhere.
 LONGEST = 0.3
+
+# Up to so many bodies all configurations are found in some milliseconds.
+MOST_BODIES = 6
 
 Letters = list[tuple[str, str]]
 
@@ -45,18 +52,21 @@ def distance(plan: Plan, letters: Letters, sketch: Mapping[str, Number], run: Ru
 
 
 def first_state(
-    plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Number], designs: int
+    plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Number], designs: int, number: int | None = None
 ) -> tuple[Number, str]:
     """A closed state (designs, 1, width) of a group at a single pose, and what chose it; NaN for designs without.
 
-    Raises NotAssembled where no design has any.
+    With `number` it is that of the real configurations in their order, counted from 1. Raises NotAssembled where no
+    design has any.
     """
+    if number is not None:
+        return _numbered(plan, step, run, designs, number), "number"
     letters = shown(plan, step, sketch)
     best = np.full((designs, 1, step.solver.width), np.nan)
     least = np.full((designs, 1), np.inf)
     guesses = _guesses(plan, step, run, sketch)
     complete = all(guesses[k] is not None for k in step.solver.kept)
-    batches = _batches(_starts(plan, step, guesses), together=designs == 1)
+    batches = _batches(plan, step, run, guesses, designs)
     count = 0
     for batch in batches:
         found = step.solver.newton(batch, run.setting, STEPS, LONGEST)
@@ -79,13 +89,47 @@ def first_state(
     return best, "drawing" if letters else "first found"
 
 
-def _batches(starts: Iterator[Number], together: bool) -> Iterator[Number]:
-    """The first start alone; then one by one, or for a single design all the others at once."""
-    yield next(starts)
-    if together:
+def _batches(plan: Plan, step: GeneralStep, run: Run, guesses: list[Pose | None], designs: int) -> Iterator[Number]:
+    """What is drawn, where it is drawn completely; then all configurations, or random starts where they are not known.
+
+    For a single design all at once, else one by one.
+    """
+    starts = _starts(plan, step, guesses)
+    complete = all(guesses[k] is not None for k in step.solver.kept)
+    if complete:
+        yield next(starts)
+    every = _every(plan, step, run, designs)
+    if every is not None:
+        yield from [every[:, 0]] if designs == 1 else every
+        return
+    if not complete:
+        yield next(starts)
+    if designs == 1:
         yield np.concatenate(list(starts))
     else:
         yield from starts
+
+
+def _every(plan: Plan, step: GeneralStep, run: Run, designs: int) -> Number | None:
+    """All real configurations (m, designs, 1, width), NaN where a design has fewer; None where they are not known."""
+    found = every_state(step, run.setting, plan.size, MOST_BODIES)
+    if found is None or not found.states.shape[-2]:
+        return None
+    states = np.moveaxis(states_of(step, found.states), -2, 0)
+    placed = states.reshape(len(states), *(1,) * (4 - states.ndim), *states.shape[1:])
+    return np.broadcast_to(placed, (len(states), designs, 1, step.solver.width))
+
+
+def _numbered(plan: Plan, step: GeneralStep, run: Run, designs: int, number: int) -> Number:
+    every = _every(plan, step, run, designs)
+    links = ", ".join(step.group.links)
+    if every is None:
+        what = "its configurations are not known one by one, so that none has a number"
+        raise InvalidInput(Problem(f"group of {links}", what, "draw its points, or give a hint"))
+    if number > len(every):
+        remedy = "configurations() lists them"
+        raise NotAssembled(Problem(f"group of {links}", f"it has {len(every)} configurations, not {number}", remedy))
+    return every[number - 1]
 
 
 def _guesses(plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Number]) -> list[Pose | None]:

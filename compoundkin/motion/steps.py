@@ -134,6 +134,9 @@ class TrainStep:
     Source: Willis's equation for every pair, e.g. R. L. Norton, Design of Machinery, section 9.8.
     """
 
+    modes: ClassVar[int] = 1
+    sign_means: ClassVar[str] = "there is only one mode"
+
     def __init__(self, index: int, group: Group, lowers: tuple[tuple[Pair, Body], ...], highers: tuple[Pair, ...]):
         self.index = index
         self.group = group
@@ -276,9 +279,9 @@ class GeneralStep:
         self.index = index
         self.group = group
         where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
-        pairs = (*group.inner, *group.outer)
-        members = tuple(tuple(Member(name, where.get(name)) for name in pair.members) for pair in pairs)
-        self.solver = General(len(group.bodies), pairs, members, size)
+        self.pairs = (*group.inner, *group.outer)
+        members = tuple(tuple(Member(name, where.get(name)) for name in pair.members) for pair in self.pairs)
+        self.solver = General(len(group.bodies), self.pairs, members, size)
 
     def run(self, run: Run, seeds: Number) -> None:
         """Correct the seeds, add the derivatives, and the group's links to what is known."""
@@ -291,7 +294,9 @@ class GeneralStep:
 
     def explain(self, run: Run, at: int) -> str:
         """Why it cannot be assembled at a pose."""
-        return "the tracked configuration ends at a limit position, where the group's equations become singular"
+        limit = "the tracked configuration ends at a limit position, where the group's equations become singular"
+        open_ = [f"{pair.letters[0]} leaves the profile of {pair.members[0]}" for pair in self.pairs if pair.has_ends]
+        return f"{limit}, or where {' or '.join(open_)} at an end" if open_ else limit
 
 
 Step: TypeAlias = DyadStep | AffineStep | TrainStep | FollowerStep | GeneralStep

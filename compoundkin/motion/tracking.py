@@ -8,9 +8,11 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.groups.contract import clipped_root, double_root, nearest_root
+from compoundkin.motion.configuration import Configuration
 from compoundkin.motion.continuation import Path, track
 from compoundkin.motion.home import approach, recounted
 from compoundkin.motion.inputs import Inputs
+from compoundkin.motion.openings import closed_with, openings
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.run import Run
 from compoundkin.motion.spacing import CLOSE
@@ -24,13 +26,26 @@ from compoundkin.words import vector
 class Tracker:
     """Chooses and keeps the configuration of every group of a plan, for given inputs."""
 
-    def __init__(self, plan: Plan, given: Inputs, signs: Mapping[int, int], hint: Mapping[str, Number]) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        given: Inputs,
+        signs: Mapping[int, int],
+        hint: Mapping[str, Number],
+        start: Configuration | None = None,
+    ) -> None:
         self.plan = plan
         self.given = given
         geometry = plan.structure.mechanism.geometry
-        self.sketch = dict(hint) if hint else dict(plan.structure.mechanism.sketch)
-        self.from_drawing = not hint
+        relaxation = plan.structure.relaxation
+        known = relaxation.places if relaxation else {}
+        self.sketch = dict(hint) if hint else {**known, **plan.structure.mechanism.sketch}
         self.drawn = geometry.drawn if not hint else {}
+        if relaxation and not hint and not plan.structure.mechanism.sketch:
+            self.drawn = relaxation.poses
+        if start is not None:
+            self.sketch, self.drawn = dict(start.points), start.poses
+        self.shown_by = "configuration" if start else "hint" if hint else "drawing"
         self.signs: dict[int, Number] = {}
         self.paths: dict[int, Path] = {}
         self.leads: dict[int, Path] = {}
@@ -40,7 +55,8 @@ class Tracker:
         # where along the lead and the motion each group passes through a change point, (designs, count), padded
         self.lead_flips: dict[int, Number] = {}
         self.flips: dict[int, Number] = {}
-        self.lead, self.at, self.home = approach(plan, given, self.drawn, {} if hint else geometry.sketch)
+        sketch = {} if hint else geometry.sketch
+        self.lead, self.at, self.home = approach(plan, given, self.drawn, start.points if start else sketch)
         if plan.turning and geometry.drawn:
             home = self.lead.cut(slice(None), slice(0, 1))
             self.given, self.lead = recounted(plan, (given, self.lead), home)
@@ -108,9 +124,10 @@ class Tracker:
                 self.chosen_by[k] = "only one"
                 step.run(run)
             else:
-                state, self.chosen_by[k] = first_state(self.plan, step, run, self.sketch, self.given.designs)
-                if self.chosen_by[k] == "drawing" and not self.from_drawing:
-                    self.chosen_by[k] = "hint"
+                number = self._fixed.get(k)
+                state, self.chosen_by[k] = first_state(self.plan, step, run, self.sketch, self.given.designs, number)
+                if self.chosen_by[k] == "drawing":
+                    self.chosen_by[k] = self.shown_by
                 self.leads[k], self.paths[k] = track(self, k, step.solver, state)
                 step.run(run, state)
             for link in step.group.links:
@@ -124,15 +141,16 @@ class Tracker:
             self.chosen_by[k] = "sign" if k in self._fixed else "only one"
             return self._fixed.get(k, 1)
         letters = shown(self.plan, step, self.sketch)
-        if not letters:
+        closing = closed_with(self.plan, step)
+        if not letters and not closing:
             self.chosen_by[k] = "default"
             return 1
-        self.chosen_by[k] = "drawing" if self.from_drawing else "hint"
+        self.chosen_by[k] = "redundant" if closing else self.shown_by
         cost = []
         for sign in (1, -1):
             trial = run.copy()
             step.run(trial, sign, nearest_root)
-            cost.append(distance(self.plan, letters, self.sketch, trial))
+            cost.append(openings(closing, trial) if closing else distance(self.plan, letters, self.sketch, trial))
         best = np.where(cost[1] < cost[0], -1.0, 1.0)
         return float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
 

@@ -122,8 +122,8 @@ def outermost(
 ) -> tuple[Number, Number]:
     """The least and the greatest coordinate at which a level passes zero between two samples.
 
-    Where none does, those of the samples beside the one nearest to it: what passes between two samples only, near a limit
-    position, is found from there.
+    Where none does, those of the samples beside the one nearest to it: what passes between two samples only, near a
+    limit position, is found from there.
 
     `numbers` are arrays of the poses' shape, `samples` what belongs to each sample of the profile.
     """

@@ -156,6 +156,16 @@ class Pair(ABC):
         return True
 
     @property
+    def spread(self) -> float:
+        """The scale of its coordinate where it has a profile."""
+        return 1.0
+
+    @property
+    def has_ends(self) -> bool:
+        """Whether it has an open profile, which its contact may run off."""
+        return False
+
+    @property
     def extent(self) -> float:
         """The size of its profile, where it has one: a length scale of the mechanism."""
         return 0.0

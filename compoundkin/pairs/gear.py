@@ -19,8 +19,8 @@ from compoundkin.series import Number
 # The pressure angle of standard involute teeth; it shows in the equivalent linkage only, not in any motion.
 PRESSURE_ANGLE = np.deg2rad(20.0)
 
-# How many teeth a gear shows for which only a radius is known.
-UNCOUNTED = 24
+# How many teeth the smaller gear shows where only radii are known.
+UNCOUNTED = 18
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,10 +88,10 @@ class Gear(Geared):
         """The pitch circles."""
         one, two = (abs(float(end.measure)) for end in ends[:2])
         unit = self.apart(ends, poses) / (two - one if self.internal else two + one)
-        teeth = (0, 0) if self.teeth is None else (round(one), round(two))
+        tooth = 1.0 if self.teeth is not None else min(one, two) / UNCOUNTED
         return (
-            Disc(0, ends[0].point, one * unit, teeth[0] or UNCOUNTED),
-            Disc(1, ends[1].point, two * unit, teeth[1] or UNCOUNTED, self.internal),
+            Disc(0, ends[0].point, one * unit, round(one / tooth)),
+            Disc(1, ends[1].point, two * unit, round(two / tooth), self.internal),
         )
 
 

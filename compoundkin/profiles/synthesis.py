@@ -136,12 +136,12 @@ def synthesise(
     which the program's value is 0. Lengths as in the mechanism, angles in radians; the program is over radians.
 
     A translating follower rises in the direction `angle` on a guide `offset` to its left: ``slide("follower",
-    on="frame", through="A", angle=angle, offset=offset)``, A the cam's axis; a flat face is square to it and minds no
-    offset. An oscillating one turns about `pivot`, a point from the cam's axis or a distance along x, and the program
-    rises by angles: its edge or roller is at the end of its `arm`, in the direction of its link's x axis; its flat face
-    is along that axis, beyond its pivot by `face`, ``face(..., angle=0, side=-side)``. `side` 1: it rises
-    counterclockwise, -1: clockwise. The follower's mode is `Synthesised.mode`, its coordinate then
-    `Synthesised.coordinate`.
+    on="frame", through="A", angle=angle, offset=offset)``, A the cam's axis; a flat face is square to it, ``face(...,
+    angle=deg(90))``, and minds no offset. An oscillating one turns about `pivot`, a point from the cam's axis or a
+    distance along x, and the program rises by angles: its edge or roller is at the end of its `arm`, in the direction
+    of its link's x axis; its flat face is along that axis, beyond its pivot by `face`, ``face(..., angle=0,
+    side=-side)``. `side` 1: it rises counterclockwise, -1: clockwise. The follower's mode is `Synthesised.mode`, its
+    coordinate then `Synthesised.coordinate`.
 
     Raises InvalidMechanism, with the cam's angles, for what cannot be made: a program that does not take one turn or
     does not return, an arm that does not reach, an undercut (with the least base circle that will do), a hollow under a

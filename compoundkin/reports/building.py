@@ -12,8 +12,9 @@ from compoundkin.motion import Motion
 from compoundkin.quantities import order_of
 from compoundkin.reports.cams import cams_sections
 from compoundkin.reports.chain import chain_section
-from compoundkin.reports.count import loops_section, mobility_section
+from compoundkin.reports.count import loops_section
 from compoundkin.reports.equivalent import equivalent_section
+from compoundkin.reports.freedom import mobility_section
 from compoundkin.reports.findings import checks_section, gaps_section
 from compoundkin.reports.model import Outcome, Paragraph, Report, Section
 from compoundkin.reports.parts import faults_section, links_section, pairs_section
@@ -128,6 +129,9 @@ def _design_of(sample: Sample) -> str:
 def _structure_in_short(structure: Structure) -> str:
     links, freedoms = len(structure.mechanism.links), structure.mobility.freedoms
     text = f"In short: {counted(links, 'link')}, mobility {freedoms}"
+    if structure.relaxation and not structure.faults:
+        drivers = structure.mobility.drivers
+        text = f"In short: {counted(links, 'link')}, mobility {drivers} ({freedoms} by the count)"
     if structure.groups:
         text += f", {counted(len(structure.groups), 'group')}, class {roman(max(g.class_ for g in structure.groups))}"
     return f"{text}; it cannot be solved." if structure.faults else f"{text}."

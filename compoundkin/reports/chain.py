@@ -27,7 +27,7 @@ def _facts(structure: Structure, name: ChainName) -> Iterator[tuple[str, str]]:
     drives = structure.mechanism.drives
     if drives:
         kinds = name.driven.split(", ")
-            yield "driven at", "; ".join(f"{drive.link}, a {kind}" for drive, kind in zip(drives, kinds, strict=True))
+        yield "driven at", "; ".join(f"{drive.link}, a {kind}" for drive, kind in zip(drives, kinds, strict=True))
     yield "links", name.assortment
     if name.derived_from and len(name.derived_from) <= MANY:
         yield "derived from", " or ".join(name.derived_from)

@@ -61,15 +61,6 @@ def equation_count(structure: Structure) -> EquationCount:
     return EquationCount(loops, angles, len(running), len(guided) + len(geared), structure.mobility.drivers)
 
 
-def mobility_section(structure: Structure) -> Section:
-    """The mobility sum with its numbers, and whether the drivers determine the motion."""
-    mobility = structure.mobility
-    text = mobility.verdict[:1].upper() + mobility.verdict[1:] + "."
-    if mobility.is_determinate and structure.faults:
-        text += " The count is right as a whole but not in every part: see below."
-    return Section("mobility", "Mobility", (Formula(mobility.formula), Paragraph(text)))
-
-
 def loops_section(structure: Structure) -> Section:
     """The independent loops as chains, and the equations against the unknowns."""
     count = equation_count(structure)

@@ -22,6 +22,9 @@ CHOSEN_BY = {
     "hint": "nearest to the hint",
     "default": "taken by default",
     "first found": "the first that was found",
+    "redundant": "in which the redundant pairs close",
+    "number": "chosen by number",
+    "configuration": "that of the configuration given",
 }
 
 
@@ -34,7 +37,15 @@ def solving_section(structure: Structure, motion: Motion | None, design: int = 0
         known.update(dict.fromkeys(new))
         mode = _mode(motion, k, design) if motion else ()
         steps.append(Step(f"{k + 1}  {_title(group)}", (*_facts(structure, group, new), *mode)))
-    return Section("groups", "Groups in solving order", (Paragraph(_summary(structure)), *steps))
+    blocks = Paragraph(_summary(structure)), *_left_out(structure), *steps
+    return Section("groups", "Groups in solving order", blocks)
+
+
+def _left_out(structure: Structure) -> Iterator[Paragraph]:
+    """What is redundant, and what stands in its place."""
+    for part in structure.relaxation.dropped if structure.relaxation else ():
+        instead = f", with {part.kept.name} in its place" if part.kept else ""
+        yield Paragraph(f"Left out is {part}{instead}: other pairs hold it, which is checked along the motion.")
 
 
 def _summary(structure: Structure) -> str:

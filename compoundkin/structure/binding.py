@@ -21,9 +21,10 @@ class Binder:
 
     def locate(self, component: Sequence[int], constraints: Sequence[Constraint]) -> None:
         """Note where the pins of a component are found: on a body that is then solved."""
+        own = frozenset(component)
         for constraint in constraints:
             vertex, body = constraint.sides[0], constraint.sides[-1]
-            if vertex != GROUND and not self.system.is_body(vertex) and vertex in component:
+            if vertex != GROUND and not self.system.is_body(vertex) and vertex in own:
                 self.holder.setdefault(vertex, body)
 
     def group(self, component: Sequence[int], constraints: Sequence[Constraint]) -> Group:

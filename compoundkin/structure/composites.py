@@ -71,9 +71,10 @@ def driven_pair(pins: Pins, drive: Drive) -> Pair:
     """The pair that a drive prescribes: a written one, or the pin between precisely its two links."""
     mechanism = pins.mechanism
     (name,) = drivable(mechanism, drive)
-    if {drive.link, drive.on} <= set(mechanism.pins.get(name, ())):
+    if name in mechanism.pins_between(drive.link, drive.on):
         return pins.pair(name, drive.on, drive.link)
-    return next(pair for pair in mechanism.written_pairs if pair.name == name)
+    between = mechanism.pairs_between[frozenset((drive.link, drive.on))]
+    return next(pair for pair in between if pair.name == name)
 
 
 def spanned(body: Body, links: Iterable[str]) -> tuple[DrivenPair, ...]:

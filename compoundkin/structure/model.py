@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from compoundkin.mechanism import Mechanism
 from compoundkin.pairs import Pair
+from compoundkin.poses import Pose
 from compoundkin.words import Drive
 
 if TYPE_CHECKING:
@@ -114,10 +115,14 @@ class Dropped:
 
 @dataclass(frozen=True)
 class Relaxation:
-    """What is dropped of a mechanism that moves though it is overconstrained, and the points of an assembled pose."""
+    """What is dropped of a mechanism that moves though it is overconstrained, and an assembled pose by points and links.
+
+    The pose is the drawn one made exact, or one that was found where nothing is drawn.
+    """
 
     dropped: tuple[Dropped, ...]
-    places: Mapping[str, complex]
+    places: Mapping[str, complex] = field(default_factory=dict)
+    poses: Mapping[str, Pose] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ def passive_freedoms(mechanism: Mechanism) -> Iterator[Passive]:
         for name in pair.members:
             written.setdefault(name, []).append(pair.round_at(name))
     for name, places in written.items():
-        pins = [letter for letter, names in mechanism.pins.items() if name in names]
+        pins = list(mechanism.pins_on[name])
         if name not in driven and name != FRAME and len(pins) == 1 and set(places) == set(pins):
             on = next(other for other in mechanism.pins[pins[0]] if other != name)
             yield Passive(name, on, pins[0])

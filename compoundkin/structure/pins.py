@@ -28,15 +28,19 @@ class Pins:
         """
         if len(self.mechanism.pins[letter]) == 2 and letter not in self._written:
             return Revolute(letter, letter, first, second)
-        return Revolute(f"{letter}({first}{self._separator(letter)}{second})", letter, first, second)
+        return Revolute(f"{letter}({first}{self._separators[letter]}{second})", letter, first, second)
 
     @cached_property
     def _written(self) -> frozenset[str]:
         return frozenset(pair.name for pair in self.mechanism.written_pairs)
 
-    def _separator(self, letter: str) -> str:
-        names = self.mechanism.pins[letter]
-        return next((s for s in _SEPARATORS if not any(s in name for name in names)), "-")
+    @cached_property
+    def _separators(self) -> dict[str, str]:
+        return {
+            letter: next((s for s in _SEPARATORS if not any(s in name for name in names)), "-")
+            for letter, names in self.mechanism.pins.items()
+            if len(names) > 2 or letter in self._written
+        }
 
 
 def pin_at(letter: str) -> Pair:

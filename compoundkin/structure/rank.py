@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import Any
@@ -37,7 +38,7 @@ class Deficiency:
     """By how much a part's constraints are dependent and its unknowns free.
 
     `tight` are the constraints that depend on one another, `loose` the unknowns that move, `moving` the
-    constraints whose pairs then move.
+    constraints whose pairs then move. `turning` says that all that is dependent holds angles, as in loops of slides.
     """
 
     redundant: int
@@ -45,6 +46,7 @@ class Deficiency:
     tight: tuple[Constraint, ...]
     loose: tuple[int, ...]
     moving: tuple[Constraint, ...]
+    turning: bool = False
 
 
 @dataclass
@@ -53,6 +55,7 @@ class RankTest:
 
     system: System
     known: dict[tuple[Any, ...], bool] = field(default_factory=dict)
+    kinds: dict[Hashable, int] = field(default_factory=dict)
 
     def deficiency(self, part: Part) -> Deficiency | None:
         """What is wrong with a part that counts as determined, or None if it is."""
@@ -69,14 +72,18 @@ class RankTest:
             spare = 1 if rows == columns else 0
             over, under = max(rows - columns, spare), max(columns - rows, spare)
             return Deficiency(over, under, part.constraints, part.unknowns, part.constraints)
-        left, values, right = np.linalg.svd(self._dense(part))
+        matrix = self._dense(part)
+        left, values, right = np.linalg.svd(matrix)
         rank = int(np.sum(values > RANK_TOLERANCE * max(values, default=1.0)))
         held = _taking_part(left[:, rank:], [c.pair.held for c in part.constraints])
         moved = _taking_part(right[rank:].T, [self.system.freedoms[u] for u in part.unknowns])
         tight = tuple(c for c, yes in zip(part.constraints, held, strict=True) if yes)
         loose = tuple(u for u, yes in zip(part.unknowns, moved, strict=True) if yes)
         moving = self._moving(part, right[rank:].T)
-        return Deficiency(rows - rank, columns - rank, tight, loose, moving)
+        dependent = matrix[np.linalg.norm(left[:, rank:], axis=1) > RANK_TOLERANCE]
+        angles = [start + LINK_FREEDOMS - 1 for unknown, start in self._start(part).items() if self.system.is_body(unknown)]
+        turning = rows > rank and not np.any(np.delete(dependent, angles, axis=1))
+        return Deficiency(rows - rank, columns - rank, tight, loose, moving, turning)
 
     def _is_regular(self, part: Part) -> bool:
         if self._shape(part)[1] > DENSE_UP_TO:
@@ -102,13 +109,17 @@ class RankTest:
         return bool(np.min(pivots) > RANK_TOLERANCE * np.max(pivots))
 
     def _make_up(self, part: Part) -> tuple[Any, ...]:
+        """All that the rank depends on: not the order of constraints, nor which body on a pin is named first."""
         place = {unknown: k for k, unknown in enumerate(part.unknowns)}
-        letters: dict[str, int] = {"": 0}
-        made: list[Any] = [self.system.freedoms[unknown] for unknown in part.unknowns]
+        times = Counter(c.letter for c in part.constraints)
+        shared = [letter for letter, count in times.items() if letter and count > 1]
+        number = {letter: k for k, letter in enumerate(shared)}
+        made: list[tuple[int, ...]] = []
         for c in part.constraints:
-            letter = letters.setdefault(c.letter, len(letters))
-            made.append((c.pair.make_up, letter, *[place.get(side, -1) for side in c.sides]))
-        return tuple(made)
+            kind = self.kinds.setdefault(c.pair.make_up, len(self.kinds))
+            places = [place.get(side, -1) for side in c.sides]
+            made.append((kind, number.get(c.letter, -1), *(sorted(places) if c.letter else places)))
+        return tuple([self.system.freedoms[u] for u in part.unknowns]), tuple(sorted(made))
 
     def _shape(self, part: Part) -> tuple[int, int]:
         return sum(c.pair.held for c in part.constraints), sum(self.system.freedoms[u] for u in part.unknowns)

@@ -42,6 +42,7 @@ class System:
     bodies: Composites
     vertices: tuple[str, ...]
     constraints: tuple[Constraint, ...]
+    dropped: tuple[Dropped, ...] = ()
 
     @cached_property
     def freedoms(self) -> list[int]:
@@ -58,6 +59,11 @@ class System:
         """The constraint of each row."""
         return [k for k, c in enumerate(self.constraints) for _ in range(c.pair.held)]
 
+    @cached_property
+    def place_of(self) -> dict[str, int]:
+        """The place of each link in the order of input."""
+        return {name: place for place, name in enumerate(self.mechanism.links)}
+
     def is_body(self, unknown: int) -> bool:
         """Whether an unknown is a moving body (else a pin)."""
         return unknown < len(self.bodies.moving)
@@ -69,8 +75,19 @@ class System:
 
     def carrier(self, letter: str, body: int) -> str:
         """The link of a body that carries a letter, the one nearest to its base."""
-        links = self.mechanism.links
-        return next(name for name in self.bodies.body(body).links if letter in links[name].points)
+        links = self.bodies.body(body).links
+        return links[0] if len(links) == 1 else self._carriers[letter, body]
+
+    @cached_property
+    def _carriers(self) -> dict[tuple[str, int], str]:
+        """The carriers of all letters of composites of several links."""
+        found: dict[tuple[str, int], str] = {}
+        for index in range(GROUND, len(self.bodies.moving)):
+            links = self.bodies.body(index).links
+            for name in links if len(links) > 1 else ():
+                for letter in self.mechanism.links[name].points:
+                    found.setdefault((letter, index), name)
+        return found
 
 
 def system_of(mechanism: Mechanism, bodies: Composites, dropped: Sequence[Dropped] = ()) -> System:
@@ -85,13 +102,18 @@ def system_of(mechanism: Mechanism, bodies: Composites, dropped: Sequence[Droppe
             vertices.append(letter)
         sides = _pin_sides(on_pin, count + len(vertices) - 1)
         constraints += [_constraint(pin_at(letter), pair, letter) for pair in sides]
-    left_out = {part.name for part in dropped if not part.off}
-    kept = [part.kept for part in dropped if part.kept is not None]
-    for pair in (*(pair for pair in mechanism.written_pairs if pair.name not in left_out), *kept):
+    for pair in held_pairs(mechanism, dropped):
         members = tuple(bodies.body_of[name] for name in pair.members)
         if len(set(members)) > 1:
             constraints.append(_constraint(pair, members, ""))
-    return System(mechanism, bodies, tuple(vertices), tuple(constraints))
+    return System(mechanism, bodies, tuple(vertices), tuple(constraints), tuple(dropped))
+
+
+def held_pairs(mechanism: Mechanism, dropped: Sequence[Dropped]) -> tuple[Pair, ...]:
+    """The written pairs, with what is kept in the place of pairs of which part is dropped."""
+    left_out = {part.name for part in dropped if not part.off}
+    kept = (part.kept for part in dropped if part.kept is not None)
+    return (*(pair for pair in mechanism.written_pairs if pair.name not in left_out), *kept)
 
 
 def _pin_sides(on_pin: tuple[int, ...], vertex: int) -> Iterator[tuple[int, int]]:

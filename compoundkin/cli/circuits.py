@@ -1,0 +1,88 @@
+"""`compoundkin circuits`: circuits, branches and limit positions of a mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import click
+
+from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.output import put_report, report_options
+
+if TYPE_CHECKING:
+    from compoundkin.structure import Structure
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin circuits triple-rocker
+  compoundkin circuits five-bar --driver left --at right=100
+  compoundkin circuits linkage.toml --driver cylinder --from 20 --to 35
+  compoundkin circuits stephenson-iii -o circuits.md
+"""
+)
+@mechanism_argument
+@click.option("--driver", "driver", metavar="NAME", help="The driver that moves, where there are several.")
+@click.option(
+    "--at",
+    "at",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Where another driver stands, degrees or length; as drawn, or the first of its range, if left out.",
+)
+@click.option("--from", "start", type=float, metavar="VALUE", help="The least value of the driver that is looked at.")
+@click.option("--to", "stop", type=float, metavar="VALUE", help="The greatest one.")
+@report_options
+def command(
+    file: str,
+    driver: str | None,
+    at: tuple[str, ...],
+    start: float | None,
+    stop: float | None,
+    form: str | None,
+    path: str | None,
+) -> int:
+    """Find all circuits that a driver moves a mechanism through: branches, limit positions, whether it turns fully.
+
+    On a circuit the mechanism gets from any configuration to any other without being taken apart. Limit positions are
+    told with the group that comes to the end of its reach there. Exit code 3: the mechanism cannot be assembled.
+    """
+    from compoundkin.circuits import circuits
+    from compoundkin.cli.progress import working
+    from compoundkin.motion.solving import plan_of
+    from compoundkin.reports.configurations import circuits_report
+
+    structure = plan_of(loaded(file)).structure
+    fixed = _fixed(structure, at)
+    with working("following all circuits"):
+        made = circuits_report(circuits(structure, driver, fixed, between=_between(structure, driver, start, stop)))
+    put_report(made, form, path)
+    return 0
+
+
+def _fixed(structure: Structure, at: Sequence[str]) -> dict[str, float]:
+    """The values given for other drivers."""
+    from compoundkin.cli import values
+
+    named = {text.rpartition("=")[0] for text in at}
+    return {name: value for name, value in values.of_pose(structure, at).items() if name in named} if at else {}
+
+
+def _between(
+    structure: Structure, driver: str | None, start: float | None, stop: float | None
+) -> tuple[float, float] | None:
+    """The range of the driver, in radians or lengths."""
+    import numpy as np
+
+    from compoundkin.errors import InvalidInput, Problem
+    from compoundkin.reports.configurations import is_angle
+
+    if start is None and stop is None:
+        return None
+    if start is None or stop is None:
+        raise InvalidInput(Problem("--from, --to", "a range has two ends", "give both"))
+    name = driver or structure.mechanism.drives[0].name
+    factor = float(np.deg2rad(1.0)) if is_angle(structure, name) else 1.0
+    return start * factor, stop * factor

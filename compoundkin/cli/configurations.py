@@ -1,0 +1,43 @@
+"""`compoundkin configurations`: every way in which a mechanism can be assembled at one pose."""
+
+from __future__ import annotations
+
+import click
+
+from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.output import put_report, report_options
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin configurations six-bar --at 35
+  compoundkin configurations five-bar --at left=60 --at right=100
+  compoundkin configurations class-iii-six-bar --format json
+"""
+)
+@mechanism_argument
+@click.option(
+    "--at",
+    "at",
+    multiple=True,
+    metavar="[NAME=]VALUE",
+    help="The pose: a driver's value, degrees or length; the first of its range if left out.",
+)
+@report_options
+def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) -> int:
+    """List all configurations of a mechanism at one pose: how many of how many possible, their names and angles.
+
+    A name of the list chooses a configuration in Python: solve(..., modes="..."). Exit code 3: there is none.
+    """
+    from compoundkin.circuits import configurations
+    from compoundkin.cli import values
+    from compoundkin.cli.progress import working
+    from compoundkin.motion.solving import plan_of
+    from compoundkin.reports.configurations import configurations_report
+
+    structure = plan_of(loaded(file)).structure
+    with working("finding all configurations"):
+        made = configurations_report(configurations(structure, values.of_pose(structure, at)))
+    put_report(made, form, path)
+    return 0

@@ -1,0 +1,118 @@
+"""`compoundkin plot`: a motion as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from compoundkin.cli.driving import drive_options, solved
+from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.shell import put, say
+from compoundkin.cli.solve import explained
+
+if TYPE_CHECKING:
+    from compoundkin.motion import Motion
+    from compoundkin.plots import Plot
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin plot six-bar G.velocity bar.angle -o six-bar.png
+  compoundkin plot six-bar G.acceleration --against bar.angle --step 1 -o six-bar.svg
+  compoundkin plot crank-rocker rocker.angle --phase > phase.svg
+  compoundkin plot jansen-leg foot --path --every 5 -o foot.pdf
+  compoundkin plot elliptic-trammel --centrodes rod frame -o centrodes.png
+"""
+)
+@mechanism_argument
+@click.argument("quantities", nargs=-1, metavar="[QUANTITY]...")
+@drive_options
+@click.option("--against", metavar="QUANTITY", help="What to draw over: driver, time, pose, or a quantity.")
+@click.option("--together", is_flag=True, help="Quantities of one unit in one panel.")
+@click.option("--phase", "kinds", flag_value="phase", multiple=True, help="The quantity against its rate.")
+@click.option("--polar", "kinds", flag_value="polar", multiple=True, help="Radii over the driver's angle.")
+@click.option("--hodograph", "kinds", flag_value="hodograph", multiple=True, help="The curve of a vector's tip.")
+@click.option("--path", "kinds", flag_value="paths", multiple=True, help="The paths of points: coupler curves.")
+@click.option("--centrodes", nargs=2, metavar="LINK ON", help="Fixed and moving centrode of a link seen from another.")
+@click.option("--every", type=click.IntRange(1), metavar="POSES", help="Distance of the marks along curves in a plane.")
+@click.option("--title", help="Instead of the mechanism's own.")
+@click.option(
+    "-o", "--to-file", "path", metavar="PATH", help="Write a .png, .svg or .pdf file; SVG on stdout if left out."
+)
+def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: Any) -> int:
+    """Draw quantities of a motion: over its driver, over time, against each other, or as curves in the plane.
+
+    QUANTITY is such as G.velocity, G.velocity.x, bar.angle, slot.rate; with --path a point. Without any, the file's own
+    outputs. What cannot be assembled is shaded; stderr says why, and the exit code is 3.
+    """
+    from compoundkin.plots.picture import form_of
+    from compoundkin.plots.style import require_matplotlib
+    from compoundkin.structure import decompose
+
+    if path is not None:
+        form_of(path)
+    require_matplotlib()
+    _fitting(asked)
+    structure = decompose(loaded(file))
+    names = (*quantities, *asked["outputs"])
+    motion = solved(structure, {**asked, "outputs": (), "order": _order(asked, names or structure.mechanism.outputs)})
+    picture = _drawn(motion, names, asked)
+    if path is None:
+        put(picture.content("svg"))
+    else:
+        picture.save(path)
+        say(f"Wrote {path}.")
+    return 0 if motion.assembled.all() else explained(motion)
+
+
+def _fitting(asked: Mapping[str, Any]) -> None:
+    """Raise InvalidInput for options that do not go together."""
+    from compoundkin.errors import InvalidInput, Problem
+
+    kinds = [f"--{kind.removesuffix('s')}" for kind in asked["kinds"]] + ["--centrodes"] * bool(asked["centrodes"])
+    if len(kinds) > 1:
+        raise InvalidInput(Problem(" ".join(kinds), "a plot is of one kind", "leave all but one out"))
+    for option in ("against", "together"):
+        if kinds and asked[option]:
+            raise InvalidInput(Problem(f"--{option}", f"it does not go with {kinds[0]}", "leave one of them out"))
+    if asked["every"] and kinds in ([], ["--polar"]):
+        raise InvalidInput(Problem("--every", "it marks curves in a plane", "give --path, --phase or --hodograph too"))
+
+
+def _order(asked: Mapping[str, Any], names: tuple[str, ...]) -> int:
+    """The order asked for, or what the quantities need: one more for the rates of phase plots, 2 at least."""
+    from compoundkin.plots.reading import vector_of
+    from compoundkin.quantities import HIGHEST_ORDER, order_of
+
+    if asked["order"] is not None:
+        return int(asked["order"])
+    against = () if asked["against"] is None else (asked["against"],)
+    highest = max((order_of(vector_of(name)[0]) for name in (*names, *against)), default=0)
+    return min(max(2, highest + ("phase" in asked["kinds"])), HIGHEST_ORDER)
+
+
+def _drawn(motion: Motion, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
+    from compoundkin import plots
+    from compoundkin.errors import InvalidInput, Problem
+
+    title, every = asked["title"], asked["every"]
+    if asked["centrodes"]:
+        if names:
+            raise InvalidInput(Problem(names[0], "centrodes take no quantities", "leave it out"))
+        return plots.centrodes(motion, *asked["centrodes"], every=every, title=title)
+    if not asked["kinds"]:
+        return plots.plot(motion, *names, against=asked["against"], stacked=not asked["together"], title=title)
+    kind = asked["kinds"][0]
+    if kind == "phase":
+        if not 1 <= len(names) <= 2:
+            told = f"there are {len(names)} quantities"
+            raise InvalidInput(Problem("--phase", told, "name one, or two to be drawn against each other"))
+        return plots.phase(motion, *names, every=every, title=title)
+    if kind == "polar":
+        return plots.polar(motion, *names, title=title)
+    draw: Any = getattr(plots, kind)
+    picture: Plot = draw(motion, *names, every=every, title=title)
+    return picture

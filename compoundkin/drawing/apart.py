@@ -1,0 +1,109 @@
+"""The mechanism taken apart: the frame with its driven links, then each group alone, in solving order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.drawing.labels import WIDE, Label, placed
+from compoundkin.drawing.layout import layered, window_on
+from compoundkin.drawing.marks import Painter
+from compoundkin.drawing.moving import moved
+from compoundkin.drawing.naming import below, label_shapes, letters, lines_of_text, numbered
+from compoundkin.drawing.picture import Picture, checked_size
+from compoundkin.drawing.scene import Scene
+from compoundkin.drawing.shapes import Polygon, Shape, Text, corners
+from compoundkin.drawing.style import LETTER, LINE
+from compoundkin.drawing.window import MARGIN, Window
+from compoundkin.structure import Group, roman
+from compoundkin.words import FRAME
+
+# Parts stand side by side until they are so wide together, in picture units.
+WIDEST = 1000.0
+# Parts are drawn in this part of the size of a sketch.
+SMALLER = 0.62
+# Between parts, with a plus sign; and above each part, for its heading.
+GAP, HEADING = 30.0, 30.0
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part with its size, its upper left corner at zero."""
+
+    shapes: tuple[Shape, ...]
+    width: float
+    height: float
+
+
+def apart(scene: Scene, size: float | None) -> Picture:
+    """The picture of all parts in solving order, each in its own colour."""
+    first = window_on(scene)
+    whole = Window(first.scale * SMALLER, first.corner, first.width * SMALLER, first.height * SMALLER)
+    ground = frozenset((FRAME, *scene.structure.ground.links))
+    parts = [_part(scene, whole, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")]
+    parts += [_part(scene, whole, frozenset(g.links), heading(g), outer_letters(g)) for g in scene.structure.groups]
+    shapes, width, height = _in_rows(parts)
+    notes = [f"{number} {name}" for name, number in scene.numbers.items()]
+    notes += ["dashed circles: outer pairs"] if scene.structure.groups else []
+    texts, height = below(lines_of_text(notes, width - 32.0), height + LINE)
+    paper = Polygon((0j, complex(width), complex(width, height), complex(0.0, height)), "paper")
+    title = f"{scene.mechanism.title}, taken apart"
+    described = "; ".join(heading(group) for group in scene.structure.groups)
+    return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))
+
+
+def heading(group: Group) -> str:
+    """What a group is called: its class and the letters of its pairs."""
+    return f"class {roman(group.class_)}: {group.name}"
+
+
+def outer_letters(group: Group) -> frozenset[str]:
+    """The points of the pairs by which a group is attached to what stands before it."""
+    return frozenset(letter for pair in group.outer for letter in pair.letters[:1])
+
+
+def _part(scene: Scene, whole: Window, links: frozenset[str], title: str, outer: frozenset[str] = frozenset()) -> Part:
+    """The links of a part as they are in the mechanism, with their letters and numbers."""
+    painter = Painter(scene, whole, links, outer)
+    shapes = layered(painter)
+    points = np.array(corners(shapes) or [0j])
+    low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
+    high = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j)
+    wide = max((high - low).real, len(title) * LETTER * WIDE)
+    low -= (wide - (high - low).real) / 2.0
+    shapes = moved(shapes, -low)
+    named: list[Label] = [*numbered(painter), *letters(painter)]
+    own = [_shifted(label, -low) for label in named]
+    tall = (high - low).imag
+    shapes += label_shapes(scene, placed(own, shapes, wide, tall))
+    named_part = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")
+    return Part((named_part, *moved(shapes, HEADING * 1j)), wide, tall + HEADING)
+
+
+def _shifted(label: Label, by: complex) -> Label:
+    own = tuple((a + by, b + by) for a, b in label.own)
+    return Label(label.key, label.half, tuple(place + by for place in label.places), label.costs, own)
+
+
+def _in_rows(parts: Sequence[Part]) -> tuple[list[Shape], float, float]:
+    """The parts side by side, in rows, with plus signs between them; and the size of them all."""
+    rows: list[list[Part]] = []
+    for part in parts:
+        if rows and sum(p.width + GAP for p in rows[-1]) + part.width <= WIDEST:
+            rows[-1].append(part)
+        else:
+            rows.append([part])
+    shapes: list[Shape] = []
+    y, first = MARGIN / 2.0, True
+    for row in rows:
+        x, tall = MARGIN / 2.0 + GAP, max(part.height for part in row)
+        for part in row:
+            if not first:
+                shapes.append(Text(complex(x - GAP / 2.0, y + tall / 2.0), "+", "heading"))
+            shapes += moved(part.shapes, complex(x, y + (tall - part.height) / 2.0))
+            x, first = x + part.width + GAP, False
+        y += tall + LINE
+    width = max(sum(part.width + GAP for part in row) for row in rows) + MARGIN
+    return shapes, round(width, 1), round(y, 1)

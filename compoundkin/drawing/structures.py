@@ -1,0 +1,50 @@
+"""`draw_structure`: pictures of what a mechanism is made of."""
+
+from __future__ import annotations
+
+from compoundkin.drawing.apart import apart
+from compoundkin.drawing.circle import circle_diagram
+from compoundkin.drawing.graph import graph
+from compoundkin.drawing.picture import Picture
+from compoundkin.drawing.posing import scene_of
+from compoundkin.drawing.scene import groups_of, numbers_of
+from compoundkin.errors import InvalidInput, NotDetermined, Problem, nearest
+from compoundkin.mechanism import Mechanism
+from compoundkin.motion import Motion
+from compoundkin.structure import Structure, decompose
+
+VIEWS = ("groups", "graph", "circle")
+
+
+def draw_structure(what: Motion | Mechanism | Structure, view: str = "groups", *, size: float | None = None) -> Picture:
+    """A picture of the structure of a mechanism.
+
+    `view` is "groups", the mechanism taken apart: frame and driver, then each Assur group in solving order, the pairs
+    by which it is attached to what stands before it in dashed circles; "graph", the kinematic graph of links and pairs; or
+    "circle", the circle diagram of the instant centres. Raises InvalidInput for another view; NotDetermined where a
+    mechanism that the drivers do not determine is asked for its groups or centres.
+
+    >>> from compoundkin.words import drive, link
+    >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> draw_structure(crank, "graph").description
+    '2 links, 1 pairs'
+    """
+    if view not in VIEWS:
+        raise InvalidInput(Problem("view", f"there is no view {view!r}", nearest(str(view), list(VIEWS))))
+    structure = _structure(what)
+    if view == "graph":
+        return graph(structure, numbers_of(structure), groups_of(structure), size)
+    if structure.faults:
+        problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
+        raise NotDetermined(problems, heading=f"{structure.mechanism.title!r} cannot be taken apart")
+    if view == "circle":
+        return circle_diagram(structure, numbers_of(structure), size)
+    return apart(scene_of(what, None, None, 0), size)
+
+
+def _structure(what: Motion | Mechanism | Structure) -> Structure:
+    if isinstance(what, Motion):
+        return what.structure
+    if not isinstance(what, Mechanism | Structure):
+        raise InvalidInput(Problem("draw_structure", f"{what!r} is no mechanism", "load() one from a file"))
+    return what if isinstance(what, Structure) else decompose(what)

@@ -1,0 +1,157 @@
+"""An assembled pose: from the drawing as far as it goes, corrected by Gauss and Newton."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.freedom.equations import STRICT, Array, Equations
+from compoundkin.geometry import fitted_pose
+from compoundkin.poses import FIXED, Pose
+from compoundkin.series import Number
+from compoundkin.words import FRAME
+
+# Gauss and Newton's steps: at a pose where the equations are singular each halves the error only.
+STEPS = 60
+# No step is longer than this (parts of the size, or radians): from far away it would lead anywhere.
+LONGEST = 0.3
+# A residual that is rounding: no step could make it less.
+EXACT = 1e-14
+# Directions that exact equations determine less than this are left alone: rounding would lead anywhere.
+UNDETERMINED = 1e-12
+# The angle of a driver that is given no values: not 0, where links are often in line.
+SOMEWHERE = 1.0
+# Starts for a mechanism that is not drawn completely, the first one from what is drawn alone.
+TRIES = 40
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """The nearest that was found to an assembled pose: its state, and the largest residual in parts of the size."""
+
+    state: Array
+    residual: float
+    is_closed: bool
+
+
+def corrected(equations: Equations, state: Array, goal: Array | None = None, steps: int = STEPS) -> Assembly:
+    """The nearest assembled pose, by so many least steps at most; with the drivers' coordinates at `goal` where it is given."""
+    closed, rank = equations.tolerance
+    least = UNDETERMINED if equations.tolerance is STRICT else rank
+    best = Assembly(state, np.inf, False)
+    for _ in range(steps):
+        residual, rows = _system(equations, state, goal)
+        worst = float(np.max(np.abs(residual), initial=0.0))
+        if not np.isfinite(worst):
+            return best
+        if worst < best.residual:
+            best = Assembly(state, worst, worst <= closed)
+        if worst <= EXACT:
+            break
+        step = np.linalg.lstsq(rows, -residual, rcond=least)[0]
+        longest = float(np.max(np.abs(step), initial=0.0))
+        if longest <= EXACT:
+            break
+        state = state + step * min(1.0, LONGEST / longest)
+    return best
+
+
+def _system(equations: Equations, state: Array, goal: Array | None) -> tuple[Array, Array]:
+    rows, lengths = equations.jacobian(state)
+    residual = equations.closures(state) / lengths
+    if goal is None:
+        return residual, rows
+    gap = equations.coordinates(state) - goal
+    angular = np.array([pair.free_is_angle for pair in equations.driven], dtype=bool)
+    gap = np.where(angular, np.angle(np.exp(1j * gap)), gap / equations.size)
+    signs = [pair.driven_by(d.link) for pair, d in zip(equations.driven, equations.mechanism.drives, strict=True)]
+    return np.concatenate([residual, gap]), np.vstack([rows, equations.driving(state) * np.array(signs)[:, None]])
+
+
+def assembled(equations: Equations) -> Assembly:
+    """An assembled pose near the drawing, the drivers free; without a drawing, at the drivers' first values if it can."""
+    mechanism = equations.mechanism
+    if mechanism.sketch:
+        return _nearest(equations, None)
+    drives = zip(mechanism.drives, equations.driven, strict=True)
+    values = [_first(drive.values, SOMEWHERE if pair.free_is_angle else 0.0) for drive, pair in drives]
+    at_values = _nearest(equations, np.array(values))
+    return at_values if at_values.is_closed else _nearest(equations, None)
+
+
+def _nearest(equations: Equations, goal: Array | None) -> Assembly:
+    best: Assembly | None = None
+    for start, is_complete in _starts(equations):
+        found = corrected(equations, start, goal)
+        good = found.is_closed and equations.is_upright(found.state)
+        if best is None or found.residual < best.residual:
+            best = found
+        if good or is_complete:
+            return found
+    assert best is not None
+    return best
+
+
+def _first(values: Number, otherwise: float) -> float:
+    return otherwise if values is None else float(np.ravel(values)[0])
+
+
+def _starts(equations: Equations) -> Iterator[tuple[Array, bool]]:
+    """States to start from; the only one where a drawing shows every link."""
+    shown = _shown(equations)
+    missing = [name for name in equations.links if name not in shown]
+    places = _places(equations, shown)
+    still = {name: _upright(equations, name, places, 0.0) for name in missing}
+    yield equations.state({**shown, **still}), not missing
+    rng = np.random.default_rng(len(missing))
+    for _ in range(TRIES):
+        around = complex(*rng.standard_normal(2)) * equations.size / 2.0
+        turned = {
+            name: _upright(equations, name, places, float(rng.uniform(-np.pi, np.pi)), around) for name in missing
+        }
+        yield equations.state({**shown, **turned}), False
+
+
+def _shown(equations: Equations) -> dict[str, Pose]:
+    """The poses of the links that the drawing fixes, or points of links that it fixes."""
+    geometry = equations.mechanism.geometry
+    shown = {name: _at_first(pose) for name, pose in geometry.drawn.items()}
+    seen = {letter: _number(p) for letter, p in geometry.sketch.items()}
+    points = {name: {k: _number(p) for k, p in geometry.points[name].items()} for name in equations.mechanism.links}
+    while True:
+        for name, pose in shown.items():
+            seen.update({k: complex(pose.at(p).c[0]) for k, p in points[name].items() if k not in seen})
+        fitted = {name: fitted_pose(points[name], seen) for name in equations.links if name not in shown}
+        found = {name: pose for name, pose in fitted.items() if pose is not None}
+        if not found:
+            return shown
+        shown.update(found)
+
+
+def _places(equations: Equations, shown: Mapping[str, Pose]) -> dict[str, complex]:
+    """Where the points of what is shown are."""
+    geometry = equations.mechanism.geometry
+    places = {letter: _number(p) for letter, p in geometry.sketch.items()}
+    for name, pose in {**shown, FRAME: FIXED}.items():
+        places.update({k: complex(pose.at(_number(p)).c[0]) for k, p in geometry.points[name].items()})
+    return places
+
+
+def _upright(
+    equations: Equations, name: str, places: Mapping[str, complex], angle: float, around: complex = 0j
+) -> Pose:
+    """A link that is not shown, at an angle; at the place of one of its points that is shown, else anywhere."""
+    points = equations.mechanism.geometry.points[name]
+    turned = complex(np.exp(1j * angle))
+    at = next((places[k] - turned * _number(p) for k, p in points.items() if k in places), around)
+    return Pose.of(complex(at), turned)
+
+
+def _at_first(pose: Pose) -> Pose:
+    return Pose.of(_number(pose.z.c[0]), _number(pose.u.c[0]))
+
+
+def _number(value: Number) -> complex:
+    return complex(np.ravel(value)[0])

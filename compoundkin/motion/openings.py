@@ -1,0 +1,33 @@
+"""By how much redundant pairs open: those that are left out when a mechanism is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from compoundkin.motion.plan import Plan
+from compoundkin.motion.run import Run
+from compoundkin.motion.steps import Step
+from compoundkin.pairs import Pair
+from compoundkin.series import Number
+
+
+def closed_with(plan: Plan, step: Step) -> tuple[Pair, ...]:
+    """The redundant pairs that close or open as a group is assembled, all other links being known before."""
+    before: dict[str, None] = dict.fromkeys(plan.structure.ground.links)
+    for other in plan.steps[: step.index]:
+        before.update(dict.fromkeys(other.group.links))
+    own = step.group.links
+    known = {*before, *own}
+    return tuple(p for p in plan.structure.redundant if known.issuperset(p.members) and not before.keys() >= {*p.members})
+
+
+def openings(pairs: Sequence[Pair], run: Run) -> Number:
+    """The sum of the squares of all that the pairs ought to hold, at a pose."""
+    total: Number = 0.0
+    for pair in pairs:
+        poses = tuple(run.world[name] for name in pair.members)
+        for held in pair.closure(run.setting.ends[pair.name], poses):
+            total = total + np.abs(held.c[0]) ** 2
+    return total
