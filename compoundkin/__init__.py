@@ -33,7 +33,7 @@ from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
 from compoundkin.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
 from compoundkin.profiles import disc, formula, profile, synthesise
-from compoundkin.programs import dwell, fall, program, rise
+from compoundkin.laws.programs import dwell, fall, program, rise
 from compoundkin.quantities import quantity
 from compoundkin.structure import Structure, decompose
 from compoundkin.words import deg, drawn, drive, expect, link, mode, polar

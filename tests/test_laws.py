@@ -19,11 +19,11 @@ from jsonschema import Draft202012Validator
 
 import compoundkin as ck
 from compoundkin.cli import cli
-from compoundkin.differences import differentiated
 from compoundkin.formats import dumps, loads, schema
 from compoundkin.laws import Function, Law
-from compoundkin.programs import Program, program, rise
-from compoundkin.time_tables import TimeTable
+from compoundkin.laws.differences import differentiated
+from compoundkin.laws.programs import Program, program, rise
+from compoundkin.laws.time_tables import TimeTable
 from tests.test_programs import MOVING, programs
 
 # Central differences over nine points, step 0.01: the error is of the eighth power (Abramowitz and Stegun, 25.3).

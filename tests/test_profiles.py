@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.laws.programs import Program
 from compoundkin.profiles import Synthesised, synthesise
 from compoundkin.profiles.fitness import least_base
-from compoundkin.programs import Program
 
 SPEED = 2.0
 ANGLES = np.linspace(-1.0, 12.0, 10_000)

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compoundkin.cam_laws import LAWS, unit_arcs
 from compoundkin.errors import InvalidMechanism
-from compoundkin.programs import Discontinuity, Program, Segment, dwell, fall, program, rise
+from compoundkin.laws.cam_laws import LAWS, unit_arcs
+from compoundkin.laws.programs import Discontinuity, Program, Segment, dwell, fall, program, rise
 from compoundkin.series import Series
 
 MOVING = [law for law in LAWS if law != "dwell"]

@@ -43,7 +43,7 @@ class _Maker:
                  number: int, first: int) -> None:  # fmt: skip
         self.placing, self.chain, self.period, self.known = placing, chain, period, known
         self.number, self.first = number, first
-        self.parts = chain.branches(placing.strands)
+        self.parts = chain.branches()
 
     def circuit(self) -> Circuit:
         """The circuit."""

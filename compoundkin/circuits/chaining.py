@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from compoundkin.circuits.strands import LIMIT, NONE, SEAM, Strands
+from compoundkin.circuits.strands import NONE, SEAM, Strands
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,10 @@ class Chain:
 
     visits: tuple[Visit, ...]
     closed: bool
+    # how many periods once around
+    periods: int = 0
 
-    def branches(self, strands: Strands) -> tuple[tuple[Visit, ...], ...]:
+    def branches(self) -> tuple[tuple[Visit, ...], ...]:
         """The visits between turning points, each branch in the order of the chain."""
         cuts = [k for k, (a, b) in enumerate(self._steps()) if a.sense != b.sense]
         if not cuts:
@@ -45,9 +47,15 @@ class Chain:
         if not self.closed:
             cuts = [-1, *cuts, n - 1]
         bounds = zip(cuts, [*cuts[1:], cuts[0] + n] if self.closed else cuts[1:], strict=False)
-        parts = [tuple(self.visits[k % n] for k in range(a + 1, b + 1)) for a, b in bounds]
+        parts = [tuple(self._visit(k) for k in range(a + 1, b + 1)) for a, b in bounds]
         # that of the first strand comes first
         return tuple([parts[-1], *parts[:-1]] if self.closed else parts)
+
+    def _visit(self, k: int) -> Visit:
+        """The k-th visit, counted on around the circuit."""
+        around, k = divmod(k, len(self.visits))
+        visit = self.visits[k]
+        return replace(visit, periods=visit.periods + around * self.periods)
 
     def _steps(self) -> list[tuple[Visit, Visit]]:
         around = [*self.visits, self.visits[0]] if self.closed else list(self.visits)
@@ -68,24 +76,23 @@ def chains(strands: Strands) -> tuple[Chain, ...]:
 
 def _around(strands: Strands, row: int) -> Chain:
     """The chain through a strand: forward; where that ends, backward too, and then from there."""
-    ahead, closed = _walk(strands, Visit(row, 1, 0))
-    if closed:
-        return Chain(tuple(ahead), True)
+    ahead, after = _walk(strands, Visit(row, 1, 0))
+    if after is not None:
+        return Chain(tuple(ahead), True, after.periods)
     back, _ = _walk(strands, Visit(row, -1, 0))
     start = back[-1]
     visits, _ = _walk(strands, Visit(start.row, -start.sense, 0))
     return Chain(tuple(visits), False)
 
 
-def _walk(strands: Strands, start: Visit) -> tuple[list[Visit], bool]:
+def _walk(strands: Strands, start: Visit) -> tuple[list[Visit], Visit | None]:
+    """The visits from one on, and the one with which they begin again; None where they end."""
     visits = [start]
     while True:
         here = visits[-1]
         nxt = following(strands, here)
-        if nxt is None:
-            return visits, False
-        if (nxt.row, nxt.sense) == (start.row, start.sense):
-            return visits, True
+        if nxt is None or (nxt.row, nxt.sense) == (start.row, start.sense):
+            return visits, nxt
         visits.append(nxt)
 
 
@@ -96,8 +103,3 @@ def following(strands: Strands, visit: Visit) -> Visit | None:
         return None
     periods = visit.periods + (visit.sense if strands.kind[visit.row, visit.left] == SEAM else 0)
     return Visit(partner, 1 if side == 0 else -1, periods)
-
-
-def turns_back(strands: Strands, visit: Visit) -> bool:
-    """Whether the driver turns back at the end where a strand is left."""
-    return bool(strands.kind[visit.row, visit.left] == LIMIT)

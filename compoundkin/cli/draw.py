@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import drive_options, names, solved, solved_at
+from compoundkin.cli.driving import names, solved_at
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
 from compoundkin.cli.shell import put, say
 
@@ -17,9 +16,10 @@ if TYPE_CHECKING:
     from compoundkin.motion import Motion
     from compoundkin.structure import Structure
 
-# What there is to draw besides the sketch.
-POLYGONS = ("velocity", "acceleration")
-VIEWS = ("graph", "groups", "centres")
+VECTORS = ("velocity", "acceleration")
+VIEWS = ("groups", "graph", "circle")
+# What belongs to the sketch only, by the names of the values of the options.
+OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels")
 
 
 @click.command(
@@ -35,9 +35,92 @@ Examples:
 )
 @mechanism_argument
 @click.option(
-    "--pose", "at", multiple=True, metavar="[NAME=]VALUE",
-    help="The pose: a driver's value, degrees or length; --at does the same. The drawn one if left out.",
-)  # fmt: skip
-@click.option("-o", "--to-file", "path", metavar="PATH", help="Write an .svg, .png or .pdf file; SVG on stdout if left out.")
-def command(file: str, path: str | None, at: tuple[str, ...]) -> None:
-    """Draw a mechanism."""
+    "--at",
+    "at",
+    multiple=True,
+    metavar="[NAME=]VALUE",
+    help="The pose: a driver's value, degrees or length; the one nearest to the drawing if left out.",
+)
+@click.option("--ghosts", type=int, default=0, metavar="COUNT", help="Draw so many other poses faintly.")
+@click.option(
+    "--path",
+    "paths",
+    multiple=True,
+    metavar="POINT",
+    callback=lambda _c, _p, given: names(given),
+    help="Draw the path of a point: its coupler curve. Repeat it, or write commas.",
+)
+@click.option("--centres", is_flag=True, help="Draw the instant centres with the lines that give them.")
+@click.option("--vectors", multiple=True, type=click.Choice(VECTORS), help="Draw the vectors of all points.")
+@click.option("--polygon", type=click.Choice(VECTORS), help="Instead: the polygon of the vectors from one pole.")
+@click.option(
+    "--structure",
+    "view",
+    type=click.Choice(VIEWS),
+    help="Instead: taken apart into groups; the graph of links and pairs; the circle diagram of centres.",
+)
+@click.option(
+    "--speed",
+    "speeds",
+    multiple=True,
+    metavar="[NAME=]VALUE",
+    help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).",
+)
+@click.option(
+    "--mode", "modes", multiple=True, metavar="LINK=SIGN", help="Assembly mode, +1 or -1, of the group with this link."
+)
+@click.option("--design", default=0, show_default=True, metavar="INDEX", help="Which one, where dimensions are arrays.")
+@click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")
+@click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
+@click.option("-o", "--to-file", "path", metavar="PATH", help="Write an .svg, .png or .pdf file; else SVG to stdout.")
+def command(file: str, path: str | None, **asked: Any) -> None:
+    """Draw a mechanism in the conventions of textbooks, at one pose.
+
+    A mechanism that cannot be solved is shown as drawn.
+    """
+    from compoundkin.structure import decompose
+
+    picture = _picture(decompose(loaded(file)), asked)
+    if path is None:
+        put(picture.svg)
+    else:
+        picture.save(path)
+        say(f"Wrote {path}.")
+
+
+def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
+    """The picture asked for; raises InvalidInput for options that do not go together."""
+    from compoundkin.drawing import draw, draw_structure, vector_polygon
+
+    _fitting(asked)
+    if asked["view"]:
+        return draw_structure(structure, asked["view"], size=asked["size"])
+    shown, at = _motion(structure, asked)
+    if asked["polygon"]:
+        return vector_polygon(shown, asked["polygon"], at, design=asked["design"], size=asked["size"])
+    words = {key: asked[key] for key in OF_SKETCH}
+    return draw(shown, at, design=asked["design"], size=asked["size"], **words)
+
+
+def _fitting(asked: Mapping[str, Any]) -> None:
+    from compoundkin.errors import InvalidInput, Problem
+
+    other = next((f"--{key}" for key, name in (("structure", "view"), ("polygon", "polygon")) if asked[name]), None)
+    unfit = [key for key in OF_SKETCH if key != "labels" and asked[key]]
+    if asked["view"]:
+        unfit += [key for key in ("polygon", "at", "speeds", "modes") if asked[key]]
+    if other is not None and unfit:
+        option = f"--{unfit[0] if unfit[0] in ('ghosts', 'centres', 'vectors', 'polygon', 'at') else unfit[0][:-1]}"
+        raise InvalidInput(Problem(option, f"it does not go with {other}", "leave one of them out"))
+
+
+def _motion(structure: Structure, asked: Mapping[str, Any]) -> tuple[Motion | Structure, dict[str, float] | None]:
+    """The motion over the drivers' own ranges, and the pose in it; the structure where it cannot be solved."""
+    from compoundkin.cli import values
+    from compoundkin.drawing.posing import solved_over
+
+    at = values.of_pose(structure, asked["at"]) if asked["at"] else None
+    own = None if structure.faults else solved_over(structure)
+    if own is None or not (asked["speeds"] or asked["modes"]):
+        return (structure if own is None else own), at
+    return solved_at(structure, {}, {"accelerations": (), "outputs": (), "order": 2, **asked}), at

@@ -27,11 +27,22 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
 
     Nothing is solved. What keeps a mechanism from being solved is named with its remedies (exit code 2).
     """
+    from dataclasses import replace
+
     from compoundkin.freedom import solvable
     from compoundkin.reports import report
 
     structure = solvable(loaded(file))
-    put_report(report(structure), form, path)
+    made = report(structure)
+    if equations:
+        from compoundkin.reports.equations import equations_section
+
+        made = replace(made, sections=(*made.sections, equations_section(structure)))
+    if alternatives:
+        from compoundkin.reports.alternatives import alternatives_section
+
+        made = replace(made, sections=(*made.sections, alternatives_section(structure)))
+    put_report(made, form, path)
     return unsolvable(len(structure.faults)) if structure.faults else 0
 
 

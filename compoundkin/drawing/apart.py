@@ -23,7 +23,7 @@ from compoundkin.words import FRAME
 # Parts stand side by side until they are so wide together, in picture units.
 WIDEST = 1000.0
 # Parts are drawn in this part of the size of a sketch.
-SMALLER = 0.62
+SMALLER = 0.52
 # Between parts, with a plus sign; and above each part, for its heading.
 GAP, HEADING = 30.0, 30.0
 

@@ -101,11 +101,9 @@ def _spread(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     joined = [(index[p.members[0]], index[p.members[1]]) for p in pairs]
     wanted = _steps(len(names), joined)
     rng = np.random.default_rng(0)
-    tried = [
-        _settled(wanted, order)
-        for order in [np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(STARTS))]
-    ]
-    # the same numbers every time: the seed is fixed
+    # the same orders every time: the seed is fixed
+    orders = [np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(STARTS))]
+    tried = [_settled(wanted, order) for order in orders]
     places = min(tried, key=lambda found: _crossings(found, joined))
     places = places - places[0]
     # the frame below, as it is drawn

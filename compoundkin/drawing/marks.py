@@ -96,6 +96,11 @@ class Painter:
         """Whether a slide is drawn as a cylinder: where it is driven between two moving links."""
         return FRAME not in seen.members and seen.pair.name in self.driven
 
+    def is_rod(self, seen: Seen) -> bool:
+        """Whether a slide is drawn as a rod that runs through a block: where the link with the guide has but one point."""
+        guide, block = (len(self.scene.points[name]) for name in seen.members)
+        return seen.members[0] != FRAME and guide == 1 and block > 1
+
     def marks(self) -> Iterator[Laid]:
         """All marks, a wheel that several pairs share once."""
         drawn: list[tuple[str, complex, float]] = []
@@ -128,20 +133,14 @@ class Painter:
 def _sliding(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
     """A block on its guide; a driven one between moving links is a cylinder with its rod."""
     guide, block = seen.members
-    points = painter.scene.points
     if not (painter.shows(guide) and painter.shows(block)):
         yield from _half(painter, seen, mark)
     elif painter.is_cylinder(seen):
         yield from _cylinder(painter, seen, mark)
-    elif guide != FRAME and len(points[guide]) == 1 and len(points[block]) > 1:
+    elif painter.is_rod(seen):
         # the link that carries the guide is the block, and the guide the rod that runs through it
-        e, middle = painter.along(guide, mark.along), painter.place(guide, mark.at)
-        ends = [painter.place(block, mark.block - mark.turn * s) for s in (mark.low, mark.high)]
-        e_rod = painter.along(block, mark.turn)
-        line = ends[1] - e_rod * BEYOND, ends[0] + e_rod * BEYOND
-        nearest = painter.place(block, mark.block)
-        yield Layer.BAR, Polyline(_spanned((*line, nearest), e_rod), painter.style("bar", block))
-        yield painter.block_at(guide, middle, e)
+        yield Layer.BAR, Polyline(rod_line(painter, block, mark), painter.style("bar", block))
+        yield painter.block_at(guide, painter.place(guide, mark.at), painter.along(guide, mark.along))
     else:
         yield from _guide(painter, guide, mark)
         yield painter.block_at(block, painter.place(block, mark.block), painter.along(guide, mark.along))
@@ -158,6 +157,21 @@ def _half(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
         yield painter.block_at(block, middle, e)
 
 
+def rod_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
+    """The two ends of a rod that runs through a block."""
+    ends = [painter.place(link, mark.block - mark.turn * s) for s in (mark.low, mark.high)]
+    e = painter.along(link, mark.turn)
+    return _spanned((ends[1] - e * BEYOND, ends[0] + e * BEYOND, painter.place(link, mark.block)), e)
+
+
+def guide_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
+    """The two ends of a guide on a moving link: from where it starts there as far as the block goes."""
+    e = painter.along(link, mark.along)
+    span = min(mark.low, 0.0), max(mark.high, 0.0)
+    start, stop = (painter.place(link, mark.at + mark.along * s) for s in span)
+    return start - e * (BEYOND if mark.low < 0 else 0.0), stop + e * (BEYOND if mark.high > 0 else 0.0)
+
+
 def _spanned(points: tuple[complex, ...], e: complex) -> tuple[complex, complex]:
     """The outermost of points on a line."""
     ordered = sorted(points, key=lambda p: (np.conjugate(e) * p).real)
@@ -167,12 +181,8 @@ def _spanned(points: tuple[complex, ...], e: complex) -> tuple[complex, complex]
 def _guide(painter: Painter, link: str, mark: Sliding) -> Iterator[Laid]:
     e = painter.along(link, mark.along)
     if link != FRAME:
-        foot = painter.place(link, mark.at)
-        span = min(mark.low, 0.0), max(mark.high, 0.0)
-        ends = [painter.place(link, mark.at + mark.along * s) for s in span]
-        start = ends[0] - e * (BEYOND if mark.low < 0 else 0.0)
-        yield Layer.BAR, Polyline((start, ends[1] + e * (BEYOND if mark.high > 0 else 0.0)), painter.style("bar", link))
-        yield from painter.stub(link, foot)
+        yield Layer.BAR, Polyline(guide_line(painter, link, mark), painter.style("bar", link))
+        yield from painter.stub(link, painter.place(link, mark.at))
         return
     low, high = (painter.place(link, mark.at + mark.along * s) for s in (mark.low, mark.high))
     side = _outer_side(e, (low + high) / 2.0, painter.middle)

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.drawing.bodies import edges, skeleton
 from compoundkin.drawing.labels import Label, around, text_half
-from compoundkin.drawing.marks import Painter
+from compoundkin.drawing.marks import Painter, guide_line, rod_line
 from compoundkin.drawing.pins import joints
 from compoundkin.drawing.scene import Scene
 from compoundkin.drawing.shapes import Circle, Shape, Text
@@ -73,7 +73,18 @@ def _number(painter: Painter, name: str) -> Label:
             for off in BESIDE:
                 places.append(a + (b - a) * share + across * off)
                 costs.append(abs(off) / 4.0 + (OFF_BAR if off else on_bar) + 6.0 * abs(share - 0.5))
-    return Label(key, half, tuple(places), tuple(costs), tuple(edges(corners)))
+    return Label(key, half, tuple(places), tuple(costs), (*edges(corners), *_guides(painter, name)))
+
+
+def _guides(painter: Painter, name: str) -> list[tuple[complex, complex]]:
+    """The guides and rods of a link, which its number may be on too."""
+    found = []
+    for seen in painter.scene.seen:
+        if isinstance(seen.mark, Sliding) and not painter.is_cylinder(seen):
+            line, own = (rod_line, 1) if painter.is_rod(seen) else (guide_line, 0)
+            if name == seen.members[own] != FRAME:
+                found.append(line(painter, name, seen.mark))
+    return found
 
 
 def _cylinder(painter: Painter, name: str) -> list[complex]:

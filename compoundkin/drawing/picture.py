@@ -28,7 +28,8 @@ SUFFIXES = (".svg", ".png", ".pdf")
 class Picture:
     """A picture: its shapes in picture units, how large it is in them, and shown (`size`, pixels of its longer side).
 
-    Without a `size` texts are as large as those of a page, and no picture larger than a page. `window` tells where a place of the mechanism is on it, None where a picture is not to scale.
+    Without a `size` texts are as large as those of a page, and no picture larger than a page. `window` tells where a
+    place of the mechanism is on it; None where a picture is not to scale.
     """
 
     shapes: tuple[Shape, ...] = field(repr=False)

@@ -20,8 +20,8 @@ def draw_structure(what: Motion | Mechanism | Structure, view: str = "groups", *
     """A picture of the structure of a mechanism.
 
     `view` is "groups", the mechanism taken apart: frame and driver, then each Assur group in solving order, the pairs
-    by which it is attached to what stands before it in dashed circles; "graph", the kinematic graph of links and pairs; or
-    "circle", the circle diagram of the instant centres. Raises InvalidInput for another view; NotDetermined where a
+    by which it is attached to what stands before it in dashed circles; "graph", the kinematic graph of links and pairs;
+    or "circle", the circle diagram of the instant centres. Raises InvalidInput for another view; NotDetermined where a
     mechanism that the drivers do not determine is asked for its groups or centres.
 
     >>> from compoundkin.words import drive, link

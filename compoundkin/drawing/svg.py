@@ -8,7 +8,7 @@ from html import escape
 from compoundkin.drawing.shapes import Arc, Circle, Group, Polygon, Polyline, Shape, Strokes, Text
 from compoundkin.drawing.style import css
 
-FONT = "font-family:Helvetica,Arial,'DejaVu Sans',sans-serif"
+FONT = "font-family:Helvetica,Arial,sans-serif"
 # From the middle of a line of text to its baseline, in parts of the size of the letters.
 BASELINE = 0.35
 
@@ -22,7 +22,7 @@ def svg(shapes: Sequence[Shape], width: float, height: float, size: float, title
     shown = size / max(width, height)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {number(width)} {number(height)}" '
-        f'width="{number(width * shown)}" height="{number(height * shown)}" role="img" style="{escape(FONT)}">'
+        f'width="{number(width * shown)}" height="{number(height * shown)}" role="img" style="{FONT}">'
     )
     about = [f"<title>{escape(title)}</title>", *([f"<desc>{escape(description)}</desc>"] if description else [])]
     sheet = f"<style>\n{css(shapes)}\n</style>"

@@ -10,7 +10,7 @@ from compoundkin.errors import InvalidMechanism, Problem, nearest
 from compoundkin.formats.values import bad, described, wrong
 from compoundkin.keys import Key
 from compoundkin.laws import WRITTEN, Law
-from compoundkin.programs import Segment
+from compoundkin.laws.programs import Segment
 
 if TYPE_CHECKING:
     from compoundkin.formats.recovery import Recovery

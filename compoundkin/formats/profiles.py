@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from compoundkin.formats.laws import made, of_kind, segments
 from compoundkin.keys import Key
+from compoundkin.laws.programs import Program, Segment
 from compoundkin.profiles import WRITTEN, Disc, Profile
-from compoundkin.programs import Program, Segment
 
 if TYPE_CHECKING:
     from compoundkin.formats.recovery import Recovery

@@ -14,8 +14,8 @@ from compoundkin.formats.laws import KIND
 from compoundkin.formats.profiles import PROGRAM, SEGMENT
 from compoundkin.keys import Key, Kind
 from compoundkin.laws import WRITTEN as LAWS
+from compoundkin.laws.programs import Segment
 from compoundkin.profiles import WRITTEN as PROFILES
-from compoundkin.programs import Segment
 from compoundkin.words import FRAME
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"

@@ -13,9 +13,9 @@ from compoundkin.formats.profiles import PROGRAM, SEGMENT
 from compoundkin.formats.reading import default_name
 from compoundkin.keys import Key, Kind
 from compoundkin.laws import Function
+from compoundkin.laws.programs import Program
 from compoundkin.mechanism import Mechanism, same
 from compoundkin.pairs import WRITTEN, Pair
-from compoundkin.programs import Program
 from compoundkin.series import Number
 from compoundkin.words import Expectation, Link
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem
-from compoundkin.law_numbers import taylor
 from compoundkin.laws import Law
+from compoundkin.laws.numbers import taylor
 from compoundkin.mechanism import Mechanism
 from compoundkin.series import Number
 from compoundkin.words import Drive
@@ -27,7 +27,7 @@ def times_of(mechanism: Mechanism, values: Mapping[str, Any] | None, time: Any) 
     They are `time`, else those that the mechanism states, else 73 over the range on which all laws agree. Raises
     InvalidInput for times that are not numbers, and where laws need times that nothing tells.
 
-    >>> from compoundkin.programs import program, rise
+    >>> from compoundkin.laws.programs import program, rise
     >>> from compoundkin.words import drive, link
     >>> law = program(rise(1.0, over=2.0))
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank", law=law))

@@ -18,7 +18,7 @@ import numpy as np
 
 from compoundkin.curves import Analytic
 from compoundkin.curves.composing import composed, differentiated, dot
-from compoundkin.programs import Program
+from compoundkin.laws.programs import Program
 from compoundkin.series import Number, Series, constant
 
 FULL_TURN = 2.0 * np.pi

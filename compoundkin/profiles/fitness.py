@@ -10,8 +10,8 @@ import numpy as np
 
 from compoundkin.curves.undercut import spans
 from compoundkin.errors import Problem, nearest
+from compoundkin.laws.programs import Program
 from compoundkin.profiles.envelopes import FULL_TURN, Oscillating, reach
-from compoundkin.programs import Program
 
 if TYPE_CHECKING:
     from compoundkin.profiles.synthesis import Synthesised

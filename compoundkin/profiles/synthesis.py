@@ -12,10 +12,10 @@ import numpy as np
 from compoundkin.curves import Analytic, Curve
 from compoundkin.errors import InvalidMechanism, Problem
 from compoundkin.keys import Key
+from compoundkin.laws.programs import Program
 from compoundkin.profiles.contract import Profile, place_of
 from compoundkin.profiles.envelopes import Envelope, Lift, Oscillating, Translating, Way
 from compoundkin.profiles.fitness import faults, undercuts
-from compoundkin.programs import Program
 from compoundkin.series import Series, as_series
 
 
@@ -149,7 +149,7 @@ def synthesise(
 
     Source: R. L. Norton, Cam Design and Manufacturing Handbook, 2nd ed., chapter 13.
 
-    >>> from compoundkin.programs import dwell, fall, program, rise
+    >>> from compoundkin.laws.programs import dwell, fall, program, rise
     >>> quarter = np.pi / 2
     >>> lift = program(dwell(quarter), rise(10, over=quarter), dwell(quarter), fall(10, over=quarter))
     >>> cam = synthesise(lift, base=30, follower="roller", roller=8)

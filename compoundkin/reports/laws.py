@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from compoundkin.laws import ConstantAcceleration, ConstantSpeed, Function, Law
-from compoundkin.programs import Program, Segment
+from compoundkin.laws.programs import Program, Segment
+from compoundkin.laws.time_tables import TimeTable
 from compoundkin.quantities import PER_SECOND, degrees
 from compoundkin.reports.numbers import number
 from compoundkin.reports.wording import counted, listed
-from compoundkin.time_tables import TimeTable
 
 DERIVATIVES = ("coordinate", "velocity", "acceleration")
 

@@ -10,15 +10,15 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from compoundkin.cam_laws import LAWS
 from compoundkin.errors import InvalidInput, InvalidMechanism
 from compoundkin.formats import dumps, loads, schema
 from compoundkin.formats.writing import document
+from compoundkin.laws.cam_laws import LAWS
+from compoundkin.laws.programs import Program, Segment, dwell, fall, program, rise
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import solve
 from compoundkin.pairs import arc, cam, face, slide, slot
 from compoundkin.profiles import Profile, Synthesised, disc, formula, profile
-from compoundkin.programs import Program, Segment, dwell, fall, program, rise
 from compoundkin.words import deg, drive, link, mode
 
 lengths = st.floats(0.001, 1e6)

@@ -8,13 +8,13 @@ from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from compoundkin.differences import differentiated
 from compoundkin.errors import InvalidInput, InvalidMechanism, Problem
 from compoundkin.keys import Key
-from compoundkin.law_numbers import Compared, as_number, from_derivatives, hold_numbers, taylor
-from compoundkin.programs import Program
+from compoundkin.laws.differences import differentiated
+from compoundkin.laws.numbers import Compared, as_number, from_derivatives, hold_numbers, taylor
+from compoundkin.laws.programs import Program
+from compoundkin.laws.time_tables import TimeTable
 from compoundkin.series import Number, Series
-from compoundkin.time_tables import TimeTable
 
 Array: TypeAlias = np.ndarray[Any, Any]
 

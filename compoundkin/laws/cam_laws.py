@@ -16,7 +16,7 @@ from math import comb, cos, factorial, pi, sin
 
 import numpy as np
 
-from compoundkin.series import Number, Series, constant
+from compoundkin.series import Number
 
 # Terms that cancel leave no more than this part of their sizes: a few units in the last place.
 ROUNDING = 1e-15
@@ -85,19 +85,6 @@ class Arc:
         polynomial = [c * rise / over**k for k, c in enumerate(self.polynomial)]
         polynomial[0] += place
         return Arc(start + self.start * over, tuple(polynomial), (amplitude * rise, frequency / over, phase))
-
-
-def composed(outer: Sequence[Number], x: Series) -> Series:
-    """A function along a series: `outer` are its Taylor coefficients (k-th derivative / k!) at ``x.c[0]``.
-
-    >>> composed([4.0, 4.0, 1.0], Series((2.0, 3.0, 0.0))).c  # the square of 2 + 3 t
-    (4.0, 12.0, 9.0)
-    """
-    step = Series((0.0, *x.c[1:]))
-    out = constant(outer[-1])
-    for coefficient in reversed(outer[:-1]):
-        out = out * step + coefficient
-    return out
 
 
 @cache

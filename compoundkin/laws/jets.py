@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from compoundkin.cam_laws import composed
+from compoundkin.curves.composing import composed
 from compoundkin.series import Number, Series, constant
 
 

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem
-from compoundkin.jets import Jet
+from compoundkin.laws.jets import Jet
 from compoundkin.series import Series
 
 Array: TypeAlias = np.ndarray[Any, Any]

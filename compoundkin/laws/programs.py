@@ -10,9 +10,10 @@ from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from compoundkin.cam_laws import LAWS, Arc, Arcs, composed, unit_arcs
+from compoundkin.curves.composing import composed
 from compoundkin.errors import InvalidMechanism, Problem, nearest
 from compoundkin.keys import Key
+from compoundkin.laws.cam_laws import LAWS, Arc, Arcs, unit_arcs
 from compoundkin.series import Number, Series
 
 Array: TypeAlias = np.ndarray[Any, Any]

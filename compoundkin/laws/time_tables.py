@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, InvalidMechanism, Problem
 from compoundkin.keys import Key
-from compoundkin.law_numbers import Compared, as_number, from_derivatives, hold_numbers, taylor
+from compoundkin.laws.numbers import Compared, as_number, from_derivatives, hold_numbers, taylor
 from compoundkin.series import Number, Series
 
 # Times beyond the ends of a table by no more than this part of its range are its ends: rounding of 0.1 + 0.1 + 0.1.
