@@ -27,13 +27,14 @@ from compoundkin.errors import (
     UnknownName,
 )
 from compoundkin.formats import load, save, save_table, to_pandas
+from compoundkin.freedom import MobilityAnalysis, mobility_analysis
 from compoundkin.gaps import Gap, gaps
 from compoundkin.laws import constant_acceleration, constant_speed, time_table
+from compoundkin.laws.programs import dwell, fall, program, rise
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
 from compoundkin.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
 from compoundkin.profiles import disc, formula, profile, synthesise
-from compoundkin.laws.programs import dwell, fall, program, rise
 from compoundkin.quantities import quantity
 from compoundkin.structure import Structure, decompose
 from compoundkin.words import deg, drawn, drive, expect, link, mode, polar
@@ -54,6 +55,7 @@ __all__ = [
     "InvalidInput",
     "InvalidMechanism",
     "Mechanism",
+    "MobilityAnalysis",
     "Motion",
     "NotAssembled",
     "NotDetermined",
@@ -87,6 +89,7 @@ __all__ = [
     "instant_centres",
     "link",
     "load",
+    "mobility_analysis",
     "mode",
     "plot",
     "polar",

@@ -177,11 +177,11 @@ class Mechanism:
             raise UnknownName(Problem(name, "there is no such link", nearest(name, list(self.links))))
         return self.links[name]
 
-    def _repr_svg_(self) -> str:
-        """Its picture, for notebooks."""
-        from compoundkin.drawing import draw
+    def _repr_svg_(self) -> str | None:
+        """Its picture, for notebooks; None where it has none, or is too large to be shown unasked."""
+        from compoundkin.drawing import shown
 
-        return draw(self).svg
+        return shown(self)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Mechanism) and same(_plain(self), _plain(other))

@@ -47,7 +47,9 @@ def _words(mechanism: Mechanism) -> Iterator[Problem]:
     for index, item in enumerate(mechanism.items):
         if not isinstance(item, Item):
             yield Problem(
-                f"items[{index}]", f"{item!r} is not a word", "known: link, the pairs such as slide, drive, drawn, mode, expect"
+                f"items[{index}]",
+                f"{item!r} is not a word",
+                "known: link, the pairs such as slide, drive, drawn, mode, expect",
             )
 
 
@@ -63,7 +65,8 @@ def _names(mechanism: Mechanism) -> Iterator[Problem]:
         if not _is_name(name):
             yield Problem(where, f"{name!r} is not a name", "use printable text without dots, commas or outer blanks")
         if (kind, name) in seen:
-            yield Problem(where, f"the name {name!r} is used twice", "names are unique")
+            one = "there is one frame: give all fixed points to it; " if (kind, name) == ("link", FRAME) else ""
+            yield Problem(where, f"the name {name!r} is used twice", f"{one}names are unique")
         seen.add((kind, name))
     for letter in mechanism.carriers:
         if not _is_name(letter):
@@ -334,9 +337,7 @@ def _shapes(mechanism: Mechanism) -> Iterator[Problem]:
         shapes += [(f"links.{name}.points.{k}", np.shape(p)) for k, p in arrays]
     shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
     for where, pair in _placed(mechanism.written_pairs):
-        shapes += [
-            (f"{where}.{key.name}", np.shape(value)) for key in pair.keys for value in _numbers_of(pair, key)
-        ]
+        shapes += [(f"{where}.{key.name}", np.shape(value)) for key in pair.keys for value in _numbers_of(pair, key)]
     for index, drive in enumerate(mechanism.drives):
         shapes += [
             (f"drives[{index}].{k}", np.shape(getattr(drive, k)))

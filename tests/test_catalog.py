@@ -20,9 +20,9 @@ from compoundkin import catalog
 from compoundkin.checks import verify
 from compoundkin.errors import InvalidInput, UnknownName
 from compoundkin.formats import dumps, load, loads, schema
+from compoundkin.freedom import solvable
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
-from compoundkin.structure import decompose
 from compoundkin.words import Expectation
 
 ROOT = Path(__file__).parents[1]
@@ -85,7 +85,7 @@ def test_says_what_it_is(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_decomposes_without_faults(name: str) -> None:
-    structure = decompose(mechanism(name))
+    structure = solvable(mechanism(name))
     assert structure.faults == ()
     assert len(structure.groups) > 0
 
@@ -462,7 +462,7 @@ def page() -> str:
     ]
     for name in NAMES:
         item = mechanism(name)
-        groups = ", ".join(group.name for group in decompose(item).groups)
+        groups = ", ".join(group.name for group in solvable(item).groups)
         cells = [
             f"[`{name}`](../catalog/{name}.toml)",
             item.title,

@@ -159,6 +159,22 @@ class Joints:
                 joints.append(replace(joint, links=links, guide=guide))
         return Joints(tuple(self.links[k] for k in left), tuple(joints))
 
+    @cached_property
+    def pieces(self) -> int:
+        """How many pieces there are that nothing joins.
+
+        >>> Joints(("a", "b", "c"), (Joint((0, 1)),)).pieces
+        2
+        """
+        leader, pieces = list(range(len(self.links))), len(self.links)
+        for joint in self.joints:
+            first, *others = joint.links
+            for other in others:
+                one, two = self._leader(leader, first), self._leader(leader, other)
+                pieces -= one != two
+                leader[two] = one
+        return pieces
+
     @property
     def has_loop_of_slides(self) -> bool:
         """Whether slides alone close a loop: no link of it turns, and it moves where the count says it does not.

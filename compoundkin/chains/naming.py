@@ -154,7 +154,7 @@ def _with_loop_of_slides(joints: Joints) -> ChainName:
 
 def _derived(joints: Joints, frame: int | None) -> tuple[str, ...]:
     """The names of the chains it derives from, each once, in alphabetical order, numbers by their value."""
-    if joints.number_of_chains > MOST_CHAINS:
+    if joints.number_of_chains > MOST_CHAINS or 1 in joints.degrees or joints.pieces > 1:
         return ()
     names = {chain_name(chain, frame): None for chain in joints.chains() if chain.links}
     return tuple(sorted((name for name in names if name), key=_by_number))
@@ -179,14 +179,18 @@ def _kind(joint: Joint) -> str:
 
 def _described(joints: Joints) -> str:
     """A name from the numbers alone, for what is in no list."""
-    blocks = joints.blocks()
+    blocks, pieces = joints.blocks(), joints.pieces
+    if pieces > 1:
+        return f"{len(joints.links)} links in {pieces} separate pieces"
     if not blocks:
         return "open chain"
+    loose = sum(degree == 1 for degree in joints.degrees)
+    open_ = f" with {_counted(loose, 'loose link')}" if loose else ""
     kind = "chain" if joints.mobility > 0 else "structure"
     fractionated = "fractionated " if len(blocks) > 1 else ""
     mobility = f" of mobility {joints.mobility}" if joints.mobility != 1 else ""
     rigid = " with a rigid part" if _has_rigid_part(joints) else ""
-    return f"{fractionated}{len(joints.links)}-link {kind}{mobility}{rigid}"
+    return f"{fractionated}{len(joints.links)}-link {kind}{mobility}{rigid}{open_}"
 
 
 def _has_rigid_part(joints: Joints) -> bool:

@@ -32,7 +32,7 @@ from compoundkin.series import Number
 from compoundkin.structure.model import Structure
 
 # The configurations are counted anew at so many driver values, spread by the golden ratio.
-FRESH = 24
+FRESH = 48
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 # Angles along a strand at which redundant pairs must be closed.
 INSIDE = (0.7, 1.3, 2.1)

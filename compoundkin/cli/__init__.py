@@ -21,6 +21,7 @@ VERBS = {
     "circuits": "Circuits, branches and limit positions; whether the driver turns fully.",
     "check": "Verify a motion: a table of all findings.",
     "catalog": "List, show or copy the shipped mechanisms.",
+    "atlas": "All kinematic chains, trusses and Assur groups of a size.",
     "new": "Write a commented mechanism file to start from.",
     "schema": "The JSON Schema of mechanism files.",
     "completion": "The script that completes commands in your shell.",

@@ -120,7 +120,7 @@ def _motion(structure: Structure, asked: Mapping[str, Any]) -> tuple[Motion | St
     from compoundkin.drawing.posing import solved_over
 
     at = values.of_pose(structure, asked["at"]) if asked["at"] else None
-    own = None if structure.faults else solved_over(structure)
+    own = solved_over(structure.mechanism)
     if own is None or not (asked["speeds"] or asked["modes"]):
         return (structure if own is None else own), at
-    return solved_at(structure, {}, {"accelerations": (), "outputs": (), "order": 2, **asked}), at
+    return solved_at(own.structure, {}, {"accelerations": (), "outputs": (), "order": 2, **asked}), at

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     epilog="""\b
 Examples:
   compoundkin plot six-bar G.velocity bar.angle -o six-bar.png
-  compoundkin plot six-bar G.acceleration --against bar.angle --step 1 -o six-bar.svg
+  compoundkin plot six-bar G.x --against bar.angle --step 1 -o six-bar.svg
   compoundkin plot crank-rocker rocker.angle --phase > phase.svg
   compoundkin plot jansen-leg foot --path --every 5 -o foot.pdf
   compoundkin plot elliptic-trammel --centrodes rod frame -o centrodes.png

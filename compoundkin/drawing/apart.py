@@ -9,9 +9,9 @@ import numpy as np
 
 from compoundkin.drawing.labels import WIDE, Label, placed
 from compoundkin.drawing.layout import layered, window_on
-from compoundkin.drawing.marks import Painter
 from compoundkin.drawing.moving import moved
 from compoundkin.drawing.naming import below, label_shapes, letters, lines_of_text, numbered
+from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.picture import Picture, checked_size
 from compoundkin.drawing.scene import Scene
 from compoundkin.drawing.shapes import Polygon, Shape, Text, corners

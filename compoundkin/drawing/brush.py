@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 from compoundkin.drawing.shapes import Polygon, Polyline, Shape, Strokes
@@ -58,8 +56,3 @@ def ticks(middle: complex, radius: float, start: float, count: int, inner: float
         e = complex(np.exp(1j * (start + 2.0 * np.pi * k / count)))
         found.append((middle + e * (radius + inner), middle + e * (radius + outer)))
     return tuple(found)
-
-
-def length_of(points: tuple[complex, ...]) -> float:
-    """The length of a line."""
-    return float(sum(abs(b - a) for a, b in pairwise(points)))

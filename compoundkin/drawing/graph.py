@@ -102,7 +102,7 @@ def _spread(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     wanted = _steps(len(names), joined)
     rng = np.random.default_rng(0)
     # the same orders every time: the seed is fixed
-    orders = [np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(STARTS))]
+    orders = [np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(STARTS // len(names)))]
     tried = [_settled(wanted, order) for order in orders]
     places = min(tried, key=lambda found: _crossings(found, joined))
     places = places - places[0]
@@ -133,8 +133,8 @@ def _crossings(places: Number, joined: Sequence[tuple[int, int]]) -> int:
     return int(np.count_nonzero(apart & apart.T & ~(shared | (second[:, None] == second))) // 2)
 
 
-# Of so many starting orders the one is taken whose lines cross least.
-STARTS = 60
+# Of so many starting orders, by the number of links, the one is taken whose lines cross least.
+STARTS = 500
 # Products of distances below this are rounding.
 CLEAR = 1e-9
 # Not along an axis, so that no two links start at one height.

@@ -22,6 +22,8 @@ RINGS = (0.0, 5.0, 11.0, 18.0, 27.0, 38.0, 52.0, 70.0)
 FAR = 1.1
 # Labels keep this distance.
 ROOM = 1.5
+# Costs that differ beyond these digits are equal: rounding must not decide.
+DIGITS = 6
 # What is drawn last is placed again so many times, when all others are known.
 ROUNDS = 2
 
@@ -67,7 +69,7 @@ def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, heigh
         for label in labels:
             others = [(found[o.key], o.half) for o in labels if o.key != label.key and o.key in found]
             costs = fixed[label.key] + _crowding(label, others)
-            found[label.key] = label.places[int(np.argmin(costs))]
+            found[label.key] = label.places[int(np.argmin(np.round(costs, DIGITS)))]
     return found
 
 

@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from compoundkin.drawing.bodies import body, edges, skeleton
-from compoundkin.drawing.marks import Laid, Layer, Painter
+from compoundkin.drawing.marks import marks
+from compoundkin.drawing.painter import Laid, Layer, Painter
 from compoundkin.drawing.pins import drives, pins
 from compoundkin.drawing.scene import Scene
 from compoundkin.drawing.shapes import Group, Polygon, Polyline, Shape, corners
@@ -67,7 +68,7 @@ def _extent(scene: Scene) -> Iterator[Number]:
 
 def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:
     """The shapes of a scene from back to front; without what does not move where it is a ghost."""
-    laid: list[Laid] = [*painter.marks()]
+    laid: list[Laid] = [*marks(painter)]
     for name in filter(painter.shows, painter.scene.mechanism.links):
         shapes = body(painter.scene, painter.window, name)
         laid += [(Layer.PLATE if isinstance(shape, Polygon) else Layer.BAR, shape) for shape in shapes]

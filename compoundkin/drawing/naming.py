@@ -8,10 +8,11 @@ import numpy as np
 
 from compoundkin.drawing.bodies import edges, skeleton
 from compoundkin.drawing.labels import Label, around, text_half
-from compoundkin.drawing.marks import Painter, guide_line, rod_line
+from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.pins import joints
 from compoundkin.drawing.scene import Scene
 from compoundkin.drawing.shapes import Circle, Shape, Text
+from compoundkin.drawing.slides import guide_line, rod_line
 from compoundkin.drawing.style import LETTER, LINE, NUMBER, PIN, SMALL, style_of
 from compoundkin.glyphs import Disc, Sliding
 from compoundkin.words import FRAME
@@ -19,6 +20,8 @@ from compoundkin.words import FRAME
 # Places along a bar for its number, the middle first; and how far beside it, in picture units.
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)
 BESIDE = (0.0, 13.0, -13.0, 20.0, -20.0, 30.0, -30.0)
+# The first of those lines is so far below a sketch.
+BELOW = 7.0
 # Width of a letter in a long line, in parts of its height.
 NARROW = 0.54
 # Between the parts of a line below a picture.
@@ -129,6 +132,6 @@ def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
 
 def below(lines: Sequence[str], height: float) -> tuple[list[Shape], float]:
     """Lines of text below a picture of a height, and the height with them."""
-    places = [complex(16.0, height + LINE * k) for k in range(len(lines))]
+    places = [complex(16.0, height + BELOW + LINE * k) for k in range(len(lines))]
     shapes: list[Shape] = [Text(at, line, "note", "start") for at, line in zip(places, lines, strict=True)]
-    return shapes, round(height + LINE * len(lines), 1)
+    return shapes, round(height + (BELOW + LINE * len(lines) if lines else 0.0), 1)

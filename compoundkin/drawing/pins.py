@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from compoundkin.drawing.brush import HEAD, arrow, arrow_head, direction, hatching
-from compoundkin.drawing.marks import OUTER, Laid, Layer, Painter
+from compoundkin.drawing.painter import Laid, Layer, Painter
 from compoundkin.drawing.shapes import Arc, Circle, Polygon, Polyline, Shape
 from compoundkin.drawing.style import BLOCK, PIN
 from compoundkin.glyphs import Pin, Sliding, Track
@@ -19,6 +19,8 @@ from compoundkin.words import FRAME
 PIVOT, FOOT = 17.0, 11.0
 # The arrow around a driven pin: its radius and how far it goes, radians.
 TURN_RADIUS, TURN = 25.0, 1.9
+# The circle around an outer pair of a group that is drawn apart.
+OUTER = 17.0
 # The arrow beside a driven slide.
 PUSH = 34.0
 DOWNWARD = (1j, 1 + 0j, -1 + 0j, -1j)

@@ -9,7 +9,15 @@ from typing import Any
 import numpy as np
 
 from compoundkin.drawing.scene import Scene, scene_as_drawn, scene_of_motion
-from compoundkin.errors import InvalidInput, NotAssembled, Problem, UnassembledPoses, UnknownName, nearest
+from compoundkin.errors import (
+    InvalidInput,
+    NotAssembled,
+    NotDetermined,
+    Problem,
+    UnassembledPoses,
+    UnknownName,
+    nearest,
+)
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
 from compoundkin.series import Number
@@ -29,22 +37,22 @@ def scene_of(what: Motion | Mechanism | Structure, at: Any, pose: int | None, de
         return scene_in(what, at, pose, design)
     if not isinstance(what, Mechanism | Structure):
         raise InvalidInput(Problem("draw", f"{what!r} is no motion and no mechanism", "load() one from a file"))
-    structure = what if isinstance(what, Structure) else decompose(what)
-    motion = None if structure.faults else solved_over(structure)
+    motion = solved_over(what)
     if motion is not None:
         return scene_in(motion, at, pose, design)
-    if at is not None and not structure.faults:
-        return scene_in(solve(structure, _by_name(structure, at)), None, None, design)
+    structure = what if isinstance(what, Structure) else decompose(what)
+    if at is not None:
+        return scene_in(solve(what, _by_name(structure, at)), None, None, design)
     return scene_as_drawn(structure)
 
 
-def solved_over(structure: Structure) -> Motion | None:
-    """The motion over the drivers' own ranges; None where they have none."""
+def solved_over(what: Mechanism | Structure) -> Motion | None:
+    """The motion over the drivers' own ranges; None where they have none, or it cannot be solved."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UnassembledPoses)
-            return solve(structure)
-    except (InvalidInput, NotAssembled):
+            return solve(what)
+    except (InvalidInput, NotAssembled, NotDetermined):
         return None
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from compoundkin.drawing.centres import centre_labels, centre_places, centre_shapes, shown_centres
 from compoundkin.drawing.labels import placed
 from compoundkin.drawing.layout import ghost, layered, path, window_on
-from compoundkin.drawing.marks import Painter
 from compoundkin.drawing.naming import below, label_shapes, letters, lines_of_text, numbered
+from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.picture import Picture, checked_size
 from compoundkin.drawing.posing import pose_notes, scene_of
 from compoundkin.drawing.scene import Scene
@@ -19,13 +19,15 @@ from compoundkin.drawing.shapes import Polygon, Shape, corners
 from compoundkin.drawing.style import LINE
 from compoundkin.drawing.vectors import LONGEST, Scale, rates_of, scale_of, scale_shapes, vector_shapes, wanted
 from compoundkin.drawing.window import MARGIN, Window, fitted
-from compoundkin.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.errors import CompoundkinError, InvalidInput, Problem, UnknownName, nearest
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion
 from compoundkin.structure import Structure
 
 # More ghosts than this are one grey stain.
 MOST_GHOSTS = 60
+# A notebook shows no larger mechanism unasked.
+MOST_UNASKED = 100
 LABELS = ("points", "links")
 # Ends of a motion nearer to each other than this part of the size are one pose.
 SAME_PLACE = 1e-6
@@ -69,7 +71,8 @@ def draw(
     painter = Painter(scene, window)
     sketch = [*(line for letter in traced for line in path(scene, window, letter)), *layered(painter)]
     named = [*(numbered(painter) if "links" in asked else []), *(letters(painter) if "points" in asked else [])]
-    notes = [f"{number} {name}" for name, number in scene.numbers.items()] if "links" in asked else []
+    notes = pose_notes(scene) if asked else []
+    notes += [f"{number} {name}" for name, number in scene.numbers.items()] if "links" in asked else []
     if centres:
         found = shown_centres(scene, window)
         sketch += centre_shapes(found)
@@ -79,6 +82,17 @@ def draw(
     names = label_shapes(scene, placed(named, sketch, window.width, window.height))
     faint = [ghost(other, window) for other in others]
     return _finished(scene, window, [*faint, *sketch, *names], notes, scales, checked_size(size))
+
+
+def shown(what: Motion | Mechanism) -> str | None:
+    """The picture that a notebook shows unasked; None where there is none, or where it would take long."""
+    mechanism = what.mechanism if isinstance(what, Motion) else what
+    if len(mechanism.links) > MOST_UNASKED:
+        return None
+    try:
+        return draw(what).svg
+    except CompoundkinError:
+        return None
 
 
 def _scaled(scene: Scene, window: Window, kinds: Sequence[str]) -> tuple[Window, list[Scale]]:
@@ -101,9 +115,8 @@ def _arrows(scene: Scene, window: Window, scales: Sequence[Scale]) -> list[Shape
 def _finished(
     scene: Scene, window: Window, shapes: list[Shape], notes: list[str], scales: Sequence[Scale], size: float | None
 ) -> Picture:
-    """The picture with what stands below it: the pose, the names of links, the scales of vectors."""
-    top = [*pose_notes(scene), *notes]
-    texts, height = below(lines_of_text(top, window.width - 32.0), window.height)
+    """The picture with what stands below it: notes and the scales of vectors."""
+    texts, height = below(lines_of_text(notes, window.width - 32.0), window.height)
     for scale in scales:
         texts += scale_shapes(scale, height)
         height += LINE

@@ -6,7 +6,7 @@ from compoundkin.drawing.apart import apart
 from compoundkin.drawing.circle import circle_diagram
 from compoundkin.drawing.graph import graph
 from compoundkin.drawing.picture import Picture
-from compoundkin.drawing.posing import scene_of
+from compoundkin.drawing.posing import scene_of, solved_over
 from compoundkin.drawing.scene import groups_of, numbers_of
 from compoundkin.errors import InvalidInput, NotDetermined, Problem, nearest
 from compoundkin.mechanism import Mechanism
@@ -32,6 +32,10 @@ def draw_structure(what: Motion | Mechanism | Structure, view: str = "groups", *
     if view not in VIEWS:
         raise InvalidInput(Problem("view", f"there is no view {view!r}", nearest(str(view), list(VIEWS))))
     structure = _structure(what)
+    if structure.faults and view != "graph":
+        # some of its pairs may be redundant, as solving finds
+        motion = solved_over(structure.mechanism)
+        structure = structure if motion is None else motion.structure
     if view == "graph":
         return graph(structure, numbers_of(structure), groups_of(structure), size)
     if structure.faults:
@@ -39,7 +43,7 @@ def draw_structure(what: Motion | Mechanism | Structure, view: str = "groups", *
         raise NotDetermined(problems, heading=f"{structure.mechanism.title!r} cannot be taken apart")
     if view == "circle":
         return circle_diagram(structure, numbers_of(structure), size)
-    return apart(scene_of(what, None, None, 0), size)
+    return apart(scene_of(what if isinstance(what, Motion) else structure.mechanism, None, None, 0), size)
 
 
 def _structure(what: Motion | Mechanism | Structure) -> Structure:

@@ -13,6 +13,8 @@ from compoundkin.series import Number
 # links' lengths is drawn at least so long, if that is possible: many links make a large picture with fine lines.
 LEAST, MOST = 480.0, 1200.0
 BAR_LENGTH = 74.0
+# Of so many bars or more the picture grows with their number.
+FEW = 14
 # Around it is room for letters, hatching and arrows.
 MARGIN = 26.0
 # A picture is at least so wide and so high, in picture units.
@@ -72,7 +74,8 @@ def window_of(places: Iterable[Number], bars: Iterable[float]) -> Window:
     longer = max(wide, tall) or 1.0
     lengths = [length for length in bars if length > 0]
     asked = BAR_LENGTH * longer / float(np.median(lengths)) if lengths else LEAST
-    scale = float(np.clip(asked, LEAST, MOST)) / longer
+    crowded = LEAST * np.sqrt(len(lengths) / FEW)
+    scale = float(np.clip(max(asked, crowded), LEAST, MOST)) / longer
     return Window(scale, complex(low.real, high.imag), wide * scale, tall * scale)
 
 

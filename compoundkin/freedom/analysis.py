@@ -1,24 +1,21 @@
-"""How many freedoms a mechanism has: by count, for general dimensions, at its own, and how many of these are motions."""
+"""How many freedoms a mechanism has: by count, at general dimensions, at its own, and how many of these are motions."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from compoundkin.freedom.assembling import Assembly, assembled
-from compoundkin.freedom.equations import ROUNDED, STRICT, Array, Equations, Tolerance
-from compoundkin.freedom.flexing import Flex, flex_of, null_space, rank_of
+from compoundkin.freedom.equations import ROUNDED, STRICT, Equations
+from compoundkin.freedom.examining import WIDEST, Examined, examined
+from compoundkin.freedom.flexing import rank_of
 from compoundkin.freedom.passive import PassiveFreedom, passive_motions
-from compoundkin.freedom.redundancy import Candidate, candidates, chosen, stressed_pairs, stresses
+from compoundkin.freedom.redundancy import chosen, stressed_pairs
 from compoundkin.mechanism import Mechanism
-from compoundkin.structure.composites import composites
+from compoundkin.poses import Pose
 from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.model import Structure
-
-# Wider equations than those of some hundred links take a dense decomposition many seconds.
-WIDEST = 1500
 
 
 @dataclass(frozen=True)
@@ -130,68 +127,11 @@ class MobilityAnalysis:
         return [f"{what}: {', '.join(self.freed)} could be freed" if self.freed else what]
 
 
-@dataclass(frozen=True)
-class Examined:
-    """A mechanism examined at its own dimensions: an assembled pose, how it moves, and its states of self-stress."""
-
-    equations: Equations
-    assembly: Assembly
-
-    @cached_property
-    def rows(self) -> Array:
-        """The rows of the pairs at the assembled pose."""
-        return self.equations.jacobian(self.assembly.state)[0]
-
-    @cached_property
-    def rank(self) -> int:
-        """Their rank."""
-        return rank_of(self.rows, self.equations.tolerance.rank)
-
-    @cached_property
-    def flex(self) -> Flex:
-        """How it moves. Where no row is redundant, all that is left free is motion."""
-        state = self.assembly.state
-        if self.rank == len(self.rows):
-            free = null_space(self.rows, self.equations.tolerance.rank)
-            return Flex(state, free, free.shape[1])
-        return flex_of(self.equations, state)
-
-    @cached_property
-    def stress(self) -> Array:
-        """The states of self-stress, at a pose that is not special."""
-        return stresses(self.equations, self.flex.state)
-
-    @cached_property
-    def candidates(self) -> list[Candidate]:
-        """What may be left out."""
-        bodies = composites(self.equations.mechanism)
-        return candidates(self.equations, self.flex.state, self.stress, bodies) if self.stress.shape[1] else []
-
-    @property
-    def determined(self) -> int:
-        """How many of its motions the drivers determine."""
-        return rank_of(self.equations.driving(self.flex.state) @ self.flex.along, self.equations.tolerance.rank)
-
-
-def examined(mechanism: Mechanism) -> Examined:
-    """A mechanism examined at its own dimensions; taken to be rounded where exact ones leave no motion."""
-    exact = _examined(mechanism, STRICT)
-    if exact.assembly.is_closed and (exact.rank == len(exact.rows) or exact.flex.along.shape[1]):
-        return exact
-    rounded = _examined(mechanism, ROUNDED)
-    return rounded if rounded.assembly.is_closed and rounded.flex.along.shape[1] else exact
-
-
-def _examined(mechanism: Mechanism, tolerance: Tolerance) -> Examined:
-    equations = Equations(mechanism, tolerance)
-    return Examined(equations, assembled(equations))
-
-
-def mobility_analysis(mechanism: Mechanism | Structure) -> MobilityAnalysis:
+def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose] | None = None) -> MobilityAnalysis:
     """The mobility by count, for general dimensions and at the assembled pose, and what is redundant or passive.
 
-    The pose is the drawn one, made exact; without a drawing, one at the drivers' first values. Lengths of several
-    designs are those of the first.
+    The pose is that of `poses`, of order 0, by the links' names; else the drawn one, made exact; without a drawing, one
+    at the drivers' first values. Lengths of several designs are those of the first.
 
     Source: the count is that of Chebyshev and Gruebler; the others are the nullity of the constraint Jacobian.
 
@@ -207,17 +147,17 @@ def mobility_analysis(mechanism: Mechanism | Structure) -> MobilityAnalysis:
     """
     structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
     with np.errstate(all="ignore"):
-        return _analysed(structure)
+        return _analysed(structure, poses)
 
 
-def _analysed(structure: Structure) -> MobilityAnalysis:
+def _analysed(structure: Structure, poses: Mapping[str, Pose] | None) -> MobilityAnalysis:
     equations, passive = Equations(structure.mechanism), len(structure.passive)
     counts = structure.mobility.freedoms, structure.mobility.drivers
     if equations.width > WIDEST:
         return MobilityAnalysis(counts[0], counts[0], 0, counts[1])
     rank = rank_of(equations.generic, STRICT.rank * STRICT.rank)
     generic = equations.width - rank - passive, equations.held - rank
-    found = examined(structure.mechanism)
+    found = examined(structure.mechanism, poses)
     equations = found.equations
     if not found.assembly.is_closed:
         return MobilityAnalysis(counts[0], *generic, counts[1], gap=_gap(found))

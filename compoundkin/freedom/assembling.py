@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.freedom.equations import STRICT, Array, Equations
 from compoundkin.geometry import fitted_pose
 from compoundkin.poses import FIXED, Pose
-from compoundkin.series import Number
+from compoundkin.series import Number, constant
 from compoundkin.words import FRAME
 
 # Gauss and Newton's steps: at a pose where the equations are singular each halves the error only.
@@ -37,7 +37,7 @@ class Assembly:
 
 
 def corrected(equations: Equations, state: Array, goal: Array | None = None, steps: int = STEPS) -> Assembly:
-    """The nearest assembled pose, by so many least steps at most; with the drivers' coordinates at `goal` where it is given."""
+    """The nearest assembled pose, by so many least steps at most; with the drivers' coordinates at `goal` if given."""
     closed, rank = equations.tolerance
     least = UNDETERMINED if equations.tolerance is STRICT else rank
     best = Assembly(state, np.inf, False)
@@ -71,7 +71,7 @@ def _system(equations: Equations, state: Array, goal: Array | None) -> tuple[Arr
 
 
 def assembled(equations: Equations) -> Assembly:
-    """An assembled pose near the drawing, the drivers free; without a drawing, at the drivers' first values if it can."""
+    """An assembled pose near the drawing, the drivers free; without a drawing, at the drivers' first values if any."""
     mechanism = equations.mechanism
     if mechanism.sketch:
         return _nearest(equations, None)
@@ -102,15 +102,14 @@ def _starts(equations: Equations) -> Iterator[tuple[Array, bool]]:
     """States to start from; the only one where a drawing shows every link."""
     shown = _shown(equations)
     missing = [name for name in equations.links if name not in shown]
-    places = _places(equations, shown)
-    still = {name: _upright(equations, name, places, 0.0) for name in missing}
+    places, guided = _places(equations, shown), _guided(equations, shown)
+    still = {name: _upright(equations, name, places, guided.get(name, 0.0)) for name in missing}
     yield equations.state({**shown, **still}), not missing
     rng = np.random.default_rng(len(missing))
     for _ in range(TRIES):
         around = complex(*rng.standard_normal(2)) * equations.size / 2.0
-        turned = {
-            name: _upright(equations, name, places, float(rng.uniform(-np.pi, np.pi)), around) for name in missing
-        }
+        angles = {name: float(rng.uniform(-np.pi, np.pi)) for name in missing} | guided
+        turned = {name: _upright(equations, name, places, angles[name], around) for name in missing}
         yield equations.state({**shown, **turned}), False
 
 
@@ -128,6 +127,23 @@ def _shown(equations: Equations) -> dict[str, Pose]:
         if not found:
             return shown
         shown.update(found)
+
+
+def _guided(equations: Equations, shown: Mapping[str, Pose]) -> dict[str, float]:
+    """The angles of links that are not shown, where slides keep them from turning on links that are."""
+    known = {**shown, FRAME: FIXED}
+    slides = [pair for pair in equations.pairs if pair.is_simple and not pair.free_is_angle]
+    found: dict[str, float] = {}
+    while True:
+        open_to = [pair for pair in slides if sum(name in known for name in pair.members) == 1]
+        if not open_to:
+            return found
+        pair = open_to[0]
+        relative = pair.placed(equations.ends[pair.name], constant(0.0))
+        first, second = pair.members
+        base, name = (first, second) if first in known else (second, first)
+        known[name] = known[base].compose(relative if base == first else relative.inverse())
+        found[name] = float(np.angle(known[name].u.c[0]))
 
 
 def _places(equations: Equations, shown: Mapping[str, Pose]) -> dict[str, complex]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -117,7 +117,7 @@ class Equations:
         geometry = self.mechanism.geometry
         return {p.name: tuple(map(_first, p.ends(geometry))) for p in (*self.pairs, *self.driven)}
 
-    def state(self, poses: dict[str, Pose]) -> Array:
+    def state(self, poses: Mapping[str, Pose]) -> Array:
         """The state in which the links have the given poses."""
         placed = (poses[name] for name in self.links)
         parts = [(p.z.c[0].real / self.size, p.z.c[0].imag / self.size, p.angle.c[0]) for p in placed]
@@ -193,8 +193,8 @@ class Equations:
             block = np.zeros((len(table), self.width))
             for side, name in enumerate(pair.members):
                 if name in self.column:
-                    first = self.column[name]
-                    block[:, first : first + LINK_FREEDOMS] += table[:, LINK_FREEDOMS * side : LINK_FREEDOMS * (side + 1)]
+                    part = table[:, LINK_FREEDOMS * side : LINK_FREEDOMS * (side + 1)]
+                    block[:, self.column[name] : self.column[name] + LINK_FREEDOMS] += part
             blocks.append(block)
         return np.vstack(blocks) if blocks else np.zeros((0, self.width))
 

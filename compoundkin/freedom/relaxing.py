@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.freedom.analysis import WIDEST, Examined, examined
+from compoundkin.freedom.examining import WIDEST, Examined, examined
 from compoundkin.freedom.redundancy import Candidate, chosen, strength
 from compoundkin.groups import DYADS
 from compoundkin.mechanism import Mechanism

@@ -296,10 +296,9 @@ class Motion:
 
         return replace(self, poses={n: FIXED if n == FRAME else mended(p, poses[n]) for n, p in self.poses.items()})
 
-    def _repr_svg_(self) -> str:
-        """Its picture, for notebooks."""
-        drawing = import_module("compoundkin.drawing")
-        made: str = drawing.draw(self).svg
+    def _repr_svg_(self) -> str | None:
+        """Its picture, for notebooks; None where it has none, or is too large to be shown unasked."""
+        made: str | None = import_module("compoundkin.drawing").shown(self)
         return made
 
     def _point(self, name: str) -> PointMotion:

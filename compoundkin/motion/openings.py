@@ -20,7 +20,8 @@ def closed_with(plan: Plan, step: Step) -> tuple[Pair, ...]:
         before.update(dict.fromkeys(other.group.links))
     own = step.group.links
     known = {*before, *own}
-    return tuple(p for p in plan.structure.redundant if known.issuperset(p.members) and not before.keys() >= {*p.members})
+    closing = (pair for pair in plan.structure.redundant if known.issuperset(pair.members))
+    return tuple(pair for pair in closing if not before.keys() >= {*pair.members})
 
 
 def openings(pairs: Sequence[Pair], run: Run) -> Number:

@@ -56,4 +56,5 @@ def opening(motion: Motion, pair: Pair) -> Number:
 def _problem(motion: Motion, pair: Pair, gap: Number) -> Problem:
     at = int(np.nanargmax(gap)) % max(motion.inputs.poses, 1)
     what = f"the pair opens by {float(np.nanmax(gap)):.6g} at pose {at}: other pairs do not hold it there"
-    return Problem(pair.name, what, "the dimensions or the assembly mode do not allow this motion; draw an assembled pose")
+    remedy = "the dimensions or the assembly mode do not allow this motion: draw an assembled pose"
+    return Problem(pair.name, what, remedy)

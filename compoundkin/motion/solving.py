@@ -58,7 +58,7 @@ def solve(
     The assembly mode of each group is that of `modes` (a link of the group: +1 or -1, or its configuration's number),
     else the one nearest to `hint` (points near their places at the first pose), else nearest to the mechanism's
     drawing, else +1. `modes` may also be one of `configurations()`, from which the motion then starts, or the name of
-    one, which counts where a drawing would.
+    one at the first pose.
 
     A mechanism that moves though it is overconstrained is solved without what is redundant, which is then checked.
 
@@ -82,7 +82,8 @@ def solve(
         given = inputs(plan, values, speed, acceleration, jerk, times)
         start = _start(plan, modes)
         with explained(plan.structure):
-            tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint), start)
+            named = isinstance(modes, str)
+        tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint), start, named)
         motion = replace(_settled(plan, tracker.given, tracker, order), time=times)
         if plan.structure.relaxation:
             hold_redundant(motion)

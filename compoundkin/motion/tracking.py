@@ -33,6 +33,7 @@ class Tracker:
         signs: Mapping[int, int],
         hint: Mapping[str, Number],
         start: Configuration | None = None,
+        from_first: bool = False,
     ) -> None:
         self.plan = plan
         self.given = given
@@ -55,7 +56,9 @@ class Tracker:
         # where along the lead and the motion each group passes through a change point, (designs, count), padded
         self.lead_flips: dict[int, Number] = {}
         self.flips: dict[int, Number] = {}
-        sketch = {} if hint else geometry.sketch
+        if from_first:
+            self.drawn = {}
+        sketch = {} if hint or from_first else geometry.sketch
         self.lead, self.at, self.home = approach(plan, given, self.drawn, start.points if start else sketch)
         if plan.turning and geometry.drawn:
             home = self.lead.cut(slice(None), slice(0, 1))

@@ -178,8 +178,8 @@ def arrow(axes: Any, x: Number, y: Number, colour: Any) -> None:
 
 
 def note(axes: Any, text: str) -> None:
-    """A remark in small print in the corner of an axes."""
-    axes.text(0.995, 0.015, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=SMALL_PRINT, color=GREY)
+    """A remark in small print above an axes, at the left."""
+    axes.set_title(text, loc="left", fontsize=SMALL_PRINT, color=GREY)
 
 
 def design_names(shape: tuple[int, ...], given: Sequence[str]) -> tuple[str, ...]:

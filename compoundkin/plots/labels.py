@@ -17,10 +17,12 @@ CLEARANCE = 4.0
 TURNS = (0.0, 0.125, -0.125, 0.25, -0.25, 0.375, -0.375, 0.5)
 # A text that is farther away from its point: twice and three times the clearance, after all else.
 FARTHER = (1.0, 2.5, 4.5)
+# Points nearer to each other than so many pixels are one.
+SAME = 3.0
 # White around a text that keeps curves off it.
 HALO = 1.5
-# Places of a curve looked at between two of its poses.
-BETWEEN = 6
+# Places of a curve looked at, a few pixels from each other.
+PLACES = 1500
 # A value smaller than this part of its scale is zero but for interpolation.
 NOTHING = 1e-6
 # From where four digits would need a power of ten, and from where one is easier to read than the digits.
@@ -53,12 +55,14 @@ def number(value: float, scale: float = 0.0) -> str:
 
 def place(figure: Any, labels: Sequence[Label]) -> None:
     """Write the labels, each where it covers least; one that finds no free place is left out."""
-    figure.canvas.draw()
+    figure.draw_without_rendering()
+    # settled now: the labels are placed for this layout, and writing a file need not find it again
+    figure.set_layout_engine("none")
     renderer = figure.canvas.get_renderer()
     scale = figure.dpi / 72.0
     taken: dict[Any, list[Number]] = {}
     curves: dict[Any, Number] = {}
-    for label in labels:
+    for label in _distinct(labels):
         written = _written(label)
         if label.axes not in curves:
             curves[label.axes], taken[label.axes] = _pixels(label.axes), []
@@ -73,6 +77,17 @@ def place(figure: Any, labels: Sequence[Label]) -> None:
             continue
         taken[label.axes].append(np.concatenate([found - half, found + half]))
         written.set_position(tuple((found - anchor) / scale))
+
+
+def _distinct(labels: Sequence[Label]) -> list[Label]:
+    """The labels without those that say the same of the same place: of a component that is the whole length."""
+    found: list[Label] = []
+    for label in labels:
+        place = label.axes.transData.transform((label.x, label.y))
+        same = (one for one in found if (one.axes, one.text) == (label.axes, label.text))
+        if all(np.abs(place - one.axes.transData.transform((one.x, one.y))).max() > SAME for one in same):
+            found.append(label)
+    return found
 
 
 def _written(label: Label) -> Any:
@@ -127,6 +142,6 @@ def _pixels(axes: Any) -> Number:
         if line.get_transform() != axes.transData or len(line.get_xdata()) < 2:
             continue
         corners = axes.transData.transform(np.column_stack([line.get_xdata(), line.get_ydata()]).astype(float))
-        steps = np.arange(0.0, len(corners) - 1.0, 1.0 / BETWEEN)
+        steps = np.linspace(0.0, len(corners) - 1.0, PLACES)
         found.append(np.column_stack([np.interp(steps, np.arange(len(corners)), corners[:, k]) for k in (0, 1)]))
     return np.concatenate(found)

@@ -117,8 +117,11 @@ def _draw(axes: Any, x: Shown, panel: Panel, happened: Events, marked: bool | No
         beside = happened.beside(d, x.values.shape[1])
         canvas.ring(axes, x.values[d][beside], curve.values[d][beside], shades[k])
     if marked or (marked is None and len(lines) <= MOST_MARKED):
+        found: list[Label] = []
         for k, (curve, d) in enumerate(lines):
-            _extremes(axes, x.values[d], curve, d, window, shades[k], labels)
+            _extremes(axes, x.values[d], curve, d, window, shades[k], found)
+        # the outermost ones take their places first
+        labels.extend(sorted(found, key=lambda label: -label.y * label.towards.imag))
 
 
 def _upwards(axes: Any, panel: Panel, near_limits: bool) -> tuple[float, float] | None:
@@ -155,10 +158,8 @@ def _window(panel: Panel, values: Number, near_limits: bool) -> tuple[float, flo
     span = high - low
     if span == 0.0 or np.ptp(known) <= (TALL if near_limits else TALL_WITHOUT_LIMITS) * span:
         return None
-    edge = HEADROOM * span
-    return max(float(low - MARGIN * span), float(known.min() - edge)), min(
-        float(high + MARGIN * span), float(known.max() + edge)
-    )
+    edge, far = HEADROOM * span, MARGIN * span
+    return float(max(low - far, known.min() - edge)), float(min(high + far, known.max() + edge))
 
 
 def _mark_events(axes: Any, x: Shown, happened: Events, is_input: bool) -> None:
@@ -168,16 +169,13 @@ def _mark_events(axes: Any, x: Shown, happened: Events, is_input: bool) -> None:
     for blank in happened.blanks if is_input else ():
         row = x.values[blank.design]
         begin, end = at(row, blank.begin), at(row, blank.end)
-        low, high = (
-            (0.0, 1.0) if designs == 1 else (blank.design * STRIP / designs, (blank.design + 1) * STRIP / designs)
-        )
+        low, high = (0.0, 1.0) if designs == 1 else np.array([blank.design, blank.design + 1]) * STRIP / designs
         axes.axvspan(begin, end, low, high, color=shades[blank.design], linewidth=0, zorder=0.5)
     for design, place in happened.changes:
         where = at(x.values[design], place)
+        colour = style.GREY if designs == 1 else shades[design]
         if np.isfinite(where):
-            axes.axvline(
-                where, color=style.GREY if designs == 1 else shades[design], linestyle="--", linewidth=1.0, zorder=1
-            )
+            axes.axvline(where, color=colour, linestyle="--", linewidth=1.0, zorder=1)
 
 
 def _across(axes: Sequence[Any], x: Shown, is_input: bool) -> None:

@@ -72,8 +72,7 @@ def _row(choice: Alternative) -> tuple[str | int | None, ...]:
     drivers = "; ".join(map(str, choice.drivers)) + (" *" if choice.present else "")
     if choice.faults:
         return choice.frame, drivers, choice.title, "not determined", "-", None, "-", choice.alike
-    groups = " ".join(name if class_ == 2 else f"{name} (class {roman(class_)}, order {order})"
-                      for name, class_, order in choice.groups)  # fmt: skip
+    groups = ", ".join(name for name, _, _ in choice.groups)
     closed = "yes" if choice.closed else "no"
     return (choice.frame, drivers, choice.title, groups or "-", roman(choice.class_), choice.configurations, closed,
             choice.alike)  # fmt: skip

@@ -14,8 +14,8 @@ from compoundkin.reports.cams import cams_sections
 from compoundkin.reports.chain import chain_section
 from compoundkin.reports.count import loops_section
 from compoundkin.reports.equivalent import equivalent_section
-from compoundkin.reports.freedom import mobility_section
 from compoundkin.reports.findings import checks_section, gaps_section
+from compoundkin.reports.freedom import mobility_section
 from compoundkin.reports.model import Outcome, Paragraph, Report, Section
 from compoundkin.reports.parts import faults_section, links_section, pairs_section
 from compoundkin.reports.published import Comparison, comparisons, published_section
@@ -55,9 +55,9 @@ def _of_structure(structure: Structure) -> Report:
     return Report(structure.mechanism.title, (about, *_counted(structure), *faults, *solving), outcome)
 
 
-def _counted(structure: Structure, design: int = 0) -> tuple[Section, ...]:
+def _counted(structure: Structure, design: int = 0, motion: Motion | None = None) -> tuple[Section, ...]:
     parts = links_section(structure, design), pairs_section(structure)
-    return (*parts, mobility_section(structure), chain_section(structure), loops_section(structure))
+    return (*parts, mobility_section(structure, motion), chain_section(structure), loops_section(structure))
 
 
 def _of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
@@ -72,7 +72,7 @@ def _of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
         mechanism.title,
         (
             _about(structure, f"{_structure_in_short(structure)} {motion_in_short(outcome)}", _design_of(sample)),
-            *_counted(structure, design),
+            *_counted(structure, design, motion),
             solving_section(structure, motion, design),
             drivers_section(structure, sample),
             *([equivalent] if (equivalent := equivalent_section(sample)) else []),

@@ -4,26 +4,51 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from compoundkin.freedom import MobilityAnalysis, mobility_analysis
+from compoundkin.motion import Motion
+from compoundkin.poses import Pose
 from compoundkin.reports.model import Block, Column, Formula, Paragraph, Section, Table
 from compoundkin.reports.wording import counted, listed
+from compoundkin.series import Number, constant
 from compoundkin.structure import Structure
 
 # A report names so many pairs.
 MOST_PAIRS = 12
 
 
-def mobility_section(structure: Structure) -> Section:
-    """The mobility sum with its numbers, whether the drivers determine the motion, and what is true of the dimensions."""
-    mobility, found = structure.mobility, mobility_analysis(structure)
+def mobility_section(structure: Structure, motion: Motion | None = None) -> Section:
+    """The mobility sum with its numbers, whether the drivers determine the motion, and what the dimensions say."""
+    mobility, found = structure.mobility, mobility_analysis(structure, _pose(motion) if motion else None)
+    # that no pose was found of what seems sound says nothing against it
+    plain = found.agrees or (found.finite is None and not structure.faults)
     verdict = mobility.verdict
-    text = f"{verdict[:1].upper()}{verdict[1:]}." if found.agrees else f"By the count alone, {verdict}."
+    text = f"{verdict[:1].upper()}{verdict[1:]}." if plain else f"By the count alone, {verdict}."
     if mobility.is_determinate and structure.faults:
         text += " The count is right as a whole but not in every part: see below."
     if found.agrees:
         text += " General dimensions and these ones say the same."
     blocks: list[Block] = [Formula(mobility.formula), Paragraph(text)]
-    return Section("mobility", "Mobility", (*blocks, *([] if found.agrees else _differing(found))))
+    return Section("mobility", "Mobility", (*blocks, *([] if plain else _differing(found))))
+
+
+def _pose(motion: Motion) -> dict[str, Pose] | None:
+    """A pose of the first design, about the middle of its motion."""
+    shape = motion.failed.shape
+    good = np.flatnonzero(motion.regular[0])
+    if not len(good) or motion.inputs.designs > 1:
+        return None
+    at = int(good[len(good) // 2])
+
+    def number(value: Number) -> Number:
+        return np.broadcast_to(value, shape)[0, at]
+
+    found = {}
+    for name, pose in motion.poses.items():
+        theta = None if pose.theta is None else constant(number(pose.theta.c[0]))
+        found[name] = Pose(constant(number(pose.z.c[0])), constant(number(pose.u.c[0])), theta)
+    return found
 
 
 def _differing(found: MobilityAnalysis) -> Iterator[Block]:

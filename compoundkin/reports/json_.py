@@ -39,7 +39,7 @@ def _(block: Paragraph) -> dict[str, Any]:
 
 @_block.register
 def _(block: Formula) -> dict[str, Any]:
-    return {"kind": "formula", "text": block.text}
+    return {"kind": "formula", "text": block.text, **({"latex": block.latex} if block.latex else {})}
 
 
 @_block.register

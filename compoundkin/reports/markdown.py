@@ -43,7 +43,7 @@ def _(block: Paragraph) -> str:
 
 @_block.register
 def _(block: Formula) -> str:
-    return f"```text\n{block.text}\n```"
+    return f"$$\n{block.latex}\n$$" if block.latex else f"```text\n{block.text}\n```"
 
 
 @_block.register

@@ -25,9 +25,10 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Formula:
-    """A line of mathematics, to be written as it is."""
+    """A line of mathematics, to be written as it is; `latex` where there is such, without dollar signs."""
 
     text: str
+    latex: str = ""
 
 
 @dataclass(frozen=True)

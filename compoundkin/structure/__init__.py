@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.graph import kinematic_graph, links_by_pairs, pair_counts
-from compoundkin.structure.loops import Loop, independent_loops, loop_count
+from compoundkin.structure.loops import Loop, independent_loops, loop_count, loops_through, simple_loops
 from compoundkin.structure.mobility import Mobility, PairCount
 from compoundkin.structure.model import Body, DrivenPair, Fault, Group, Passive, Structure
 from compoundkin.structure.naming import roman
@@ -24,6 +24,8 @@ __all__ = [
     "kinematic_graph",
     "links_by_pairs",
     "loop_count",
+    "loops_through",
     "pair_counts",
     "roman",
+    "simple_loops",
 ]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 from compoundkin.pairs import Pair
 from compoundkin.structure.composites import find
@@ -41,10 +43,65 @@ def independent_loops(structure: Structure) -> tuple[Loop, ...]:
     >>> print(*independent_loops(decompose(Mechanism("m", *bars))))
     frame -A- crank -B- rod -C- arm -D- frame
     """
-    names = [FRAME, *(name for name in structure.mechanism.links if name != FRAME)]
+    return loops_through(structure, structure.pairs)
+
+
+def loops_through(structure: Structure, pairs: Sequence[Pair]) -> tuple[Loop, ...]:
+    """A basis of the independent loops that some of the pairs close.
+
+    >>> from compoundkin.catalog import load_named
+    >>> from compoundkin.structure import decompose
+    >>> structure = decompose(load_named("geared-five-bar"))
+    >>> len(loops_through(structure, [pair for pair in structure.pairs if pair.held == 2]))
+    1
+    """
+    names = _numbered(structure)
     number = {name: k for k, name in enumerate(names)}
-    edges = [(number[pair.members[0]], number[pair.members[1]]) for pair in structure.pairs]
-    return tuple(_loop(structure, cycle) for cycle in cycle_basis(len(names), edges))
+    edges = [(number[pair.members[0]], number[pair.members[1]]) for pair in pairs]
+    return tuple(_loop(structure, [pairs[k] for k in cycle]) for cycle in cycle_basis(len(names), edges))
+
+
+def simple_loops(structure: Structure, limit: int | None = None, longest: int | None = None) -> Iterator[Loop]:
+    """All loops that pass no link twice, one after another, at most `limit` of them; their number may be enormous.
+
+    `longest` leaves out loops of more links. A multiple pin of k links is k - 1 pairs, as everywhere.
+    Source: D. B. Johnson, Finding all the elementary circuits of a directed graph, SIAM J. Comput. 4 (1975) 77.
+
+    >>> from compoundkin.catalog import load_named
+    >>> from compoundkin.structure import decompose
+    >>> [len(loop) for loop in simple_loops(decompose(load_named("stephenson-iii")))]
+    [4, 5, 5]
+    """
+    import networkx
+
+    names = _numbered(structure)
+    number = {name: k for k, name in enumerate(names)}
+    # with pairs as nodes, two pairs between the same links are two ways
+    graph = networkx.Graph()
+    graph.add_nodes_from(range(len(names)))
+    for k, pair in enumerate(structure.pairs, len(names)):
+        graph.add_edges_from((number[name], k) for name in pair.members[:2])
+    bound = None if longest is None else 2 * longest
+    cycles = networkx.simple_cycles(graph, length_bound=bound)
+    for cycle in islice(cycles, limit):
+        yield _turned(structure, [structure.pairs[k - len(names)] for k in cycle if k >= len(names)])
+
+
+def _turned(structure: Structure, pairs: Sequence[Pair]) -> Loop:
+    """A loop from its first link on, whichever pair is named first."""
+    order = {name: k for k, name in enumerate(_numbered(structure))}
+    first = min((name for pair in pairs for name in pair.members[:2]), key=order.__getitem__)
+    at = next(k for k in range(len(pairs)) if all(first in pairs[j].members[:2] for j in (k, k - 1)))
+    around = [*pairs[at:], *pairs[:at]]
+    place = {pair.name: k for k, pair in enumerate(structure.pairs)}
+    if len(around) > 2 and place[around[-1].name] < place[around[0].name]:
+        around.reverse()
+    return _loop(structure, around)
+
+
+def _numbered(structure: Structure) -> list[str]:
+    """The links, the frame first."""
+    return [FRAME, *(name for name in structure.mechanism.links if name != FRAME)]
 
 
 def loop_count(structure: Structure) -> int:
@@ -65,13 +122,13 @@ def loop_count(structure: Structure) -> int:
     return len(structure.pairs) - len(leader) + pieces
 
 
-def _loop(structure: Structure, cycle: tuple[int, ...]) -> Loop:
-    pairs = tuple(structure.pairs[k] for k in cycle)
-    shared = [set(pairs[k - 1].members[:2]) & set(pairs[k].members[:2]) for k in range(len(pairs))]
-    order = {name: k for k, name in enumerate([FRAME, *structure.mechanism.links])}
-    link = min(shared[0], key=lambda name: 0 if name == FRAME else order[name])
+def _loop(structure: Structure, pairs: Sequence[Pair]) -> Loop:
+    """The loop of pairs in order around it, from the first of the links that the first and the last pair share."""
+    shared = set(pairs[-1].members[:2]) & set(pairs[0].members[:2])
+    order = {name: k for k, name in enumerate(_numbered(structure))}
+    link = min(shared, key=order.__getitem__)
     links = []
     for pair in pairs:
         links.append(link)
         link = pair.members[1] if link == pair.members[0] else pair.members[0]
-    return Loop(tuple(links), pairs)
+    return Loop(tuple(links), tuple(pairs))

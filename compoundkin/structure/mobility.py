@@ -70,11 +70,15 @@ class Mobility:
 
         >>> Mobility(4, (PairCount("R", 2, 4),), 0).verdict
         'mobility 1 and no driver: 1 driver is missing'
+        >>> Mobility(3, (PairCount("R", 2, 3),), 0).verdict
+        'mobility 0 and no driver: a structure that does not move'
         """
         drivers = _counted(self.drivers, "driver") if self.drivers else "no driver"
         missing = self.freedoms - self.drivers
-        outcome = "the motion is determined"
-        if missing:
+        outcome = "the motion is determined" if self.drivers else "a structure that does not move"
+        if self.freedoms < 0 and not self.drivers:
+            outcome = f"{_counted(-self.freedoms, 'constraint')} too many for a structure that just holds"
+        elif missing:
             outcome = f"{_counted(abs(missing), 'driver')} {'is' if abs(missing) == 1 else 'are'} "
             outcome += "missing" if missing > 0 else "too many"
         return f"mobility {self.freedoms} and {drivers}: {outcome}"

@@ -115,7 +115,7 @@ class Dropped:
 
 @dataclass(frozen=True)
 class Relaxation:
-    """What is dropped of a mechanism that moves though it is overconstrained, and an assembled pose by points and links.
+    """What is dropped of a mechanism that moves though it is overconstrained; an assembled pose by points and links.
 
     The pose is the drawn one made exact, or one that was found where nothing is drawn.
     """

@@ -81,7 +81,8 @@ class RankTest:
         loose = tuple(u for u, yes in zip(part.unknowns, moved, strict=True) if yes)
         moving = self._moving(part, right[rank:].T)
         dependent = matrix[np.linalg.norm(left[:, rank:], axis=1) > RANK_TOLERANCE]
-        angles = [start + LINK_FREEDOMS - 1 for unknown, start in self._start(part).items() if self.system.is_body(unknown)]
+        bodies = ((unknown, start) for unknown, start in self._start(part).items() if self.system.is_body(unknown))
+        angles = [start + LINK_FREEDOMS - 1 for _, start in bodies]
         turning = rows > rank and not np.any(np.delete(dependent, angles, axis=1))
         return Deficiency(rows - rank, columns - rank, tight, loose, moving, turning)
 

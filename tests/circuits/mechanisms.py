@@ -38,7 +38,9 @@ def random_place(rng: np.random.Generator) -> complex:
     return complex(*rng.uniform(-3.0, 3.0, 2))
 
 
-def random_triad(rng: np.random.Generator, legs: Iterable[str] = ("RR", "RR", "RR"), more: Iterable[str] = ()) -> Sketch:
+def random_triad(
+    rng: np.random.Generator, legs: Iterable[str] = ("RR", "RR", "RR"), more: Iterable[str] = ()
+) -> Sketch:
     """A crank, dyads of the kinds `more` after it, and a plate on three legs: each leg's outer and inner pair."""
     sketch = random_sketch(rng, more, multiple=0.0)
     known = list(sketch.links)

@@ -104,4 +104,5 @@ def test_published_limits_of_the_stephenson_iii_linkage() -> None:
     assert found.start is not None
     branch = found.branches[found.start.branch - 1]
     assert np.rad2deg([branch.low - zero, branch.high - zero]) == pytest.approx([-58.8989369, 41.3045818], abs=1e-6)
-    assert branch.ends[0] is not None and branch.ends[1] is not None
+    assert branch.ends[0] is not None
+    assert branch.ends[1] is not None

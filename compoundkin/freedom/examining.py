@@ -1,0 +1,77 @@
+"""A mechanism examined at its own dimensions: an assembled pose, how it moves from there, and what is held twice."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from compoundkin.freedom.assembling import Assembly, assembled, corrected
+from compoundkin.freedom.equations import ROUNDED, STRICT, Array, Equations, Tolerance
+from compoundkin.freedom.flexing import Flex, flex_of, null_space, rank_of
+from compoundkin.freedom.redundancy import Candidate, candidates, stresses
+from compoundkin.mechanism import Mechanism
+from compoundkin.poses import Pose
+from compoundkin.structure.composites import composites
+
+# Wider equations than those of some hundred links take a dense decomposition many seconds.
+WIDEST = 1500
+
+
+@dataclass(frozen=True)
+class Examined:
+    """A mechanism examined at its own dimensions: an assembled pose, how it moves, and its states of self-stress."""
+
+    equations: Equations
+    assembly: Assembly
+
+    @cached_property
+    def rows(self) -> Array:
+        """The rows of the pairs at the assembled pose."""
+        return self.equations.jacobian(self.assembly.state)[0]
+
+    @cached_property
+    def rank(self) -> int:
+        """Their rank."""
+        return rank_of(self.rows, self.equations.tolerance.rank)
+
+    @cached_property
+    def flex(self) -> Flex:
+        """How it moves. Where no row is redundant, all that is left free is motion."""
+        state = self.assembly.state
+        if self.rank == len(self.rows):
+            free = null_space(self.rows, self.equations.tolerance.rank)
+            return Flex(state, free, free.shape[1])
+        return flex_of(self.equations, state)
+
+    @cached_property
+    def stress(self) -> Array:
+        """The states of self-stress, at a pose that is not special."""
+        return stresses(self.equations, self.flex.state)
+
+    @cached_property
+    def candidates(self) -> list[Candidate]:
+        """What may be left out."""
+        bodies = composites(self.equations.mechanism)
+        return candidates(self.equations, self.flex.state, self.stress, bodies) if self.stress.shape[1] else []
+
+    @property
+    def determined(self) -> int:
+        """How many of its motions the drivers determine."""
+        return rank_of(self.equations.driving(self.flex.state) @ self.flex.along, self.equations.tolerance.rank)
+
+
+def examined(mechanism: Mechanism, poses: Mapping[str, Pose] | None = None) -> Examined:
+    """A mechanism examined at its own dimensions; taken to be rounded where exact ones leave no motion."""
+    exact = _examined(mechanism, STRICT, poses)
+    if exact.assembly.is_closed and (exact.rank == len(exact.rows) or exact.flex.along.shape[1]):
+        return exact
+    rounded = _examined(mechanism, ROUNDED, poses)
+    return rounded if rounded.assembly.is_closed and rounded.flex.along.shape[1] else exact
+
+
+def _examined(mechanism: Mechanism, tolerance: Tolerance, poses: Mapping[str, Pose] | None) -> Examined:
+    equations = Equations(mechanism, tolerance)
+    if poses is None:
+        return Examined(equations, assembled(equations))
+    return Examined(equations, corrected(equations, equations.state(poses)))
