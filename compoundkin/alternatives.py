@@ -49,8 +49,8 @@ class Alternative:
     """A choice of frame and drivers, links by the names they have now, and the groups that it gives.
 
     `groups` are (letters, class, order) in solving order. `class_` is the highest class, 1 where the drivers move
-    everything. `configurations` is the number of ways to assemble it at given driver values, complex ones of larger groups
-    counted; None where no formula knows it. `closed` says that every group is solved in closed form, `faults` why it is
+    everything. `configurations` is the number of ways to assemble it at given driver values, those of larger
+    groups over the complex numbers; None where no formula knows it. `closed` says that every group is solved in closed form, `faults` why it is
     not determined. `alike` counts the choices that it stands for, itself included; `present` marks the one that is.
     """
 
@@ -74,16 +74,16 @@ class Alternative:
 def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None = None) -> tuple[Alternative, ...]:
     """Every choice of a frame, or of one of `frames`, and of as many drivers as there are freedoms; alike ones once.
 
-    Alike are choices that a symmetry of the kinematic graph carries into each other. Where several drivers give more than
-    `MOST_CHOICES` choices, one of the present ones at a time is put elsewhere. Nothing is solved; what is found holds for
-    generic dimensions. None where the count leaves no freedom.
+    Alike are choices that a symmetry of the kinematic graph carries into each other. Where several drivers give more
+    than `MOST_CHOICES` choices, one of the present ones at a time is put elsewhere. Nothing is solved; what is found
+    holds for generic dimensions. None where the count leaves no freedom.
 
     Raises InvalidInput where there are still too many choices, UnknownName for a frame that is no link.
 
     >>> from compoundkin.catalog import load_named
     >>> table = alternatives(load_named("stephenson-iii-driven-at-dyad"), frames=["frame"])
     >>> [(str(choice.drivers[0]), choice.class_) for choice in table][:2]
-    [('AB on frame (A)', 2), ('EF on frame (F)', 3)]
+    [('AB on frame (A)', 2), ('FG on frame (G)', 3)]
     """
     structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
     choices = _Choices(structure)
@@ -201,7 +201,9 @@ class _Choices:
         class_ = max((group.class_ for group in structure.groups), default=1)
         number, closed = (None, False) if faults else _solved(structure)
         present = frame == FRAME and self._is_now(chosen)
-        return Alternative(frame, drivers, self._title(frame, drivers), groups, class_, number, closed, faults, alike, present)
+        return Alternative(
+            frame, drivers, self._title(frame, drivers), groups, class_, number, closed, faults, alike, present
+        )
 
     def _title(self, frame: str, drivers: Sequence[Place]) -> str:
         """The inversion's name; only of four links it depends on the driver."""
@@ -297,7 +299,7 @@ def _solved(structure: Structure) -> tuple[int | None, bool]:
 
 
 def group_count(group: Group) -> int | None:
-    """The number of complex configurations of a group for generic dimensions; None where slides or higher pairs hold it.
+    """The number of complex configurations of a group for generic dimensions; None with slides or higher pairs.
 
     >>> from compoundkin.catalog import load_named
     >>> group_count(decompose(load_named("class-iii-six-bar")).groups[0])

@@ -167,9 +167,7 @@ class Composer:
             group = assur_group(group, [*DYADS])
         left = [k for k in range(group.truss.links) if k != group.removed]
         outer = [(REVOLUTE, None, left.index(k)) for k in left if k in group.truss.neighbours[group.removed]]
-        inner = [
-            (REVOLUTE, left.index(a), left.index(b)) for a, b in group.truss.pairs if group.removed not in (a, b)
-        ]
+        inner = [(REVOLUTE, left.index(a), left.index(b)) for a, b in group.truss.pairs if group.removed not in (a, b)]
         return [*outer, *inner], len(outer), len(left)
 
     def _place(self, text: str) -> Place:
@@ -259,8 +257,8 @@ def random_mechanism(
 ) -> Mechanism:
     """A crank and so many groups of the given kinds, each on random links before it; the same for the same seed.
 
-    A share `multiple` of outer pins are put on pins that there are already. Links of the k-th group are "k.0", ... with a
-    dash for the dot; it assembles as drawn, where the crank is, and may not far from there.
+    A share `multiple` of outer pins are put on pins that there are already. Links of group k are "k-0", "k-1", ...
+    It assembles as drawn, where the crank stays; it may not far from there.
 
     Raises InvalidInput for a number of groups that is negative, UnknownName for a kind that is not known.
 
@@ -308,4 +306,3 @@ def _endless() -> Iterator[str]:
     """A, B, ..., Z, A2, ..."""
     for turn in count(1):
         yield from (letter if turn == 1 else f"{letter}{turn}" for letter in lettered(26))
-

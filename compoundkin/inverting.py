@@ -40,7 +40,7 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
     >>> from compoundkin.catalog import load_named
     >>> inverted = with_frame(load_named("slider-crank"), "crank")
     >>> list(inverted.links), decompose(inverted).name.title
-    (['frame', 'old frame', 'rod', 'piston'], 'inverted slider-crank with swinging block')
+    (['frame', 'old frame', 'rod', 'piston'], 'inverted slider-crank with turning or oscillating guide')
     """
     mechanism.link(link)
     if link == FRAME:
@@ -65,7 +65,7 @@ def with_driver(
 ) -> Mechanism:
     """A mechanism driven elsewhere: `link` on the link `on`, in place of its driver, or of the one called `instead`.
 
-    `words` are those of `drive`, such as `values`; without values a pin makes a full turn and a slide stays where it is.
+    `words` are those of `drive`, such as `values`; without values a pin makes a full turn, a slide stays.
     Dimensions and assembly are kept, published numbers are left out.
 
     Raises UnknownName for a link or driver that there is not, InvalidInput where it is not said which driver is meant,
@@ -185,7 +185,9 @@ def _seen_from(mechanism: Mechanism, link: str) -> dict[str, Number]:
 def _assembled(mechanism: Mechanism) -> dict[str, Number]:
     """Where all points are at some pose that assembles; none where there is none."""
     found = _some_pose(mechanism)
-    return {} if found is None else {letter: _at(motion.position, found[1]) for letter, motion in found[0].points.items()}
+    return (
+        {} if found is None else {letter: _at(motion.position, found[1]) for letter, motion in found[0].points.items()}
+    )
 
 
 def _pose_of(mechanism: Mechanism, link: str) -> Pose | None:

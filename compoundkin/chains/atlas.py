@@ -134,7 +134,14 @@ def assur_group(name: str, also: Iterable[str] = ()) -> AssurGroup:
     found = _GROUP.fullmatch(_OWN_GROUPS.get(name.strip().lower(), name.strip()))
     if found and int(found[1]) in _GROUP_LINKS and 1 <= int(found[2]) <= len(assur_groups(int(found[1]))):
         return assur_groups(int(found[1]))[int(found[2]) - 1]
-    known = [*also, *_OWN_GROUPS, "2-link group 1", "4-link group 1 or 2", "6-link group 1 to 10", "8-link group 1 to 173"]
+    known = [
+        *also,
+        *_OWN_GROUPS,
+        "2-link group 1",
+        "4-link group 1 or 2",
+        "6-link group 1 to 10",
+        "8-link group 1 to 173",
+    ]
     raise UnknownName(Problem(name, "there is no such Assur group", nearest(name, known)))
 
 

@@ -131,6 +131,7 @@ def _titled(joints: Joints, frame: int | None, driver: int | None) -> ChainName:
     derived, chains, changed = _derived(joints, frame), _derived(joints, None), _changes(joints)
     plain = ChainName(_described(joints), joints.mobility, _assortment(joints), _described(joints))
     if not changed:
+        plain = replace(plain, title=plain.title.rstrip(","), chain=plain.chain.rstrip(","))
         return replace(plain, title=derived[0], chain=chains[0]) if derived else plain
     plain = replace(plain, derived_from=derived)
     slider = slider_name(joints, frame, driver)
@@ -185,7 +186,7 @@ def _described(joints: Joints) -> str:
     if not blocks:
         return "open chain"
     loose = sum(degree == 1 for degree in joints.degrees)
-    open_ = f" with {_counted(loose, 'loose link')}" if loose else ""
+    open_ = f", {_counted(loose, 'link')} of it loose," if loose else ""
     kind = "chain" if joints.mobility > 0 else "structure"
     fractionated = "fractionated " if len(blocks) > 1 else ""
     mobility = f" of mobility {joints.mobility}" if joints.mobility != 1 else ""

@@ -25,8 +25,8 @@ def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = 
     """A mechanism with the structure of a chain and generic dimensions, as drawn: pins A, B, C, ...
 
     Link k of the chain is "link k", but for the frame. A driver is a link that is joined to the frame, or two joined
-    links; without any, the first that determine the motion are taken, those on the frame if possible. They hold the drawn
-    pose, which assembles whatever the chain; how far they may move is a matter of dimensions.
+    links; without any, the first that determine the motion are taken, those on the frame if possible. They hold the
+    drawn pose, which assembles whatever the chain; how far they may move is a matter of dimensions.
 
     Raises UnknownName for a link that the chain does not have, InvalidInput for drivers between links that are not
     joined, or where no drivers determine the motion.

@@ -128,7 +128,7 @@ def circuits(
     name = _driver(plan, driver)
     with np.errstate(all="ignore"):
         known = starting_values(plan, values or {}, name)
-        given = inputs(plan, known, None, None, None).cut(slice(design, design + 1), slice(0, 1))
+        given = _of_design(inputs(plan, known, None, None, None), design)
         fixed = {other: value for other, value in known.items() if other != name}
         sweep = Sweep(plan, given.ends, fixed, name)
         strands, period, lost, good = _traced(sweep, between, known[name])
@@ -145,6 +145,14 @@ def circuits(
                 place = None
     consistent = good and not lost
     return Circuits(plan.structure, name, fixed, found, FRESH, consistent, place, period, placing)
+
+
+def _of_design(given: Inputs, design: int) -> Inputs:
+    """The numbers of one design at its first pose; raises InvalidInput for one that there is not."""
+    if not 0 <= design < given.designs:
+        what = f"there is no design {design}"
+        raise InvalidInput(Problem("design", what, f"they are 0 to {given.designs - 1}"))
+    return given.cut(slice(design, design + 1), slice(0, 1))
 
 
 def _driver(plan: Plan, driver: str | None) -> str:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from compoundkin.loop_equations.terms import Curved, Sum, Term, Unknown, Values, Vector
 from compoundkin.pairs import Pair
 from compoundkin.pairs.contract import Ends
 from compoundkin.pairs.geared import ratio
 from compoundkin.pairs.pitch_line import OnLine
 from compoundkin.pairs.profiled import Profiled
-from compoundkin.series import Number
-from compoundkin.loop_equations.terms import Curved, Sum, Term, Unknown, Values, Vector
+from compoundkin.poses import End
+from compoundkin.series import Number, Series
 from compoundkin.words import FRAME
 
 
@@ -27,7 +29,7 @@ class Auxiliary:
     pair: str
     sum: Sum
     path: tuple[Term, ...] = ()
-    along: Sum = Sum()
+    along: Sum = field(default_factory=Sum)
     counts_turns: bool = False
 
     def at(self, values: Values) -> Number:
@@ -51,6 +53,15 @@ class Crossing:
     arms: tuple[Term, ...] = ()
     unknown: Unknown | None = None
     auxiliary: Auxiliary | None = None
+
+
+def _turn(end: End) -> Number:
+    """The angle of a guide, a block or a face on its link."""
+    return np.angle(end.along.c[0])
+
+
+def _point(end: End) -> Number:
+    return end.point.c[0] if isinstance(end.point, Series) else end.point
 
 
 def angle_of(link: str) -> Sum:
@@ -110,10 +121,12 @@ def _simple(pair: Pair, ends: Ends) -> Crossing:
     if pair.free_is_angle:
         return Crossing(points, (pair.letters[0], pair.letters[0]))
     free = Unknown("displacement", pair.name)
-    guide = angle_of(pair.members[0]).plus(np.angle(ends[0].direction))
-    block = angle_of(pair.members[1]).plus(np.angle(ends[1].direction))
+    guide = angle_of(pair.members[0]).plus(_turn(ends[0]))
+    block = angle_of(pair.members[1]).plus(_turn(ends[1]))
     arm = Vector("", Sum(0.0, ((1.0, free),)), guide)
-    return Crossing(points, (_guide(pair), pair.letters[0]), (arm,), free, Auxiliary(pair.name, difference(guide, block)))
+    return Crossing(
+        points, (_guide(pair), pair.letters[0]), (arm,), free, Auxiliary(pair.name, difference(guide, block))
+    )
 
 
 def _guide(pair: Pair) -> str:
@@ -124,8 +137,8 @@ def _guide(pair: Pair) -> str:
 def _by_lower_pairs(pair: Pair, lower: tuple[Pair, Pair], ends: list[Ends]) -> Crossing:
     """A pin in a slot, a disc: the block that slides there has its guide's angle, the bar one of its own."""
     outside = [next(k for k, name in enumerate(p.members) if name in pair.members) for p in lower]
-    points = ends[0][outside[0]].point, ends[1][outside[1]].point
-    inner = ends[1][1 - outside[1]].point - ends[0][1 - outside[0]].point
+    points = _point(ends[0][outside[0]]), _point(ends[1][outside[1]])
+    inner = _point(ends[1][1 - outside[1]]) - _point(ends[0][1 - outside[0]])
     labels = lower[0].letters[0], lower[1].letters[0]
     slides = [k for k, p in enumerate(lower) if not p.free_is_angle]
     if not slides:
@@ -134,7 +147,7 @@ def _by_lower_pairs(pair: Pair, lower: tuple[Pair, Pair], ends: list[Ends]) -> C
         return Crossing(points, labels, (bar,), free)
     k = slides[0]
     free = Unknown("displacement", pair.name)
-    guide = angle_of(lower[k].members[0]).plus(np.angle(ends[k][0].direction))
+    guide = angle_of(lower[k].members[0]).plus(_turn(ends[k][0]))
     # toward the block where the guide is on the first member, from it where it is on the second
     arm = Vector("", Sum(0.0, ((1.0, free),)), guide, 1 if k == 0 else -1)
     sides = (_guide(lower[0]), labels[1]) if k == 0 else (labels[0], _guide(lower[1]))
@@ -142,7 +155,7 @@ def _by_lower_pairs(pair: Pair, lower: tuple[Pair, Pair], ends: list[Ends]) -> C
 
 
 def _profiled(pair: Profiled, ends: Ends) -> Crossing:
-    """From the origin of the profile's link to the contact, and from there to the roller's middle or the face's point."""
+    """From the origin of the profile's link to the contact, and on to the roller's middle or the face's point."""
     first, second = (angle_of(name) for name in pair.members)
     labels = f"origin of {pair.members[0]}", pair.letters[0]
     curve, points = pair.curve, (ends[0].point, ends[1].point)
@@ -153,9 +166,10 @@ def _profiled(pair: Profiled, ends: Ends) -> Crossing:
         normal = Curved(f"normal({free.key})", lambda values: away * curve.normal(values[free.key]).c[0], first)
         return Crossing(points, labels, (contact, normal) if np.any(away != 0.0) else (contact,), free)
     free = Unknown("displacement", pair.name)
-    face = second.plus(np.angle(ends[1].direction))
+    face = second.plus(_turn(ends[1]))
     toward = difference(first, face)
-    side = -1j * pair.side
+    flat: Any = pair
+    side = -1j * flat.side
 
     def touched(values: Values) -> Number:
         return curve.at(curve.support(np.exp(1j * toward.at(values)) * side).c[0]).c[0]
@@ -168,7 +182,7 @@ def _rolling_on_line(pair: Pair, ends: Ends) -> Crossing:
     """Along the line and out to the wheel's middle."""
     free = Unknown("displacement", pair.name)
     on, wheel = (angle_of(name) for name in pair.members)
-    along, radius = on.plus(np.angle(ends[0].direction)), ends[1].measure
+    along, radius = on.plus(_turn(ends[0])), ends[1].measure
     out = Vector(f"r({pair.name})", Sum(np.abs(radius)), along.plus(np.pi / 2.0), int(np.sign(np.ravel(radius)[0])))
     turned = tuple((radius * factor, unknown) for factor, unknown in difference(on, wheel).parts)
     rolled = Auxiliary(pair.name, Sum(-ends[0].measure, ((1.0, free), *turned)), counts_turns=True)
@@ -180,9 +194,9 @@ def _rolling_on_circle(pair: Pair, ends: Ends) -> Crossing:
     """From the middle of the circle to that of the wheel."""
     free = Unknown("direction", pair.name)
     on, wheel = (angle_of(name) for name in pair.members)
-    line = Sum(np.angle(ends[0].direction), (*on.parts, (1.0, free)))
+    line = Sum(_turn(ends[0]), (*on.parts, (1.0, free)))
     turned = difference(on, wheel)
     rolled = Sum(-ends[0].measure, (*turned.parts, (-ends[1].measure, free)))
-    arm = Vector(f"r({pair.name})", Sum(np.abs(ends[0].direction)), line)
+    arm = Vector(f"r({pair.name})", Sum(np.abs(ends[0].along.c[0])), line)
     points, labels = (ends[0].point, ends[1].point), (pair.letters[1], pair.letters[0])
     return Crossing(points, labels, (arm,), free, Auxiliary(pair.name, rolled, counts_turns=True))

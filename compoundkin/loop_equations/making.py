@@ -81,8 +81,8 @@ class LoopEquations:
 def loop_equations(mechanism: Mechanism | Structure) -> LoopEquations:
     """The vector-loop equations of a mechanism.
 
-    Each link has a vector from pair to pair, at the link's angle; a slide adds its displacement along its guide, and ties the
-    angles of block and guide. A pin in a slot, a disc cam and the like are crossed by the block or bar that stands for
+    Each link has a vector from pair to pair, at the link's angle; a slide adds its displacement along its guide, and ties
+    the angles of block and guide. A pin in a slot, a disc cam and the like are crossed by the block or bar that stands for
     them; a profile by its parameter. Gears, belts and racks close no loop: they add one equation each.
 
     Raises InvalidInput for more than `MOST_LOOPS` loops.
@@ -164,11 +164,13 @@ class _Walk:
             # against the link's axis: the vector between the points named the other way round, taken away
             sign, angle, symbol = -1, 0.0 * angle, _symbol(last, first)
         symbol = self._named(symbol, link, np.abs(line))
-        yield Vector(symbol, Sum(np.abs(line)), angle_of(link).plus(np.where(np.abs(angle) < STRAIGHT, 0.0, angle)), sign)
+        yield Vector(
+            symbol, Sum(np.abs(line)), angle_of(link).plus(np.where(np.abs(angle) < STRAIGHT, 0.0, angle)), sign
+        )
 
     def _named(self, symbol: str, link: str, length: Number) -> str:
         """A symbol that means one length."""
-        known = self.lengths.setdefault(symbol, length)
+        known: Number = self.lengths.setdefault(symbol, length)
         if np.shape(known) == np.shape(length) and np.all(np.abs(known - length) <= self.nothing):
             return symbol
         self.lengths[f"{symbol} of {link}"] = length
@@ -180,7 +182,9 @@ def _symbol(first: str, last: str) -> str:
     return f"{first}{last}" if short else f"{first}-{last}"
 
 
-def _racks(structure: Structure, pairs: Sequence[Pair], walk: _Walk, ends: Mapping[str, tuple[Any, ...]]) -> list[Auxiliary]:
+def _racks(
+    structure: Structure, pairs: Sequence[Pair], walk: _Walk, ends: Mapping[str, tuple[Any, ...]]
+) -> list[Auxiliary]:
     """What racks add: the way of the axis along the pitch line, and the turn of the pinion."""
     found = []
     for pair in structure.pairs:
@@ -191,7 +195,7 @@ def _racks(structure: Structure, pairs: Sequence[Pair], walk: _Walk, ends: Mappi
         path = tuple(walk.along(links, way, line.point, axis.point))
         rack, pinion = (angle_of(name) for name in pair.members)
         turned = tuple((axis.measure * factor, unknown) for factor, unknown in difference(rack, pinion).parts)
-        along = rack.plus(np.angle(line.direction))
+        along = rack.plus(np.angle(line.along.c[0]))
         found.append(Auxiliary(pair.name, Sum(-line.measure, turned), path, along, counts_turns=True))
     return found
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.loop_equations.crossing import Auxiliary
 from compoundkin.loop_equations.making import Driven, VectorLoop
-from compoundkin.loop_equations.terms import Curved, Sum, Term, Unknown, Vector
+from compoundkin.loop_equations.terms import Curved, Sum, Term, Unknown
 from compoundkin.series import Number
 
 # A constant below this is rounding; a factor nearer to one than this is one.
@@ -79,8 +79,10 @@ class _Latex:
 
     @staticmethod
     def turned(length: str, angle: str) -> str:
-        return rf"{length}\,e^{{i({angle})}}" if "+" in angle or "-" in angle[1:] else (
-            rf"{length}\,e^{{i{angle}}}" if angle else length
+        return (
+            rf"{length}\,e^{{i({angle})}}"
+            if "+" in angle or "-" in angle[1:]
+            else (rf"{length}\,e^{{i{angle}}}" if angle else length)
         )
 
     @staticmethod

@@ -42,7 +42,8 @@ def _blocks(structure: Structure, found: Sequence[Alternative], about: str) -> I
     yield Paragraph(f"{text} What is found holds for generic dimensions; * marks the present choice.")
     yield from (Paragraph(sentence) for sentence in _sentences(found))
     columns = (Column("frame"), Column("driven"), Column("name"), Column("groups"), Column("class"),
-               Column("configurations", style="each"), Column("closed form"), Column("alike", style="each"))  # fmt: skip
+               Column("configurations", style="each"), Column("closed form"),
+               Column("alike", style="each"))  # fmt: skip
     yield Table(columns, tuple(_row(choice) for choice in found))
 
 

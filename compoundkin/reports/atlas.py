@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compoundkin.chains import Chain, assur_groups, chain_name, chains, inversions, trusses
+from compoundkin.chains import AssurGroup, Chain, assur_groups, chain_name, chains, inversions, trusses
 from compoundkin.chains.atlas import MOST_LINKS
 from compoundkin.errors import InvalidInput, Problem
 from compoundkin.reports.model import Block, Cell, Column, Outcome, Paragraph, Report, Section, Table
@@ -57,7 +57,9 @@ def _checked(links: int, mobility: int, with_groups: bool) -> None:
 
 
 def _chains(found: Sequence[Chain], links: int, mobility: int) -> Iterator[Block]:
-    yield Paragraph(f"{counted(len(found), 'chain')} of {links} links and mobility {mobility}.{_parity(links, mobility, found)}")
+    yield Paragraph(
+        f"{counted(len(found), 'chain')} of {links} links and mobility {mobility}.{_parity(links, mobility, found)}"
+    )
     yield from _table(found)
 
 
@@ -68,14 +70,16 @@ def _parity(links: int, mobility: int, found: Sequence[Chain]) -> str:
 
 def _trusses(links: int) -> Iterator[Block]:
     found = trusses(links)
-    yield Paragraph(f"{counted(len(found), 'truss').replace('trusss', 'trusses')} of {links} links.{_parity(links, 0, found)}")
+    yield Paragraph(
+        f"{counted(len(found), 'truss').replace('trusss', 'trusses')} of {links} links.{_parity(links, 0, found)}"
+    )
     yield from _table(found)
 
 
 def _table(found: Sequence[Chain]) -> Iterator[Table]:
     if found:
-        columns = (Column("number", style="each"), Column("name"), Column("links by pairs"), Column("symmetry", style="each"),
-                   Column("inversions", style="each"), Column("graph6"), Column("pairs"))  # fmt: skip
+        columns = (Column("number", style="each"), Column("name"), Column("links by pairs"),
+                   Column("symmetry", style="each"), Column("inversions", style="each"), Column("graph6"), Column("pairs"))  # fmt: skip
         yield Table(columns, tuple(_row(k, chain) for k, chain in enumerate(found, 1)))
 
 
@@ -104,10 +108,14 @@ def _groups(links: int) -> Iterator[Block]:
     yield Paragraph(f"{counted(len(found), 'Assur group')} of {links} links and revolute pairs.{odd}")
     columns = (Column("name"), Column("order", style="each"), Column("truss"), Column("less link", style="each"),
                Column("pairs; outer ones by their link"))  # fmt: skip
-    rows = tuple((f"{links}-link group {k}", group.outer, chain_name(group.truss), group.removed, _group_pairs(group.truss, group.removed))
-                 for k, group in enumerate(found, 1))  # fmt: skip
+    rows = tuple(_group_row(k, group) for k, group in enumerate(found, 1))
     if rows:
         yield Table(columns, rows)
+
+
+def _group_row(k: int, group: AssurGroup) -> tuple[Cell, ...]:
+    pairs = _group_pairs(group.truss, group.removed)
+    return f"{group.links}-link group {k}", group.outer, chain_name(group.truss), group.removed, pairs
 
 
 def _group_pairs(truss: Chain, removed: int) -> str:

@@ -34,8 +34,10 @@ def _facts(structure: Structure, name: ChainName) -> Iterator[tuple[str, str]]:
     if name.variety is not None:
         yield "variety", f"degree {name.variety}{_variety(name.variety)}"
     if name.parts:
-        yield "parts", f"{'; '.join(name.parts)}" + (
-            f"; joined at {', '.join(name.fractionated_at)}" if name.fractionated_at else ""
+        yield (
+            "parts",
+            f"{'; '.join(name.parts)}"
+            + (f"; joined at {', '.join(name.fractionated_at)}" if name.fractionated_at else ""),
         )
     yield from _symmetry(structure, name)
     yield from _trusses(structure)

@@ -13,8 +13,8 @@ from compoundkin.reports.wording import counted
 from compoundkin.structure import Structure
 
 NOTATION = (
-    "A vector AB e^(i crank) has the length AB and is turned by the angle of the link crank; the frame's angle is zero. "
-    "AB' starts or ends where a guide is, from which its displacement counts."
+    "A vector AB e^(i crank) has the length AB and is turned by the angle of the link crank; "
+    "the frame's angle is zero. AB' starts or ends where a guide is, from which its displacement counts."
 )
 _MEANING = {
     "angle": "angle of the link",

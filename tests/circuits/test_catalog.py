@@ -10,6 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.catalog import load_named, names
 from compoundkin.circuits import Circuits
+from tests.circuits.mechanisms import four_bar
 from tests.circuits.test_random import check_counts
 
 # Every second one, and those that are special: change points, several drivers, slides as drivers, gears.
@@ -92,3 +93,20 @@ def test_class_iii_six_bar_over_a_cycle_takes_little_time() -> None:
     assert time.process_time() - start < 0.6
     assert np.all(found.real_count == 6)
     assert found.certified
+
+
+def test_one_design_of_several() -> None:
+    """The crank of the first turns fully; in the second it turns back where coupler and rocker are stretched."""
+    mechanism = four_bar(1.0, 3.0, 3.0, np.array([[4.0], [6.5]]))
+    first, second = (ck.circuits(mechanism, design=k) for k in (0, 1))
+    assert [circuit.winding for circuit in first.circuits] == [1, 1]
+    limit = float(np.arccos((1 + 6.5**2 - 36) / 13))
+    assert sorted(one.value for one in second.limits) == pytest.approx([-limit, limit], abs=1e-12)
+    with pytest.raises(ck.InvalidInput, match="no design 7"):
+        ck.circuits(mechanism, design=7)
+
+
+def test_a_roller_follower_has_two_circuits_of_full_turns() -> None:
+    found = of("oscillating-roller-follower")
+    assert [circuit.winding for circuit in found.circuits] == [1, 1]
+    assert found.consistent

@@ -37,7 +37,7 @@ def values_of(motion: ck.Motion, equations: LoopEquations) -> dict[str, np.ndarr
             values[how.unknown.key] = motion.pairs[pair.name].value
             continue
         zero = {**values, how.unknown.key: 0.0}
-        free = next(arm for arm in how.arms if isinstance(arm, Vector) and not arm.symbol or len(how.arms) == 1)
+        free = next(arm for arm in how.arms if (isinstance(arm, Vector) and not arm.symbol) or len(how.arms) == 1)
         if how.unknown.kind == "displacement":
             along = free.sign * np.exp(1j * free.angle.at(zero))
             others = sum((arm.at(zero) for arm in how.arms if arm is not free), 0j)

@@ -35,7 +35,7 @@ def test_a_link_that_is_joined_to_nothing(bars):
 
 def test_two_frames(bars):
     problems = refused(*bars(**FOUR), *bars(frame="Q"), drive("crank"))
-    assert ("links.frame", "the name 'frame' is used twice") == problems[0][:2]
+    assert problems[0][:2] == ("links.frame", "the name 'frame' is used twice")
     assert "give all fixed points to it" in problems[0][2]
 
 
@@ -50,7 +50,7 @@ def test_moving_links_pinned_twice_to_one_another(bars):
     structure = decompose(Mechanism("m", *links, drive("crank")))
     (fault,) = structure.faults
     assert (fault.kind, fault.links, fault.amount) == ("over", ("crank", "coupler", "rocker"), 2)
-    assert "X" in fault.remedy and "C" in fault.remedy
+    assert fault.remedy == "remove the driver crank or free 2 of the pairs B, X, C, D"
     assert structure.mobility.freedoms == -1
 
 
@@ -114,7 +114,7 @@ def test_a_loose_link_is_named_and_the_name_of_the_chain_does_not_hide_it(bars):
     structure = decompose(Mechanism("m", *bars(**FOUR, t="CT"), drive("crank")))
     (fault,) = structure.faults
     assert (fault.links, fault.amount) == (("t",), 1)
-    assert structure.name.title == "5-link chain of mobility 2 with 1 loose link with one double pin"
+    assert structure.name.title == "5-link chain of mobility 2, one link of it loose, with one double pin"
 
 
 def test_what_is_rigid_by_count_is_not_called_a_chain(bars):

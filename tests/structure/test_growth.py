@@ -14,7 +14,7 @@ from compoundkin.words import drive, link
 
 
 def slider_cranks(count: int) -> list[Any]:
-    """Cranks, rods and sliding blocks side by side, and a cylinder on each crank: one composite grows with them."""
+    """Cranks, rods and sliding blocks side by side; the composite of the frame and the cranks grows with them."""
     frame: dict[str, complex] = {}
     items: list[Any] = []
     for k in range(count):
