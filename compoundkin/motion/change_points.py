@@ -7,8 +7,9 @@ a place is found as a minimum of the margin that is zero but for rounding.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from compoundkin.series import Number
 NEAR = 0.05
 # A margin below this at its minimum is a touching zero: rounding times the inverse of the margin's curvature.
 TOUCHING = 1e-12
+# A minimum is searched for unless the parabola through three samples stays above this part of the higher neighbour: that
+# of a zero that falls like a square is near zero, that of one that falls linearly at most at a quarter.
+CLEAR = 0.35
 # Steps of golden-section search: 0.618**65 is below TOUCHING, for margins that fall linearly to zero.
 STEPS = 65
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
@@ -70,23 +74,32 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
 
     They are noted in the tracker, which changes the group's sign there.
     """
-    for k in sorted(near):
-        step = tracker.plan.steps[k]
-        if k in tracker.flips or not _may_change(step):
-            continue
-        found = False
-        for way in _ways(tracker):
-            designs, where = _touching(way, tracker, k)
-            if len(designs):
-                flips = tracker.lead_flips if way.lead else tracker.flips
-                flips[k] = _padded(designs, where, tracker.given.designs)
-                found = True
-        if found:
-            tracker.flips.setdefault(k, np.full((tracker.given.designs, 1), np.inf))
-            if tracker.plan.general or tracker.turns:
-                tracker.choose()
-            return True
-    return False
+    open_to = [k for k in sorted(near) if k not in tracker.flips and _may_change(tracker.plan.steps[k])]
+    if not open_to:
+        return False
+    found = [(way, _touching(way, tracker, open_to)) for way in _ways(tracker)]
+    first = min((int(spots.groups[0]) for _, spots in found if len(spots.groups)), default=None)
+    if first is None:
+        return False
+    for way, spots in found:
+        here = spots.groups == first
+        if here.any():
+            flips = tracker.lead_flips if way.lead else tracker.flips
+            flips[first] = _padded(spots.designs[here], spots.places[here], tracker.given.designs)
+    tracker.flips.setdefault(first, np.full((tracker.given.designs, 1), np.inf))
+    if tracker.plan.general or tracker.turns:
+        tracker.choose()
+    return True
+
+
+def _sampled(way: _Way, tracker: Tracker, groups: Sequence[int]) -> dict[int, Number]:
+    """The margins of some groups at all samples of a way; right as far as the first group that changes."""
+    found = {k: np.empty((way.samples.designs, way.samples.poses)) for k in groups}
+    for d, m, part, s, designs in way.blocks():
+        margins = way.margins(tracker, part, s, designs, groups[-1] + 1)
+        for k, whole in found.items():
+            whole[d, m] = margins[k]
+    return found
 
 
 def _ways(tracker: Tracker) -> Iterator[_Way]:
@@ -129,31 +142,57 @@ def _direction(given: Inputs, designs: Number, index: Number) -> Number:
     return np.where(total < 0, -1.0, 1.0)
 
 
-def _touching(way: _Way, tracker: Tracker, k: int) -> tuple[Number, Number]:
-    """Designs and places where group `k` has a zero margin that does not change sign."""
-    margin = np.empty((way.samples.designs, way.samples.poses))
-    for d, m, part, s, designs in way.blocks():
-        margin[d, m] = way.margins(tracker, part, s, designs, k + 1)[k]
+class _Spots(NamedTuple):
+    """Places along a way, each of one group and one design; in the order of the groups."""
+
+    groups: Number
+    designs: Number
+    places: Number
+
+    def where(self, which: Number) -> _Spots:
+        """Some of them."""
+        return _Spots(self.groups[which], self.designs[which], self.places[which])
+
+
+def _touching(way: _Way, tracker: Tracker, groups: Sequence[int]) -> _Spots:
+    """Where groups have a zero margin that does not change sign; right as far as the first group that has any."""
+    margins = _sampled(way, tracker, groups)
+    lowest = [(k, *_lowest(margins[k])) for k in groups]
+    spots = _Spots(*(np.concatenate(parts) for parts in zip(*((np.full(len(d), k), d, i) for k, d, i in lowest),
+                                                           strict=True)))  # fmt: skip
+    if not len(spots.groups):
+        return spots
+    place, least = _minimum(way, tracker, spots)
+    place = place * way.unit
+    snapped = np.where(np.abs(place - np.round(place)) < CLOSE, np.round(place), place)
+    return spots._replace(places=snapped).where((np.abs(least) < TOUCHING) & np.isfinite(least))
+
+
+def _lowest(margin: Number) -> tuple[Number, Number]:
+    """Designs and samples at which a margin is least and may have a zero beside them."""
     padded = np.pad(margin, ((0, 0), (1, 1)), constant_values=np.inf)
     here, before, after = margin, padded[:, :-2], padded[:, 2:]
     lowest = (here < NEAR) & (here >= -TOUCHING) & (here <= before) & (here < after) & (before >= 0) & (after >= 0)
-    found, index = np.nonzero(lowest)
-    if not len(found):
-        return found, index
-    low, high = np.maximum(index - 1.0, 0.0), np.minimum(index + 1.0, way.samples.poses - 1.0)
-    place, least = _minimum(way, tracker, k, found, low, high)
-    place = place * way.unit
-    snapped = np.where(np.abs(place - np.round(place)) < CLOSE, np.round(place), place)
-    touching = (np.abs(least) < TOUCHING) & np.isfinite(least)
-    return found[touching], snapped[touching]
+    # at an end of the way the neighbour is not known: only between three samples is a parabola any evidence
+    bend = before + after - 2.0 * here
+    vertex = here - (after - before) ** 2 / (8.0 * bend)
+    clear = np.isfinite(bend) & (vertex > CLEAR * np.maximum(before, after))
+    return np.nonzero(lowest & ~clear)
 
 
-def _minimum(way: _Way, tracker: Tracker, k: int, designs: Number, low: Number, high: Number) -> tuple[Number, Number]:
-    """Golden-section search for the least margin of group `k`, for all brackets at once."""
+def _minimum(way: _Way, tracker: Tracker, spots: _Spots) -> tuple[Number, Number]:
+    """Golden-section search for the least margins beside samples, for all groups and brackets at once."""
+    low = np.maximum(spots.places - 1.0, 0.0)
+    high = np.minimum(spots.places + 1.0, way.samples.poses - 1.0)
+    upto = int(spots.groups.max()) + 1
 
     def margin(s: Number) -> Number:
-        found = way.margins(tracker, way.samples.pick(designs, s), s[:, None], designs[:, None], k + 1)[k]
-        return np.broadcast_to(found, (len(s), 1))[:, 0]
+        found = way.margins(tracker, way.samples.pick(spots.designs, s), s[:, None], spots.designs[:, None], upto)
+        own = np.empty(len(s))
+        for k in np.unique(spots.groups):
+            here = spots.groups == k
+            own[here] = np.broadcast_to(found[k], (len(s), 1))[here, 0]
+        return own
 
     a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     fa, fb = margin(a), margin(b)
