@@ -25,6 +25,10 @@ from compoundkin.words import FRAME, Drive, Item
 
 # Each takes some milliseconds to decompose.
 MOST_CHOICES = 600
+# Choices by links: beyond this, comparing and decomposing them takes more than some seconds.
+MOST_WORK = 12000
+# Counting takes a fifth of a second for a group of eight links, and some twelve times as long for each two more.
+MOST_COUNTED = 8
 # A class II mechanism can be solved dyad by dyad.
 DYADIC = 2
 _OTHER = "other frame"
@@ -49,9 +53,10 @@ class Alternative:
     """A choice of frame and drivers, links by the names they have now, and the groups that it gives.
 
     `groups` are (letters, class, order) in solving order. `class_` is the highest class, 1 where the drivers move
-    everything. `configurations` is the number of ways to assemble it at given driver values, those of larger
-    groups over the complex numbers; None where no formula knows it. `closed` says that every group is solved in closed form, `faults` why it is
-    not determined. `alike` counts the choices that it stands for, itself included; `present` marks the one that is.
+    everything. `configurations` is the number of ways to assemble it at given driver values, those of larger groups
+    over the complex numbers; None where no formula knows it. `closed` says that every group is solved in closed form,
+    `faults` why it is not determined. `alike` counts the choices that it stands for, itself included; `present` marks
+    the one that is.
     """
 
     frame: str
@@ -90,8 +95,9 @@ def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None 
     wanted = [structure.mechanism.link(name).name for name in frames or structure.mechanism.links]
     if structure.mobility.freedoms < 1:
         return ()
-    classes = choices.frames(wanted)
-    if len(classes) * choices.number > MOST_CHOICES:
+    work = len(wanted) * choices.number * len(structure.mechanism.links)
+    classes = choices.frames(wanted) if work <= MOST_WORK else [(name, 1) for name in wanted]
+    if len(classes) * choices.number > MOST_CHOICES or work > MOST_WORK:
         what = f"{len(classes) * choices.number} choices are too many"
         raise InvalidInput(Problem("frames", what, f"name some frames; each gives {choices.number} choices"))
     return tuple(found for frame, count in classes for found in choices.of(frame, count))
@@ -299,12 +305,14 @@ def _solved(structure: Structure) -> tuple[int | None, bool]:
 
 
 def group_count(group: Group) -> int | None:
-    """The number of complex configurations of a group for generic dimensions; None with slides or higher pairs.
+    """The number of complex configurations of a group for generic dimensions; None with slides, or where large.
 
     >>> from compoundkin.catalog import load_named
     >>> group_count(decompose(load_named("class-iii-six-bar")).groups[0])
     6
     """
+    if len(group.bodies) > MOST_COUNTED:
+        return None
     if any(not pair.is_simple or not pair.free_is_angle for pair in (*group.inner, *group.outer)):
         return None
     code = group_joints(group).canonical().code

@@ -13,6 +13,7 @@ from compoundkin.motion import Motion
 from compoundkin.pairs import Pair
 from compoundkin.pairs.profiled import Profiled
 from compoundkin.poses import Pose
+from compoundkin.profiles import Synthesised
 from compoundkin.series import Number, as_series
 
 # Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and
@@ -104,6 +105,15 @@ class CamAnalysis:
         if self.untouched:
             yield f"The follower bridges a part of the profile, at {self._places(self.untouched)}."
         yield from self._running_off()
+        yield from self._made_for_another()
+
+    def _made_for_another(self) -> Iterator[str]:
+        made = self.pair.profile
+        if isinstance(made, Synthesised) and not self.pair.is_flat and self.pair.roller != made.roller:
+            yield (
+                f"The profile is made for a roller of radius {made.roller:.6g}, not {self.pair.roller:.6g}: "
+                "the follower does not follow its program."
+            )
 
     def _running_off(self) -> Iterator[str]:
         curve = self.pair.curve

@@ -83,11 +83,12 @@ class Strap(NamedTuple):
 
 
 class Outline(NamedTuple):
-    """A profile of a member, an array of points."""
+    """A profile of a member, an array of points; a hollow one has its material outside, as a ring."""
 
     member: int
     line: Number
     closed: bool
+    is_hollow: bool = False
 
 
 Mark: TypeAlias = Pin | Stud | Sliding | Groove | Disc | Track | Strap | Outline

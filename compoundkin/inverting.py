@@ -14,7 +14,7 @@ import numpy as np
 
 from compoundkin.errors import CompoundkinError, InvalidInput, Problem, UnassembledPoses, UnknownName, nearest
 from compoundkin.mechanism import Mechanism
-from compoundkin.motion import solve
+from compoundkin.motion import Motion, solve
 from compoundkin.motion.home import column
 from compoundkin.pairs import Pair
 from compoundkin.poses import Pose
@@ -110,10 +110,16 @@ def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
     """With the drawn value for a driver that is no angle, which cannot make a full turn."""
     structure = decompose(mechanism)
     pair = _driven(structure, new)
-    if pair is None or pair.free_is_angle or any(name not in mechanism.geometry.drawn for name in pair.members):
+    if pair is None or pair.free_is_angle:
         return mechanism
-    poses = tuple(column(mechanism.geometry.drawn[name]) for name in pair.members)
-    value = pair.coordinate(pair.ends(mechanism.geometry), poses).c[0] * pair.driven_by(new.link)
+    geometry = mechanism.geometry
+    if all(name in geometry.drawn for name in pair.members):
+        poses = tuple(column(geometry.drawn[name]) for name in pair.members)
+        value = pair.coordinate(pair.ends(geometry), poses).c[0] * pair.driven_by(new.link)
+    else:
+        value = pair.drawn_coordinate(mechanism.sketch)
+    if value is None:
+        return mechanism
     return mechanism.replace(replace(new, values=float(value) if np.ndim(value) == 0 else value))
 
 
@@ -210,7 +216,21 @@ def _some_pose(mechanism: Mechanism) -> Any:
     assembled = np.asarray(motion.assembled)
     whole = np.all(assembled.reshape(-1, assembled.shape[-1]), axis=0) if assembled.ndim else assembled[None]
     found = np.flatnonzero(whole)
-    return (motion, int(found[int(WITHIN * len(found))])) if len(found) else None
+    return (motion, _clear(motion, found)) if len(found) else None
+
+
+def _clear(motion: Motion, found: Number) -> int:
+    """Which of some poses a drawing shows without doubt, where links of one point show no angle."""
+    for item in motion.mechanism.drives:
+        if any(len(motion.mechanism.links[name].points) == 1 for name in (item.link, item.on)):
+            pair = _driven(motion.structure, item)
+            if pair is None or pair.free_is_angle:
+                # taken for the first pose
+                return int(found[0])
+            # taken to be forward along the guide
+            value = np.broadcast_to(motion.pairs[pair.name].value, motion.assembled.shape)
+            return int(found[np.argmax(value.reshape(-1, value.shape[-1])[0][found])])
+    return int(found[int(WITHIN * len(found))])
 
 
 def _at(values: Number, k: int) -> Number:

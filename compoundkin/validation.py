@@ -176,21 +176,29 @@ def _greatest(value: Any) -> float:
 def _pairs(mechanism: Mechanism) -> Iterator[Problem]:
     letters = {name: link.letters for name, link in mechanism.links.items()}
     for where, pair in _placed(mechanism.written_pairs):
-        yield from pair.problems(letters, where)
-        for key in pair.keys:
-            for value in _numbers_of(pair, key):
-                if not _is_finite(value):
-                    yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite")
+        # what is no number cannot be compared with anything
+        yield from list(_no_numbers(pair, where)) or pair.problems(letters, where)
         shared = mechanism.pins_between(*pair.members[:2])
         if shared:
             yield Problem(where, f"{pair.members[1]!r} and {pair.members[0]!r} are also pinned at {shared[0]}",
                           "give the two points different letters")  # fmt: skip
 
 
+def _no_numbers(pair: Pair, where: str) -> Iterator[Problem]:
+    """What a pair holds in place of real numbers, and of true or false."""
+    for key in pair.keys:
+        for value in _numbers_of(pair, key):
+            if not _is_finite(value) or np.iscomplexobj(value):
+                yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite, or not a number")
+        flag = getattr(pair, key.name, None)
+        if key.kind == "flag" and not isinstance(flag, bool | np.bool_):
+            yield Problem(f"{where}.{key.name}", f"{flag!r} is neither True nor False")
+
+
 def _numbers_of(pair: Pair, key: Key) -> tuple[Any, ...]:
     """The numbers and arrays that a pair holds under a key."""
-    value = getattr(pair, key.name, None)
-    if value is None or key.kind not in ("length", "angle", "two"):
+    value: Any = getattr(pair, key.name, None)
+    if key.kind not in ("length", "angle", "two") or (value is None and key.default is None and not key.required):
         return ()
     return value if key.kind == "two" else (value,)
 

@@ -89,3 +89,108 @@ def test_the_angle_in_a_pin_is_written_in_degrees(tmp_path):
     assert ck.load(tmp_path / "m.toml") == mechanism
     motion = ck.solve(mechanism, {"crank": [0.1, 0.2]})
     assert np.array_equal(ck.quantity(motion, "C.angle").values, motion.pairs["C"].value)
+
+
+WHEELS = (ck.link("frame", A=0, B=60), ck.link("one", A=0), ck.link("two", B=0), ck.drive("one"))
+GUIDED = (
+    ck.link("frame", A=0), ck.link("cam", A=0), ck.link("follower", P=0), ck.drive("cam"),
+    ck.slide("follower", on="frame", through="A", angle=ck.deg(90)),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("where", "items"),
+    [
+        ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), radius="10")]),
+        ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), radius=None)]),
+        ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), radius=1j)]),
+        ("cams[0].inside", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), inside="no")]),
+        ("cams[0].profile.middle", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, np.nan))]),
+        ("arcs[0].radius", [*GUIDED[:3], ck.arc("follower", on="frame", centre="A", radius="x"), GUIDED[3]]),
+        ("rollings[0].radius", [*GUIDED[:3], ck.roll("follower", on="frame", through="A", radius=None), GUIDED[3]]),
+        ("gears[0].internal", [*WHEELS, ck.gear("one", "two", teeth=(20, 40), internal="no")]),
+        ("gears[0].phase", [*WHEELS, ck.gear("one", "two", teeth=(20, 40), phase="30")]),
+    ],
+)
+def test_texts_in_place_of_numbers_are_told_by_their_key(where, items):
+    with pytest.raises(ck.InvalidMechanism) as caught:
+        ck.solve(ck.Mechanism("wrong", *items))
+    assert where in [problem.where for problem in caught.value.problems]
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: ck.disc("x"),
+        lambda: ck.disc([10, 20]),
+        lambda: ck.profile(None),
+        lambda: ck.profile(5),
+        lambda: ck.formula(np.exp, "a", 1),
+    ],
+)
+def test_what_is_no_profile_is_told(make):
+    with pytest.raises(ck.InvalidMechanism, match="profile"):
+        make()
+
+
+LIFT = ck.program(ck.rise(20, over=ck.deg(180)), ck.fall(20, over=ck.deg(180)))
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("base", None), ("base", True), ("offset", 1j), ("angle", None), ("clockwise", "no")]
+)
+def test_a_cam_cannot_be_made_of_what_is_no_number(key, value):
+    with pytest.raises(ck.InvalidMechanism) as caught:
+        ck.synthesise(LIFT, **{"base": 60, key: value})
+    assert [problem.where for problem in caught.value.problems] == [key]
+
+
+@pytest.mark.parametrize(
+    "profile", [ck.profile([10, 20, 30, 40]), ck.formula(lambda s: 30 * np.cos(s) + 0j, 0, 2 * np.pi)]
+)
+def test_a_closed_profile_that_is_a_line_is_refused(profile):
+    with pytest.raises(ck.InvalidMechanism, match="no area"):
+        ck.Mechanism("line", *GUIDED, ck.cam("follower", on="cam", profile=profile))
+
+
+def test_a_formula_that_fails_is_told():
+    with pytest.raises(ck.InvalidMechanism, match="division by zero"):
+        ck.Mechanism("m", *GUIDED, ck.cam("follower", on="cam", profile=ck.formula(lambda s: 1 / 0, 0, 1)))
+
+
+def test_a_complex_law_is_refused():
+    crank = ck.Mechanism("c", *GUIDED[:2], ck.drive("cam", law=lambda t: np.exp(1j * t)))
+    with pytest.raises(ck.InvalidInput, match="does not return numbers; return an array of reals"):
+        ck.solve(crank, time=[0.0, 1.0])
+
+
+def test_a_roller_that_the_profile_is_not_made_for_is_warned_about():
+    made = ck.synthesise(LIFT, base=60, follower="roller", roller=10)
+    said = [
+        ck.cam_analysis(
+            ck.solve(ck.Mechanism("m", *GUIDED, ck.cam("follower", on="cam", profile=made, radius=radius))),
+            "follower/cam",
+        ).warnings
+        for radius in (10, 12)
+    ]
+    assert not any("made for" in text for text in said[0])
+    assert any("made for a roller of radius 10, not 12" in text for text in said[1])
+
+
+@pytest.mark.parametrize("speed", [[1.0, 2.0], [0.0, 1.0, 2.0]])
+def test_a_law_does_not_change_along_the_motion(speed):
+    with pytest.raises(ck.InvalidMechanism, match=r"law.speed.*along the motion"):
+        ck.constant_speed(speed)
+
+
+def test_a_rise_in_a_file_says_how_far(tmp_path):
+    law = ck.program(ck.rise(1.0, over=1), ck.dwell(1), ck.rise(0.0, over=1))
+    mechanism = ck.Mechanism("c", *GUIDED[:2], ck.drive("cam", law=law))
+    path = tmp_path / "m.toml"
+    ck.save(mechanism, path)
+    text = path.read_text()
+    assert ck.load(path) == mechanism
+    assert text.count("rise") == 2
+    path.write_text(text.replace(", rise = 0", ""))
+    with pytest.raises(ck.InvalidMechanism, match=r"segments\[2\].rise: it is missing"):
+        ck.load(path)

@@ -27,7 +27,7 @@ OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels")
 Examples:
   compoundkin draw six-bar -o six-bar.svg
   compoundkin draw jansen-leg --at 35 --ghosts 6 --path foot -o leg.svg
-  compoundkin draw six-bar --at 35 --vectors velocity --vectors acceleration -o vectors.png
+  compoundkin draw six-bar --at 35 --vectors velocity -o vectors.png
   compoundkin draw six-bar --at 35 --centres -o centres.pdf
   compoundkin draw six-bar --at 35 --polygon velocity -o polygon.svg
   compoundkin draw six-bar --structure groups -o apart.svg

@@ -69,7 +69,7 @@ class Function(Curve):
     def _points(self, s: Number) -> tuple[Number, Number]:
         try:
             points = np.array(self.function(s), dtype=complex)
-        except (TypeError, ValueError) as error:
+        except Exception as error:
             what = f"the function does not take an array of parameters ({error})"
             raise InvalidMechanism(Problem("function", what, "use functions of NumPy")) from error
         if points.shape != s.shape:

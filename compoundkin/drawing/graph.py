@@ -102,7 +102,10 @@ def _spread(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     wanted = _steps(len(names), joined)
     rng = np.random.default_rng(0)
     # the same orders every time: the seed is fixed
-    orders = [np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(STARTS // len(names)))]
+    orders = [
+        np.arange(len(names)),
+        *(rng.permutation(len(names)) for _ in range(min(MOST_STARTS, STARTS // len(names)))),
+    ]
     tried = [_settled(wanted, order) for order in orders]
     places = min(tried, key=lambda found: _crossings(found, joined))
     places = places - places[0]
@@ -134,7 +137,7 @@ def _crossings(places: Number, joined: Sequence[tuple[int, int]]) -> int:
 
 
 # Of so many starting orders, by the number of links, the one is taken whose lines cross least.
-STARTS = 500
+STARTS, MOST_STARTS = 500, 40
 # Products of distances below this are rounding.
 CLEAR = 1e-9
 # Not along an axis, so that no two links start at one height.

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from compoundkin.drawing.shapes import Arc, Circle, Group, Polygon, Polyline, Shape, Strokes, Text
+from compoundkin.drawing.shapes import Arc, Circle, Group, Polygon, Polyline, Shape, Strokes
 from compoundkin.series import Number
 
 # Width of a letter in parts of its height, a little more than in the usual fonts.
@@ -151,9 +151,3 @@ def _rounds(shapes: Iterable[Shape]) -> Iterator[tuple[complex, float]]:
             yield from _rounds(shape.shapes)
         elif isinstance(shape, Circle) and shape.radius <= BIG:
             yield shape.centre, shape.radius
-
-
-def boxes(shapes: Iterable[Shape], size_of: dict[str, float]) -> list[tuple[str, complex, complex]]:
-    """Text, middle and half size of every text with its middle at its place."""
-    found = [shape for shape in shapes if isinstance(shape, Text) and shape.anchor == "middle"]
-    return [(shape.text, shape.at, text_half(shape.text, size_of[shape.style.split()[0]])) for shape in found]

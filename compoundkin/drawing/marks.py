@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.drawing.brush import hatching, ticks
+from compoundkin.drawing.brush import direction, hatching, ticks
 from compoundkin.drawing.painter import Laid, Layer, Painter
 from compoundkin.drawing.scene import Seen
 from compoundkin.drawing.shapes import Circle, Polygon, Polyline, Strokes
@@ -46,8 +46,10 @@ def marks(painter: Painter) -> Iterator[Laid]:
 def _groove(painter: Painter, seen: Seen, mark: Groove) -> Iterator[Laid]:
     link = seen.members[mark.member]
     line = painter.line(link, mark.line)
-    yield Layer.GROOVE, Polyline(line, painter.style("track", link))
-    yield Layer.GROOVE, Polyline(line, "knock")
+    # a groove of a bar covers it; one of the frame is behind all bars
+    layer = Layer.FRAME if link == FRAME else Layer.GROOVE
+    yield layer, Polyline(line, painter.style("track", link))
+    yield layer, Polyline(line, "knock")
     own = [painter.place(link, p) for p in painter.scene.points[link].values()]
     if link != FRAME and min(abs(p - q) for p in own for q in line) > 2.0 * PIN:
         yield from painter.stub(link, min(line, key=lambda q: min(abs(p - q) for p in own)))
@@ -114,7 +116,11 @@ def _strap(painter: Painter, seen: Seen, mark: Strap) -> Iterator[Laid]:
 def _outline(painter: Painter, seen: Seen, mark: Outline) -> Iterator[Laid]:
     link = seen.members[mark.member]
     line = painter.line(link, mark.line)
-    if mark.closed:
+    if mark.is_hollow:
+        middle = complex(np.mean(line))
+        yield Layer.WHEEL, Polygon(line, painter.style("line", link))
+        yield Layer.WHEEL, Polygon(tuple(p + RIM * direction(p - middle) for p in line), painter.style("line", link))
+    elif mark.closed:
         yield Layer.WHEEL, Polygon(line, painter.style("plate", link))
     else:
         yield Layer.WHEEL, Polyline(line, painter.style("line", link))

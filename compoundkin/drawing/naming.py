@@ -107,7 +107,7 @@ def label_shapes(scene: Scene, found: dict[str, complex]) -> list[Shape]:
     for key, at in found.items():
         kind, _, name = key.partition(" ")
         if kind == "link":
-            shapes.append(Circle(at, NUMBER, f"pin {style_of('ring', scene.groups[name])} fine"))
+            shapes.append(Circle(at, NUMBER, f"pin {style_of('ring', scene.groups[name])}"))
             shapes.append(Text(at, str(scene.numbers[name]), "number"))
         else:
             shapes.append(Text(at, name, "letter" if kind == "point" else "centre-name"))

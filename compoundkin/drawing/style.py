@@ -46,8 +46,6 @@ CLASSES: Mapping[str, tuple[str, tuple[str, str]]] = {
     "paper": ("fill:{}", PAPER),
     "pin": ("fill:{};stroke-width:2", PAPER),
     "knock": (f"{_LINE};stroke:{{}};stroke-width:7", PAPER),
-    "knock-face": ("fill:{}", PAPER),
-    "halo": (f"{_LINE};stroke:{{}};stroke-width:9", PAPER),
     "ink": (f"{_LINE};stroke:{{}};stroke-width:2", INK),
     "dot": ("fill:{}", INK),
     "frame": (f"{_LINE};stroke:{{}};stroke-width:2", FRAME),
@@ -56,7 +54,6 @@ CLASSES: Mapping[str, tuple[str, tuple[str, str]]] = {
     "outer": (f"{_LINE};stroke:{{}};stroke-width:1.2;stroke-dasharray:3 3", INK),
     "bold": (f"{_LINE};stroke:{{}};stroke-width:3.6", INK),
     "strap": (f"{_LINE};stroke:{{}};stroke-width:2.2", INK),
-    "fine": ("stroke-width:1.4", PAPER),
     "hatch": (f"{_LINE};stroke:{{}};stroke-width:1", FRAME),
     "path": (f"{_LINE};stroke:{{}};stroke-width:1.6", ("#b0004e", "#ff6fa5")),
     "drive": (f"{_LINE};stroke:{{}};stroke-width:2.2", INK),
@@ -82,7 +79,6 @@ GROUPED: Mapping[str, str] = {
     "line": f"{_LINE};stroke:{{}};stroke-width:2",
     "thin": f"{_LINE};stroke:{{}};stroke-width:1.2",
     "track": f"{_LINE};stroke:{{}};stroke-width:12",
-    "solid": "fill:{}",
     "ring": "stroke:{}",
 }
 
@@ -97,7 +93,10 @@ def style_of(kind: str, group: int | None = None) -> str:
 
 
 def css(shapes: Iterable[Shape]) -> str:
-    """The style sheet of some shapes: their classes only, on light paper and, where a reader prefers it, on dark."""
+    """The style sheet of some shapes: their classes only, on light paper and, where a reader prefers it, on dark.
+
+    Of two classes of one shape the later in the alphabet counts: "pin" fills what "ink" or "frame" strokes.
+    """
     used = sorted({name for style in _styles(shapes) for name in style.split()})
     light = "\n".join(_rule(name, 0) for name in used)
     dark = "\n".join(_rule(name, 1) for name in used if _rule(name, 0) != _rule(name, 1))

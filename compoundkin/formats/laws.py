@@ -10,12 +10,16 @@ from compoundkin.errors import InvalidMechanism, Problem, nearest
 from compoundkin.formats.values import bad, described, wrong
 from compoundkin.keys import Key
 from compoundkin.laws import WRITTEN, Law
+from compoundkin.laws.cam_laws import LAWS
 from compoundkin.laws.programs import Segment
 
 if TYPE_CHECKING:
     from compoundkin.formats.recovery import Recovery
 
 KIND = "kind"
+# The law whose segments need not say how far they rise.
+DWELL = "dwell"
+RISING = tuple(name for name in LAWS if name != DWELL)
 
 
 def law(log: Recovery, raw: Any, where: str, angle: bool | None) -> Law | None:
@@ -47,7 +51,10 @@ def segments(
     if not isinstance(raw, list):
         log.report(wrong(where, raw, "a list of segments", 'write [{ law = "cycloidal", over = 1, rise = 90 }]'))
         return ()
-    found = (made(log, Segment, table, f"{where}[{index}]", angle, keys) for index, table in enumerate(raw))
+    found = [made(log, Segment, table, f"{where}[{index}]", angle, keys) for index, table in enumerate(raw)]
+    for index, table in enumerate(raw):
+        if isinstance(table, dict) and "rise" not in table and table.get("law") in RISING:
+            log.report(bad(f"{where}[{index}].rise", "it is missing", f'write rise = 30, or law = "{DWELL}"'))
     return tuple(segment for segment in found if segment is not None)
 
 

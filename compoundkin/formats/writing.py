@@ -8,12 +8,12 @@ from typing import Any
 from compoundkin.errors import InvalidInput, Problem
 from compoundkin.formats import document as doc
 from compoundkin.formats import exact
-from compoundkin.formats.laws import KIND
+from compoundkin.formats.laws import DWELL, KIND
 from compoundkin.formats.profiles import PROGRAM, SEGMENT
 from compoundkin.formats.reading import default_name
 from compoundkin.keys import Key, Kind
 from compoundkin.laws import Function
-from compoundkin.laws.programs import Program
+from compoundkin.laws.programs import Program, Segment
 from compoundkin.mechanism import Mechanism, same
 from compoundkin.pairs import WRITTEN, Pair
 from compoundkin.series import Number
@@ -87,6 +87,12 @@ def _tagged(item: Any, angle: bool) -> dict[str, Any]:
     return {KIND: item.kind, **_table(item, item.keys, angle)}
 
 
+def _segment(item: Segment, keys: tuple[Key, ...], angle: bool) -> dict[str, Any]:
+    """Whatever is not a dwell says how far it rises, even by nothing."""
+    rise = {} if item.law == DWELL else {"rise": exact.coordinate(item.rise, angle)}
+    return _table(item, keys, angle) | rise
+
+
 def _program(item: Program, angle: bool) -> Any:
     """A cam's program: its segments alone where it starts on the base circle."""
     table = _table(item, PROGRAM, angle)
@@ -129,13 +135,13 @@ WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "whole": lambda value, _: int(value),
     "span": lambda value, _: exact.plain(value),
     "times": lambda value, _: exact.values(value, False),
-    "segments": lambda value, angle: [_table(one, one.keys, angle) for one in value],
+    "segments": lambda value, angle: [_segment(one, one.keys, angle) for one in value],
     "law": _tagged,
     "number": lambda value, _: exact.plain(value),
     "turn": lambda value, _: exact.degrees(value),
     "place": lambda value, _: exact.point(value),
     "places": lambda value, _: [exact.point(one) for one in value],
-    "turned": lambda value, angle: [_table(one, SEGMENT, angle) for one in value],
+    "turned": lambda value, angle: [_segment(one, SEGMENT, angle) for one in value],
     "program": lambda value, angle: _program(value, angle),
     "profile": lambda value, _: _tagged(value, value.oscillates),
     "coordinate": exact.coordinate,

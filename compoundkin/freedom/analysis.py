@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.freedom.equations import ROUNDED, STRICT, Equations
+from compoundkin.freedom.equations import ROUNDED, Equations
 from compoundkin.freedom.examining import WIDEST, Examined, examined
 from compoundkin.freedom.flexing import rank_of
 from compoundkin.freedom.passive import PassiveFreedom, passive_motions
@@ -16,6 +16,9 @@ from compoundkin.mechanism import Mechanism
 from compoundkin.poses import Pose
 from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.model import Structure
+
+# Singular values at random geometry are zero below this part of the largest. They get small in long mechanisms.
+GENERIC = 1e-12
 
 
 @dataclass(frozen=True)
@@ -155,7 +158,7 @@ def _analysed(structure: Structure, poses: Mapping[str, Pose] | None) -> Mobilit
     counts = structure.mobility.freedoms, structure.mobility.drivers
     if equations.width > WIDEST:
         return MobilityAnalysis(counts[0], counts[0], 0, counts[1])
-    rank = rank_of(equations.generic, STRICT.rank * STRICT.rank)
+    rank = rank_of(equations.generic, GENERIC)
     generic = equations.width - rank - passive, equations.held - rank
     found = examined(structure.mechanism, poses)
     equations = found.equations

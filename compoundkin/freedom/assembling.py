@@ -19,21 +19,33 @@ STEPS = 60
 LONGEST = 0.3
 # A residual that is rounding: no step could make it less.
 EXACT = 1e-14
+# Where a step gains nothing below this, what is left is rounding too.
+ROUNDING = 1e-11
+# Beyond so many columns a step is taken from the normal equations, with this part of the largest singular value squared
+# added: well above the rounding of the products.
+DENSE_UP_TO = 150
+DAMPING = 1e-14
 # Directions that exact equations determine less than this are left alone: rounding would lead anywhere.
 UNDETERMINED = 1e-12
 # The angle of a driver that is given no values: not 0, where links are often in line.
 SOMEWHERE = 1.0
-# Starts for a mechanism that is not drawn completely, the first one from what is drawn alone.
+# Starts for a mechanism that is not drawn completely, the first one from what is drawn alone; fewer for a large one,
+# so that all together have no more than so many columns.
 TRIES = 40
+COLUMNS = 4000
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """The nearest that was found to an assembled pose: its state, and the largest residual in parts of the size."""
+    """The nearest that was found to an assembled pose: its state, and the largest residual in parts of the size.
+
+    `is_given` says that it needed no correction.
+    """
 
     state: Array
     residual: float
     is_closed: bool
+    is_given: bool = False
 
 
 def corrected(equations: Equations, state: Array, goal: Array | None = None, steps: int = STEPS) -> Assembly:
@@ -46,16 +58,27 @@ def corrected(equations: Equations, state: Array, goal: Array | None = None, ste
         worst = float(np.max(np.abs(residual), initial=0.0))
         if not np.isfinite(worst):
             return best
+        stalls = worst > best.residual / 2.0
         if worst < best.residual:
-            best = Assembly(state, worst, worst <= closed)
-        if worst <= EXACT:
+            best = Assembly(state, worst, worst <= closed, best.residual == np.inf and worst <= ROUNDING)
+        if worst <= EXACT or (stalls and worst <= ROUNDING) or best.is_given:
             break
-        step = np.linalg.lstsq(rows, -residual, rcond=least)[0]
+        step = _least_step(rows, -residual, least)
         longest = float(np.max(np.abs(step), initial=0.0))
         if longest <= EXACT:
             break
         state = state + step * min(1.0, LONGEST / longest)
     return best
+
+
+def _least_step(rows: Array, residual: Array, least: float) -> Array:
+    """The least step that closes what can be closed, directions that are determined less than `least` left alone."""
+    if rows.shape[1] <= DENSE_UP_TO:
+        return np.asarray(np.linalg.lstsq(rows, residual, rcond=least)[0])
+    # far faster than a singular value decomposition; what is nearly undetermined is damped and not cut off
+    normal = rows @ rows.T
+    normal[np.diag_indices_from(normal)] += max(least**2, DAMPING) * len(rows)
+    return np.asarray(rows.T @ np.linalg.solve(normal, residual))
 
 
 def _system(equations: Equations, state: Array, goal: Array | None) -> tuple[Array, Array]:
@@ -106,7 +129,7 @@ def _starts(equations: Equations) -> Iterator[tuple[Array, bool]]:
     still = {name: _upright(equations, name, places, guided.get(name, 0.0)) for name in missing}
     yield equations.state({**shown, **still}), not missing
     rng = np.random.default_rng(len(missing))
-    for _ in range(TRIES):
+    for _ in range(min(TRIES, COLUMNS // equations.width) if missing else 0):
         around = complex(*rng.standard_normal(2)) * equations.size / 2.0
         angles = {name: float(rng.uniform(-np.pi, np.pi)) for name in missing} | guided
         turned = {name: _upright(equations, name, places, angles[name], around) for name in missing}

@@ -31,9 +31,8 @@ class Tolerance(NamedTuple):
     rank: float
 
 
-# Rounding of exact dimensions. At a pose that is found by iteration where the equations are singular, residuals of
-# 1e-15 leave the pose, and so what ought to be zero, uncertain by their root.
-STRICT = Tolerance(1e-9, 1e-6)
+# Rounding of exact dimensions.
+STRICT = Tolerance(1e-9, 1e-9)
 # Dimensions given to some five digits, as in print: pairs that ought to close open by as much, and what ought to be
 # dependent is so nearly.
 ROUNDED = Tolerance(1e-5, 1e-4)

@@ -16,6 +16,9 @@ from compoundkin.structure.composites import composites
 
 # Wider equations than those of some hundred links take a dense decomposition many seconds.
 WIDEST = 1500
+# At a pose that is found by iteration where the equations are singular, residuals of 1e-15 leave the pose, and so what
+# ought to be zero, uncertain by their root.
+ITERATED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -30,19 +33,24 @@ class Examined:
         """The rows of the pairs at the assembled pose."""
         return self.equations.jacobian(self.assembly.state)[0]
 
+    @property
+    def dependent(self) -> float:
+        """Below which part of the largest a singular value at the assembled pose is zero."""
+        return max(self.equations.tolerance.rank, 0.0 if self.assembly.is_given else ITERATED)
+
     @cached_property
     def rank(self) -> int:
-        """Their rank."""
-        return rank_of(self.rows, self.equations.tolerance.rank)
+        """The rank of the rows."""
+        return rank_of(self.rows, self.dependent)
 
     @cached_property
     def flex(self) -> Flex:
         """How it moves. Where no row is redundant, all that is left free is motion."""
         state = self.assembly.state
         if self.rank == len(self.rows):
-            free = null_space(self.rows, self.equations.tolerance.rank)
+            free = null_space(self.rows, self.dependent)
             return Flex(state, free, free.shape[1])
-        return flex_of(self.equations, state)
+        return flex_of(self.equations, state, self.dependent)
 
     @cached_property
     def stress(self) -> Array:

@@ -55,10 +55,10 @@ def rank_of(rows: Array, tolerance: float = STRICT.rank) -> int:
     return int(np.sum(values > tolerance * max(values, default=1.0)))
 
 
-def flex_of(equations: Equations, state: Array) -> Flex:
-    """How a mechanism moves from an assembled pose."""
+def flex_of(equations: Equations, state: Array, dependent: float) -> Flex:
+    """How a mechanism moves from an assembled pose, where singular values below `dependent` of the largest are zero."""
     rng = np.random.default_rng(_SEED)
-    free = null_space(equations.jacobian(state)[0], equations.tolerance.rank)
+    free = null_space(equations.jacobian(state)[0], dependent)
     steps = tried = 0
     while free.shape[1] and steps < WALK and tried < TRIED:
         moved = _moved(equations, state, free @ _direction(rng, free.shape[1]))

@@ -177,9 +177,11 @@ def as_law(where: str, law: Any) -> Law | None:
 
 def _checked(part: Any, times: Array) -> Array:
     try:
+        if np.iscomplexobj(part):  # its real part is not what its author meant
+            raise TypeError
         values = np.asarray(part, dtype=float)
     except (TypeError, ValueError):
-        raise InvalidInput(Problem("law", "the function does not return numbers", "return an array")) from None
+        raise InvalidInput(Problem("law", "the function does not return numbers", "return an array of reals")) from None
     if values.shape != times.shape:
         what = f"the function returns shape {values.shape} for times of shape {times.shape}"
         raise InvalidInput(Problem("law", what, "return one value for each time, such as c + 0 * t for a constant"))

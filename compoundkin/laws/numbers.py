@@ -68,5 +68,9 @@ def hold_numbers(law: Any, *names: str) -> None:
             raise InvalidMechanism(Problem(f"law.{name}", what)) from None
         if held.size == 0 or not np.isfinite(held).all():
             raise InvalidMechanism(Problem(f"law.{name}", "the value is empty or not finite"))
+        if not names and held.ndim and held.shape[-1] > 1:  # not a table, but what holds all along the motion
+            what = f"it holds {held.shape[-1]} numbers along the motion, in which it cannot change"
+            remedy = "give one number, or one for each design: [[1.0], [2.0]]"
+            raise InvalidMechanism(Problem(f"law.{name}", what, remedy))
         held.setflags(write=False)
         object.__setattr__(law, name, as_number(held))

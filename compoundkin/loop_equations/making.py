@@ -81,9 +81,9 @@ class LoopEquations:
 def loop_equations(mechanism: Mechanism | Structure) -> LoopEquations:
     """The vector-loop equations of a mechanism.
 
-    Each link has a vector from pair to pair, at the link's angle; a slide adds its displacement along its guide, and ties
-    the angles of block and guide. A pin in a slot, a disc cam and the like are crossed by the block or bar that stands for
-    them; a profile by its parameter. Gears, belts and racks close no loop: they add one equation each.
+    Each link has a vector from pair to pair, at the link's angle; a slide adds its displacement along its guide, and
+    ties the angles of block and guide. A pin in a slot, a disc cam and the like are crossed by the block or bar that
+    stands for them; a profile by its parameter. Gears, belts and racks close no loop: they add one equation each.
 
     Raises InvalidInput for more than `MOST_LOOPS` loops.
 

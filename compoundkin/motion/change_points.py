@@ -28,6 +28,8 @@ TOUCHING = 1e-12
 # A minimum is searched for unless the parabola through three samples stays above this part of the higher neighbour: that
 # of a zero that falls like a square is near zero, that of one that falls linearly at most at a quarter.
 CLEAR = 0.35
+# From a zero a margin rises at most so many times as fast as to the higher end of its bracket.
+STEEP = 4.0
 # Steps of golden-section search: 0.618**65 is below TOUCHING, for margins that fall linearly to zero.
 STEPS = 65
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
@@ -181,29 +183,43 @@ def _lowest(margin: Number) -> tuple[Number, Number]:
 
 
 def _minimum(way: _Way, tracker: Tracker, spots: _Spots) -> tuple[Number, Number]:
-    """Golden-section search for the least margins beside samples, for all groups and brackets at once."""
+    """Golden-section search for the least margins beside samples, for all groups and brackets at once.
+
+    A bracket is left as soon as its margin is negative somewhere, or higher than it could rise from a zero within what
+    is left of it.
+    """
     low = np.maximum(spots.places - 1.0, 0.0)
     high = np.minimum(spots.places + 1.0, way.samples.poses - 1.0)
-    upto = int(spots.groups.max()) + 1
-
-    def margin(s: Number) -> Number:
-        found = way.margins(tracker, way.samples.pick(spots.designs, s), s[:, None], spots.designs[:, None], upto)
-        own = np.empty(len(s))
-        for k in np.unique(spots.groups):
-            here = spots.groups == k
-            own[here] = np.broadcast_to(found[k], (len(s), 1))[here, 0]
-        return own
-
+    steepest = STEEP * np.fmax(_margins(way, tracker, spots, low), _margins(way, tracker, spots, high))
     a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    fa, fb = margin(a), margin(b)
+    fa, fb = (_margins(way, tracker, spots, s) for s in (a, b))
+    going = np.ones(len(low), dtype=bool)
     for _ in range(STEPS):
+        least = np.fmin(fa, fb)
+        going = going & (least >= -TOUCHING) & (least <= steepest * (high - low))
+        if not going.any():
+            break
         left = fa < fb
-        low, high = np.where(left, low, a), np.where(left, b, high)
+        low, high = np.where(going & ~left, a, low), np.where(going & left, b, high)
         new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
-        f = margin(new)
+        f = np.where(left, fa, fb)
+        f[going] = _margins(way, tracker, spots.where(going), new[going])
+        old = a, b, fa, fb
         a, b = np.where(left, new, b), np.where(left, a, new)
         fa, fb = np.where(left, f, fb), np.where(left, fa, f)
+        a, b, fa, fb = (np.where(going, now, then) for now, then in zip((a, b, fa, fb), old, strict=True))
     return np.where(fa < fb, a, b), np.minimum(fa, fb)
+
+
+def _margins(way: _Way, tracker: Tracker, spots: _Spots, s: Number) -> Number:
+    """The margin of each spot's group at a place beside it."""
+    upto = int(spots.groups.max()) + 1
+    found = way.margins(tracker, way.samples.pick(spots.designs, s), s[:, None], spots.designs[:, None], upto)
+    own = np.empty(len(s))
+    for k in np.unique(spots.groups):
+        here = spots.groups == k
+        own[here] = np.broadcast_to(found[k], (len(s), 1))[here, 0]
+    return own
 
 
 def _padded(designs: Number, where: Number, count: int) -> Number:

@@ -15,6 +15,8 @@ from compoundkin.series import Number
 
 def closed_with(plan: Plan, step: Step) -> tuple[Pair, ...]:
     """The redundant pairs that close or open as a group is assembled, all other links being known before."""
+    if not plan.structure.redundant:
+        return ()
     before: dict[str, None] = dict.fromkeys(plan.structure.ground.links)
     for other in plan.steps[: step.index]:
         before.update(dict.fromkeys(other.group.links))

@@ -212,9 +212,9 @@ class Cam(Profiled):
         """The profile, as a groove where a pin runs in an open one; the roller, the pin or the edge."""
         line = self.curve.at(self.curve.samples.s).c[0]
         if ends[1].measure > 0:
-            return Outline(0, line, self.curve.closed), Disc(1, ends[1].point, ends[1].measure)
+            return Outline(0, line, self.curve.closed, self.inside), Disc(1, ends[1].point, ends[1].measure)
         edge = Stud(1, ends[1].point)
-        return (Outline(0, line, True) if self.curve.closed else Groove(0, line)), edge
+        return (Outline(0, line, True, self.inside) if self.curve.closed else Groove(0, line)), edge
 
 
 def cam(

@@ -14,6 +14,9 @@ from compoundkin.curves import Curve
 from compoundkin.errors import InvalidMechanism, Problem
 from compoundkin.keys import Key
 
+# A closed profile with less area than this part of its size squared is a line but for rounding.
+NO_AREA = 1e-9
+
 
 class Profile(ABC):
     """A profile; kinds are frozen dataclasses with the keys that a file holds for them."""
@@ -46,7 +49,10 @@ class Profile(ABC):
         except InvalidMechanism as error:
             yield from (replace(p, where=".".join(filter(None, (where, p.where)))) for p in error.problems)
             return
-        if found:
+        curve = self.curve
+        if curve.closed and abs(curve.samples.area) <= NO_AREA * curve.size**2:
+            yield Problem(where, "the profile encloses no area: it runs back over itself", "say it is open")
+        elif found:
             place = found[0].point
             what = f"the profile crosses itself at ({place.real:.6g}, {place.imag:.6g})"
             yield Problem(where, what, self._without_loop())
@@ -59,9 +65,21 @@ class Profile(ABC):
 def place_of(value: Any, where: str = "profile") -> complex:
     """A point written as (x, y) or as a complex number; raises InvalidMechanism for anything else."""
     try:
+        if isinstance(value, str):  # Python reads "1+2j" as a number
+            raise ValueError
         return complex(value) if np.ndim(value) == 0 else complex(*(float(v) for v in value))
     except (TypeError, ValueError):
         raise InvalidMechanism(Problem(where, f"{value!r} is not a point", "write (x, y)")) from None
+
+
+def number_of(value: Any, where: str) -> float:
+    """One real number; raises InvalidMechanism naming `where` for anything else."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InvalidMechanism(
+            Problem(where, f"{value!r} is not one number", "give one; one profile for each design")
+        ) from None
 
 
 def side_of(curve: Curve) -> float:

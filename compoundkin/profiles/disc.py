@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.curves import Analytic, Curve
 from compoundkin.errors import Problem
 from compoundkin.keys import Key
-from compoundkin.profiles.contract import Profile, place_of
+from compoundkin.profiles.contract import Profile, number_of, place_of
 
 
 @dataclass(frozen=True)
@@ -36,15 +36,19 @@ class Disc(Profile):
         return Analytic(lambda s: s.turn() * self.radius + self.middle, 0.0, 2.0 * np.pi, closed=True)
 
     def problems(self, where: str) -> Iterator[Problem]:
-        """A radius that is none."""
+        """A radius that is none, a middle that is nowhere."""
         if not (np.isfinite(self.radius) and self.radius > 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a positive length")
+        if not np.isfinite(self.middle):
+            yield Problem(f"{where}.middle", f"{self.middle!r} is not a finite point")
 
 
 def disc(radius: float, middle: Any = 0j) -> Disc:
     """The profile of a round disc of a radius about a point of its link, (x, y) or complex.
 
+    Raises InvalidMechanism for what is no number or no point.
+
     >>> disc(20, (5, 0)).circle
     ((5+0j), 20.0)
     """
-    return Disc(float(radius), place_of(middle))
+    return Disc(number_of(radius, "profile.radius"), place_of(middle, "profile.middle"))

@@ -40,14 +40,19 @@ def faults(made: Synthesised) -> Iterator[Problem]:
 
 
 def _numbers(made: Synthesised) -> Iterator[Problem]:
-    for key in ("base", "roller", "offset", "angle", "arm", "face", "start", "pivot"):
+    for key in ("base", "roller", "offset", "angle", "arm", "face", "start"):
         value: Any = getattr(made, key)
-        if value is not None and not _is_number(value):
+        if not _is_number(value) or np.iscomplexobj(value):
             yield Problem(key, f"{value!r} is not a finite number", "give one number; one profile for each design")
+    if made.pivot is not None and not _is_number(made.pivot):
+        yield Problem("pivot", f"{made.pivot!r} is not a point", "give one point; one profile for each design")
+    if not isinstance(made.clockwise, bool | np.bool_):
+        yield Problem("clockwise", f"{made.clockwise!r} is neither True nor False")
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float | complex | np.number) and bool(np.isfinite(value))
+    known = isinstance(value, int | float | complex | np.number) and not isinstance(value, bool)
+    return known and bool(np.isfinite(value))
 
 
 def _words(made: Synthesised) -> Iterator[Problem]:
@@ -85,7 +90,8 @@ def _program(made: Synthesised) -> Iterator[Problem]:
     turn = program.period
     if abs(turn - FULL_TURN) > ROUNDING:
         what = f"the spans add up to {np.rad2deg(turn):.6g} degrees, not to a turn of 360"
-        yield Problem("program", what, "change a dwell; spans are in radians: rise(10, over=deg(90))")
+        remedy = "change a dwell; spans are degrees in a file, radians in Python: rise(10, over=deg(90))"
+        yield Problem("program", what, remedy)
     back = float(program.values[-1] - program.values[0])
     if abs(back) > ROUNDING * program.lift:
         what = f"the program does not return: it ends {abs(back):.6g} {'above' if back > 0 else 'below'} its beginning"

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from compoundkin.curves import Curve, Function
 from compoundkin.keys import Key
-from compoundkin.profiles.contract import Profile
+from compoundkin.profiles.contract import Profile, number_of
 
 
 @dataclass(frozen=True)
@@ -34,4 +34,4 @@ def formula(function: Callable[[Any], Any], low: float, high: float, *, closed: 
     >>> formula(lambda s: 2 * np.cos(s) + 1j * np.sin(s), 0, 2 * np.pi).curve.closed
     True
     """
-    return Formula(function, float(low), float(high), closed)
+    return Formula(function, number_of(low, "profile.low"), number_of(high, "profile.high"), closed)

@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from compoundkin.curves import Curve, Spline
+from compoundkin.errors import InvalidMechanism, Problem
 from compoundkin.keys import Key
 from compoundkin.profiles.contract import Profile, place_of
 
@@ -35,4 +38,6 @@ def profile(points: Any, *, closed: bool = True) -> Points:
     >>> profile([(2, 0), (0, 1), (-2, 0), (0, -1)]).points[1]
     1j
     """
-    return Points(tuple(place_of(point) for point in points), closed)
+    if not np.iterable(points):
+        raise InvalidMechanism(Problem("profile.points", f"{points!r} is not a list of points", "write [(x, y), ...]"))
+    return Points(tuple(place_of(point, f"profile.points[{k}]") for k, point in enumerate(points)), closed)

@@ -157,7 +157,7 @@ def synthesise(
     [30.0, 40.0]
     """
     pin = None if pivot is None else place_of(pivot, "pivot")
-    made = Synthesised(program, base, follower, roller, offset, angle, pin, arm, face, side, bool(clockwise), start)
+    made = Synthesised(program, base, follower, roller, offset, angle, pin, arm, face, side, clockwise, start)
     found = list(made.problems(""))
     if found:
         raise InvalidMechanism(found, heading="" if len(found) == 1 else "no cam can be made")

@@ -79,7 +79,8 @@ def _trusses(links: int) -> Iterator[Block]:
 def _table(found: Sequence[Chain]) -> Iterator[Table]:
     if found:
         columns = (Column("number", style="each"), Column("name"), Column("links by pairs"),
-                   Column("symmetry", style="each"), Column("inversions", style="each"), Column("graph6"), Column("pairs"))  # fmt: skip
+                   Column("symmetry", style="each"), Column("inversions", style="each"), Column("graph6"),
+                   Column("pairs"))  # fmt: skip
         yield Table(columns, tuple(_row(k, chain) for k, chain in enumerate(found, 1)))
 
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compoundkin.chains import ChainName, group_truss
+from compoundkin.chains.atlas import MOST_LINKS
 from compoundkin.chains.naming import MOST_COMPARED
 from compoundkin.reports.model import Section, Step
 from compoundkin.reports.wording import counted, listed
-from compoundkin.structure import Structure
+from compoundkin.structure import Group, Structure
 
 # More classes of links or more names than these are counted instead of written out.
 MANY = 8
 _DYAD = 2
+_LOWER = 2
 
 
 def chain_section(structure: Structure) -> Section:
@@ -45,6 +47,13 @@ def _facts(structure: Structure, name: ChainName) -> Iterator[tuple[str, str]]:
         yield "by count", "rigid: if it moves, its dimensions are special or slides alone close a loop"
 
 
+def _unlisted(group: Group) -> str:
+    """Why a group has no truss in the list; up to some links that is complete."""
+    if len(group.bodies) < MOST_LINKS and all(pair.held == _LOWER for pair in (*group.inner, *group.outer)):
+        return "no Baranov truss, for a part of it is rigid on its own, as a driver between moving links makes it"
+    return "a truss that is in no list"
+
+
 def _variety(degree: int) -> str:
     return ": no driver can be without effect on a loop" if degree == 0 else ""
 
@@ -67,6 +76,6 @@ def _trusses(structure: Structure) -> Iterator[tuple[str, str]]:
     larger = [(k, group) for k, group in enumerate(structure.groups, 1) if len(group.bodies) > _DYAD]
     for k, group in larger[:MANY]:
         trusses = group_truss(group)
-        yield f"group {k}", f"{group.name}: {' or '.join(trusses) if trusses else 'a truss that is in no list'}"
+        yield f"group {k}", f"{group.name}: {' or '.join(trusses) or _unlisted(group)}"
     if len(larger) > MANY:
         yield "groups", f"{len(larger) - MANY} more are larger than dyads"

@@ -64,3 +64,15 @@ def slide(sketch: Sketch, rng: np.random.Generator, guide: str, block: str) -> N
     toward = sketch.letter(sketch.places[through] + np.exp(1j * rng.uniform(0, 6.28)), guide)
     at = sketch.letter(random_place(rng), block)
     sketch.slides.append({"link": block, "on": guide, "at": at, "through": through, "toward": toward})
+
+
+def random_six_bodies(rng: np.random.Generator) -> Sketch:
+    """A crank and one group of six links: two plates pinned to each other, each on two legs."""
+    sketch = random_sketch(rng, (), multiple=0.0)
+    sketch.links.update({"p": [], "q": []})
+    sketch.letter(random_place(rng), "p", "q")
+    for leg, base, plate in (("a", "frame", "p"), ("b", "link0", "p"), ("c", "frame", "q"), ("d", "frame", "q")):
+        sketch.links[leg] = []
+        sketch.letter(random_place(rng), base, leg)
+        sketch.letter(random_place(rng), leg, plate)
+    return sketch

@@ -110,3 +110,22 @@ def test_a_roller_follower_has_two_circuits_of_full_turns() -> None:
     found = of("oscillating-roller-follower")
     assert [circuit.winding for circuit in found.circuits] == [1, 1]
     assert found.consistent
+
+
+def test_an_overconstrained_parallelogram_has_lost_the_other_circuit() -> None:
+    """A third crank closes only where the coupler stays parallel: one configuration, one circuit of full turns."""
+    three = ck.Mechanism(
+        "Three cranks",
+        ck.link("frame", A=0, D=4, G=2),
+        ck.link("crank", A=0, B=1),
+        ck.link("coupler", B=0, C=4, F=2),
+        ck.link("rocker", D=0, C=1),
+        ck.link("middle", G=0, F=1),
+        ck.drive("crank"),
+        ck.drawn(B=(0.6, 0.8), C=(4.6, 0.8), F=(2.6, 0.8)),
+    )
+    assert int(ck.configurations(three, {"crank": 1.0}).real_count) == 1
+    found = ck.circuits(three)
+    assert [circuit.winding for circuit in found.circuits] == [1]
+    assert found.consistent
+    assert found.start is not None

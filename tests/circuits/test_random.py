@@ -9,7 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.circuits import Circuits
-from tests.circuits.mechanisms import random_triad
+from tests.circuits.mechanisms import random_six_bodies, random_triad
 from tests.support import KINDS_OF_DYAD, Sketch, random_sketch
 
 FINE = 360
@@ -94,6 +94,11 @@ def test_class_iii_mechanisms(start: int) -> None:
 @pytest.mark.parametrize("seed", range(2000, 2003))
 def test_class_iii_mechanisms_with_slides(seed: int) -> None:
     check_counts(ck.circuits(with_slides(seed).mechanism()))
+
+
+@pytest.mark.parametrize("seed", range(2100, 2104))
+def test_groups_of_six_links(seed: int) -> None:
+    check_counts(ck.circuits(random_six_bodies(np.random.default_rng(seed)).mechanism()))
 
 
 @pytest.mark.parametrize("seed", range(3000, 3004))

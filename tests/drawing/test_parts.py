@@ -147,6 +147,10 @@ def test_structure_pictures_tell_what_they_cannot_show() -> None:
         ck.draw_structure(loose, "groups")
     with pytest.raises(ck.InvalidInput, match="there is no view"):
         ck.draw_structure(loose, "net")
+    with pytest.raises(ck.InvalidInput, match="is no mechanism"):
+        ck.draw_structure("six-bar")
+    motion = ck.solve(catalog.load_named("crank-rocker"))
+    assert ck.draw_structure(motion).svg == ck.draw_structure(motion.mechanism).svg
 
 
 # --- saving ----------------------------------------------------------------------------------------------

@@ -16,6 +16,7 @@ import compoundkin as ck
 from compoundkin import catalog
 from compoundkin.drawing.labels import ROOM, text_half
 from compoundkin.drawing.shapes import Arc, Circle, Group, Polygon, Polyline, Text, leaves
+from compoundkin.drawing.sketching import MOST_UNASKED
 from compoundkin.drawing.style import LETTER, NUMBER, SMALL
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -284,3 +285,55 @@ def test_motions_and_mechanisms_show_themselves() -> None:
     mechanism = four_bar()
     assert mechanism._repr_svg_().startswith("<svg")
     assert ck.solve(mechanism)._repr_svg_().startswith("<svg")
+
+
+def test_what_has_no_picture_shows_its_text_in_notebooks() -> None:
+    loose = ck.Mechanism("Loose", ck.link("frame", A=0), ck.link("rod", A=0, B=1), ck.link("arm", B=0, C=1))
+    assert loose._repr_svg_() is None
+    many = [ck.link(f"bar {k}", **{f"P{k}": 0, f"P{k + 1}": 1}) for k in range(MOST_UNASKED)]
+    assert ck.Mechanism("Long chain", ck.link("frame", P0=0), *many)._repr_svg_() is None
+
+
+def test_what_is_shown_as_drawn_has_no_rates_and_no_centres() -> None:
+    links = ck.link("frame", "A", "D"), ck.link("rod", "A", "B"), ck.link("arm", "B", "C")
+    still = ck.Mechanism("Open", *links, ck.drawn(A=0, D=4, B=1j, C=2))
+    for words in ({"vectors": "velocity"}, {"centres": True}):
+        with pytest.raises(ck.InvalidInput, match="has no motion"):
+            ck.draw(still, **words)
+    with pytest.raises(ck.InvalidInput, match="there is only 0"):
+        ck.draw(ck.solve(four_bar()), design=1)
+    with pytest.raises(ck.InvalidInput, match="nothing moves"):
+        ck.vector_polygon(ck.solve(four_bar(), speed=0.0))
+    assert ck.draw(ck.solve(four_bar(), speed=0.0), vectors="velocity").svg.count("velocity") == 0
+
+
+def test_a_slide_without_values_is_drawn_where_it_is_asked_for() -> None:
+    frame, block = ck.link("frame", O=(0, 0)), ck.link("block", P=(0, 0))
+    slide = ck.slide("block", on="frame", through="O", turn=0.0)
+    press = ck.Mechanism("Press", frame, block, slide, ck.drive("block"))
+    assert "block at 3" in ck.draw(press, at=3.0).description
+    with pytest.raises(ck.InvalidInput):
+        ck.draw(press)
+
+
+def test_grooves_are_as_long_as_the_way_of_their_pins() -> None:
+    links = ck.link("frame", A=(0, 0), C=(60, 10)), ck.link("crank", A=(0, 0), B=(15, 0)), ck.link("rod", B=0, P=50)
+    arc = ck.arc("rod", on="frame", at="P", centre="C", radius=30)
+    motion = ck.solve(ck.Mechanism("Arc", *links, arc, ck.drive("crank"), ck.drawn(P=(60, 40), B=(15, 0))))
+    picture = ck.draw(motion)
+    (groove,) = of(picture, "frame-track")
+    middle = picture.window.at(60 + 10j)
+    way = np.angle(np.asarray(motion.points["P"].position) - (60 + 10j))
+    ends = np.angle(np.conjugate(np.array(groove.points)[[0, -1]] - middle))
+    assert sorted(ends) == pytest.approx([way.min(), way.max()], abs=1e-9)
+    assert np.abs(np.array(groove.points) - middle) == pytest.approx(30 * picture.window.scale, rel=1e-9)
+
+
+def test_a_cam_that_is_touched_from_inside_is_a_ring() -> None:
+    links = ck.link("frame", A=(0, 0), G=(10, 0)), ck.link("ring", A=(0, 0)), ck.link("follower", P=(0, 0))
+    guide = ck.slide("follower", on="frame", through="G", angle=np.pi / 2, turn=0.0)
+    cam = ck.cam("follower", on="ring", at="P", profile=ck.disc(50, (8, 0)), radius=6, inside=True)
+    mechanism = ck.Mechanism("Ring", *links, guide, cam, ck.drive("ring"), ck.drawn(P=(10, 40)))
+    rims = [s for s in of(ck.draw(mechanism), "line0") if isinstance(s, Polygon)]
+    assert len(rims) == 2
+    assert not [s for s in of(ck.draw(mechanism), "plate0") if isinstance(s, Polygon)]
