@@ -114,14 +114,14 @@ class _Builder:
         elif ends[0].direction is not None and ends[1].direction is not None:
             on, link = pair.members
             start, block = (self._letter(*side, pair.name) for side in zip(pair.members, ends, strict=True))
-            angle, turn = float(np.angle(ends[0].direction)), -float(np.angle(ends[1].direction))
+            angle, turn = _angle(ends[0]), -_angle(ends[1])
             yield slide(link, on=on, at=block, through=start, angle=angle, turn=turn, name=pair.name)
         else:
             yield pair
 
     def _letter(self, name: str, end: End, pair: str) -> str:
         """The letter of a pair's side on a link."""
-        return self._named(name, self._world(name, complex(np.ravel(end.point)[0])), pair)
+        return self._named(name, self._world(name, complex(np.ravel(np.asarray(end.point))[0])), pair)
 
     def _replaced(self, pair: Pair, found: Osculation) -> Iterator[Item]:
         """The bar or block that stands for a pair, and its slide."""
@@ -156,6 +156,11 @@ class _Builder:
 
     def _used(self, letter: str) -> bool:
         return any(letter in points for points in self.points.values())
+
+
+def _angle(end: End) -> float:
+    """The direction of a side, as an angle in its link's frame."""
+    return float(np.ravel(end.along.angle().c[0])[0])
 
 
 def _plain(found: Osculation, size: float) -> Osculation:

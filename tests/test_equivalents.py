@@ -9,7 +9,6 @@ import compoundkin as ck
 from compoundkin.equivalents import equivalent_linkage, replacements
 from compoundkin.pairs import Pair
 
-
 # the geared five-bars do not close all round
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.UnassembledPoses")
 

@@ -21,6 +21,8 @@ from compoundkin.words import FRAME
 STRETCH = 0.5
 # A path whose ends are nearer to each other than this part of its size is closed.
 CLOSED = 1e-9
+# A path of a long motion is drawn through so many of its places.
+MOST_PLACES = 2001
 # A path is drawn with so many points between two poses.
 BETWEEN = 6
 
@@ -84,7 +86,17 @@ def ghost(scene: Scene, window: Window) -> Group:
 
 def path(scene: Scene, window: Window, letter: str) -> list[Shape]:
     """The path of a point along the motion, on the picture."""
-    return [Polyline(window.line(smooth(piece)), "path") for piece in scene.path(letter) if len(piece) > 1]
+    return [Polyline(window.line(smooth(thinned(p))), "path") for p in scene.path(letter) if len(p) > 1]
+
+
+def thinned(places: Number) -> Number:
+    """Some of many places, the first and the last among them.
+
+    >>> len(thinned(np.zeros(100_001)))
+    2001
+    """
+    chosen = np.linspace(0, len(places) - 1, min(len(places), MOST_PLACES)).round().astype(int)
+    return places[chosen]
 
 
 def smooth(places: Number) -> Number:

@@ -13,7 +13,8 @@ class Sided(Protocol):
     """One side of a pair: the index of its body in the group, or None for a known link."""
 
     @property
-    def body(self) -> int | None: ...
+    def body(self) -> int | None:
+        """The body's index."""
 
 
 @dataclass(frozen=True)

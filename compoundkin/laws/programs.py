@@ -55,7 +55,7 @@ class Segment:
         if not _is_real(self.rise):
             yield Problem("segment.rise", f"{self.rise!r} is not a finite number")
         elif self.law == "dwell" and self.rise != 0.0:
-            yield Problem("segment.rise", "a dwell does not rise", "choose another law, or leave the rise out")
+            yield Problem("segment.rise", "a dwell rises by 0", "choose another law, or leave the rise out")
 
 
 @dataclass(frozen=True)

@@ -25,8 +25,8 @@ from compoundkin.series import Number
 NEAR = 0.05
 # A margin below this at its minimum is a touching zero: rounding times the inverse of the margin's curvature.
 TOUCHING = 1e-12
-# A minimum is searched for unless the parabola through three samples stays above this part of the higher neighbour: that
-# of a zero that falls like a square is near zero, that of one that falls linearly at most at a quarter.
+# A minimum is searched for unless the parabola through three samples stays above this part of the higher neighbour:
+# that of a zero that falls like a square is near zero, that of one that falls linearly at most at a quarter.
 CLEAR = 0.35
 # From a zero a margin rises at most so many times as fast as to the higher end of its bracket.
 STEEP = 4.0
@@ -179,7 +179,8 @@ def _lowest(margin: Number) -> tuple[Number, Number]:
     bend = before + after - 2.0 * here
     vertex = here - (after - before) ** 2 / (8.0 * bend)
     clear = np.isfinite(bend) & (vertex > CLEAR * np.maximum(before, after))
-    return np.nonzero(lowest & ~clear)
+    designs, index = np.nonzero(lowest & ~clear)
+    return designs, index
 
 
 def _minimum(way: _Way, tracker: Tracker, spots: _Spots) -> tuple[Number, Number]:

@@ -172,7 +172,8 @@ class _March:
         # the middle of the step as it will be interpolated, against the prediction
         between = (self.state + state) / 2.0 + (rates[0] - new_rates[0]) * (h / 8.0)
         predicted = self.state + sum(c * (h / 2.0) ** k for k, c in enumerate(rates, 1))
-        off, moved = (np.abs(v * self.solver.weights).max(axis=(1, 2)) for v in (between - predicted, state - self.state))
+        gaps = (between - predicted, state - self.state)
+        off, moved = (np.abs(gap * self.solver.weights).max(axis=(1, 2)) for gap in gaps)
         near = off <= BENT * moved + SAME
         return state, new_rates, new_side, good & near & (new_side == side).reshape(len(self.state))
 

@@ -49,13 +49,12 @@ class Profile(ABC):
         except InvalidMechanism as error:
             yield from (replace(p, where=".".join(filter(None, (where, p.where)))) for p in error.problems)
             return
-        curve = self.curve
-        if curve.closed and abs(curve.samples.area) <= NO_AREA * curve.size**2:
-            yield Problem(where, "the profile encloses no area: it runs back over itself", "say it is open")
-        elif found:
+        if found:
             place = found[0].point
             what = f"the profile crosses itself at ({place.real:.6g}, {place.imag:.6g})"
             yield Problem(where, what, self._without_loop())
+        elif self.curve.closed and abs(self.curve.samples.area) <= NO_AREA * self.curve.size**2:
+            yield Problem(where, "the profile encloses no area: it runs back over itself", "say it is open")
 
     def _without_loop(self) -> str:
         """How to get rid of a loop."""

@@ -30,10 +30,11 @@ def equivalent_section(sample: Sample) -> Section | None:
         Column("pair"), Column("kind"), Column("stands for it"), Column("length", style="each"),
         Column("centre on the first"), Column("centre on the second"),
     )  # fmt: skip
-    groups = [f"{group.name} ({listed(group.links)}; class {roman(group.class_)})" for group in decompose(linkage).groups]
+    groups = [f"{g.name} ({listed(g.links)}; class {roman(g.class_)})" for g in decompose(linkage).groups]
     text = (
-        f"Pins and slides that give the same velocities and accelerations at pose {int(regular[0])}, and there only: a bar "
-        f"between the centres of curvature, or a block on a straight profile. Its groups: {listed(groups) or 'none'}."
+        f"Pins and slides that give the same velocities and accelerations at pose {int(regular[0])}, and there only: a"
+        " bar between the centres of curvature, or a block on a straight profile. "
+        f"Its groups: {listed(groups) or 'none'}."
     )
     return Section("equivalent", "Equivalent linkage", (Paragraph(text), Table(columns, rows)))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compoundkin.groups import DYADS
-from compoundkin.reports.model import Paragraph, Section, Step
+from compoundkin.reports.model import Block, Paragraph, Section, Step
 from compoundkin.reports.wording import counted, listed
 from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
 
@@ -37,7 +37,7 @@ def solving_section(structure: Structure, motion: Motion | None, design: int = 0
         known.update(dict.fromkeys(new))
         mode = _mode(motion, k, design) if motion else ()
         steps.append(Step(f"{k + 1}  {_title(group)}", (*_facts(structure, group, new), *mode)))
-    blocks = Paragraph(_summary(structure)), *_left_out(structure), *steps
+    blocks: tuple[Block, ...] = Paragraph(_summary(structure)), *_left_out(structure), *steps
     return Section("groups", "Groups in solving order", blocks)
 
 
