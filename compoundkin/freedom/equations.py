@@ -81,6 +81,13 @@ class Equations:
         pins = Pins(self.mechanism)
         return tuple(driven_pair(pins, drive) for drive in self.mechanism.drives)
 
+    def is_bar(self, link: str, one: str, two: str) -> bool:
+        """Whether a link has no pairs but two pins, neither of them driven: the force in it is along it."""
+        on_it = [pair for pair in self.mechanism.written_pairs if link in pair.members]
+        driven = [drive for drive in self.mechanism.drives if link in (drive.link, drive.on)]
+        pinned = [letter for letter, names in self.mechanism.pins.items() if link in names]
+        return not on_it and not driven and sorted(pinned) == sorted((one, two))
+
     @cached_property
     def size(self) -> float:
         """The mechanism's length scale."""

@@ -59,9 +59,11 @@ def flex_of(equations: Equations, state: Array, dependent: float) -> Flex:
     """How a mechanism moves from an assembled pose, where singular values below `dependent` of the largest are zero."""
     rng = np.random.default_rng(_SEED)
     free = null_space(equations.jacobian(state)[0], dependent)
-    steps = tried = 0
+    start, steps, tried = state, 0, 0
     while free.shape[1] and steps < WALK and tried < TRIED:
-        moved = _moved(equations, state, free @ _direction(rng, free.shape[1]))
+        direction = free @ _direction(rng, free.shape[1])
+        # onward, and not back to where it started
+        moved = _moved(equations, state, direction if direction @ (state - start) >= 0.0 else -direction)
         tried += 1
         if moved is not None:
             steps += 1

@@ -28,15 +28,11 @@ WEAK = 1e-3
 ALIKE = 0.02
 
 
-# A slot is along the force in its pin if its share of it is at least this.
-ALIGNED = 1.0 - 1e-6
-
-
 @dataclass(frozen=True)
 class Candidate:
     """What may be left out of a pair, and the forces that it carries: a row for each coordinate, of every state.
 
-    It is aligned where it carries all the force there is, as a slot along a bar does: it then does so at every pose.
+    It is aligned where it carries all the force there is in every pose, as a slot along a bar does.
     """
 
     dropped: Dropped
@@ -106,9 +102,8 @@ def _slots(
                 along = np.array([line.real, line.imag]) / abs(line)
                 kept = pin_in_slot(letter, pinned, slotted, through)
                 freed = f"along {through}{letter} of {slotted}"
-                share = (along @ force)[None]
-                is_aligned = float(np.linalg.norm(share)) >= ALIGNED * float(np.linalg.norm(force))
-                yield Candidate(Dropped(letter, off, kept, freed), share, is_aligned)
+                is_bar = off == (slotted,) and equations.is_bar(slotted, letter, through)
+                yield Candidate(Dropped(letter, off, kept, freed), (along @ force)[None], is_bar)
 
 
 def _forces(equations: Equations, stress: Array) -> dict[tuple[str, str], Array]:
