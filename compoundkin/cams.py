@@ -148,6 +148,8 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
     >>> found.radius_of_curvature.round(9).tolist()
     [20.0, 20.0]
     """
+    if not isinstance(motion, Motion):
+        raise InvalidInput(Problem("motion", f"{motion!r} is not a motion", "solve() the mechanism first"))
     pair = _pair_of(motion, name)
     ends, poses = motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members)
     touch = pair.touch(ends, poses)

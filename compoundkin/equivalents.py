@@ -70,6 +70,10 @@ class _Builder:
     """Collects the links of the linkage and the points that they gain."""
 
     def __init__(self, motion: Motion, at: int) -> None:
+        if not isinstance(motion, Motion):
+            raise InvalidInput(Problem("motion", f"{motion!r} is not a motion", "solve() the mechanism first"))
+        if not isinstance(at, int | np.integer) or isinstance(at, bool):
+            raise InvalidInput(Problem("at", f"{at!r} is not an index", "give the flat index of a pose"))
         if not 0 <= at < motion.failed.size or not motion.regular.flat[at]:
             what = f"pose {at} is not assembled, or at a limit position"
             raise InvalidInput(Problem("at", what, f"give the index of one of the {motion.failed.size} poses"))

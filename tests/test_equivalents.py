@@ -46,7 +46,7 @@ CASES = {
     "roller of its own": cam_with(
         ck.link("follower", P=0), ck.link("roller", P=0), GUIDE, ck.cam("roller", on="cam", profile=oval(), radius=5)
     ),
-    "arc": cam_with(ck.link("follower", P=0), GUIDE, ck.arc("follower", on="cam", centre="M", radius=30)),
+    "arc": cam_with(ck.link("follower", P=0), GUIDE, ck.arc("follower", on="cam", centre_at="M", radius=30)),
     "slot": ck.Mechanism(
         "Quick return",
         ck.link("frame", A=(0, 0), C=(0, -40)),

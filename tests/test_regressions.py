@@ -106,7 +106,7 @@ GUIDED = (
         ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), radius=1j)]),
         ("cams[0].inside", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), inside="no")]),
         ("cams[0].profile.middle", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, np.nan))]),
-        ("arcs[0].radius", [*GUIDED[:3], ck.arc("follower", on="frame", centre="A", radius="x"), GUIDED[3]]),
+        ("arcs[0].radius", [*GUIDED[:3], ck.arc("follower", on="frame", centre_at="A", radius="x"), GUIDED[3]]),
         ("rollings[0].radius", [*GUIDED[:3], ck.roll("follower", on="frame", through="A", radius=None), GUIDED[3]]),
         ("gears[0].internal", [*WHEELS, ck.gear("one", "two", teeth=(20, 40), internal="no")]),
         ("gears[0].phase", [*WHEELS, ck.gear("one", "two", teeth=(20, 40), phase="30")]),
@@ -194,3 +194,28 @@ def test_a_rise_in_a_file_says_how_far(tmp_path):
     path.write_text(text.replace(", rise = 0", ""))
     with pytest.raises(ck.InvalidMechanism, match=r"segments\[2\].rise: it is missing"):
         ck.load(path)
+
+
+def test_a_law_is_asked_for_no_more_derivatives_than_the_motion_has() -> None:
+    """The third derivative of t^2.5 is infinite at 0, the second is not."""
+    crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=1), ck.drive("crank", law=lambda t: t**2.5))
+    motion = ck.solve(crank, time=[0.0, 1.0], order=2)
+    assert motion.links["crank"].angular_acceleration.tolist() == [0.0, 3.75]
+    with pytest.raises(ck.InvalidInput):
+        ck.solve(crank, time=[0.0, 1.0], order=3)
+
+
+def test_a_face_along_its_own_guide_is_told() -> None:
+    """It never comes nearer to the cam, whatever the displacement."""
+    cam = ck.Mechanism(
+        "m",
+        ck.link("frame", A=0),
+        ck.link("cam", A=0),
+        ck.link("follower", P=0),
+        ck.slide("follower", on="frame", through="A", angle=ck.deg(90)),
+        ck.face("follower", on="cam", profile=ck.formula(lambda s: 3 * np.cos(s) + 2j * np.sin(s), 0, 2 * np.pi)),
+        ck.drive("cam", values=[0.0, 0.5]),
+    )
+    with pytest.warns(ck.UnassembledPoses):
+        motion = ck.solve(cam)
+    assert "along its own guide" in ck.gaps(motion)[0].reason

@@ -105,6 +105,8 @@ class Program:
             if not isinstance(segment, Segment):
                 yield Problem(f"program.segments[{index}]", f"{segment!r} is not a segment",
                               "write rise(...), fall(...), dwell(...)")  # fmt: skip
+        if not isinstance(self.repeat, bool):
+            yield Problem("program.repeat", f"{self.repeat!r} is not True or False")
         if not _is_real(self.start):
             yield Problem("program.start", f"{self.start!r} is not a finite number")
 

@@ -14,7 +14,7 @@ from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.run import rates
-from compoundkin.motion.timing import timed
+from compoundkin.motion.timing import RATES, timed
 from compoundkin.pairs.contract import Ends
 from compoundkin.poses import End
 from compoundkin.series import Number, Series
@@ -110,6 +110,7 @@ def inputs(
     acceleration: Any,
     jerk: Any,
     times: Number | None = None,
+    order: int = RATES - 1,
 ) -> Inputs:
     """The inputs of a solution, in time where `times` are given (see `timing`).
 
@@ -118,7 +119,7 @@ def inputs(
     mechanism = plan.structure.mechanism
     asked = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk}
     _only_known(mechanism, asked)
-    given = {drive.name: _driver(plan, drive, asked, times) for drive in mechanism.drives}
+    given = {drive.name: _driver(plan, drive, asked, times, order) for drive in mechanism.drives}
     shape = _shape(plan, given)
     fitted = fit(shape)
     return Inputs(
@@ -137,8 +138,10 @@ def by_name(mechanism: Mechanism, values: Any) -> Mapping[str, Any] | None:
     return {mechanism.drives[0].name: values}
 
 
-def _driver(plan: Plan, drive: Drive, asked: Mapping[str, Any], times: Number | None) -> tuple[Number, ...]:
-    """Value, speed, acceleration and jerk of a driver."""
+def _driver(
+    plan: Plan, drive: Drive, asked: Mapping[str, Any], times: Number | None, order: int
+) -> tuple[Number, ...]:
+    """Value, speed, acceleration and jerk of a driver; those of a law beyond the order are not asked for."""
     value = (asked["values"] or {}).get(drive.name, drive.values)
     if value is None:
         value = _unsaid(plan, drive) if times is None else 0.0
@@ -148,7 +151,7 @@ def _driver(plan: Plan, drive: Drive, asked: Mapping[str, Any], times: Number | 
     if times is None:
         return given
     called = {key: drive.name in what if isinstance(what, Mapping) else what is not None for key, what in asked.items()}
-    return timed(drive, given, times, called)
+    return timed(drive, given, times, called, order)
 
 
 def _unsaid(plan: Plan, drive: Drive) -> Number:

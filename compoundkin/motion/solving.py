@@ -79,11 +79,11 @@ def solve(
     with np.errstate(all="ignore"):
         values = by_name(plan.structure.mechanism, values)
         times = times_of(plan.structure.mechanism, values, time)
-        given = inputs(plan, values, speed, acceleration, jerk, times)
+        given = inputs(plan, values, speed, acceleration, jerk, times, order)
         start = _start(plan, modes)
+        named = isinstance(modes, str)
         with explained(plan.structure):
-            named = isinstance(modes, str)
-        tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint), start, named)
+            tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint), start, named)
         motion = replace(_settled(plan, tracker.given, tracker, order), time=times)
         if plan.structure.relaxation:
             hold_redundant(motion)

@@ -61,10 +61,12 @@ def _agreed(laws: Mapping[str, Law]) -> Number:
         return np.linspace(*spans[0], SAMPLES)
     told = ", ".join(f"{name} from {law.span[0]:g} to {law.span[1]:g} s" for name, law in laws.items() if law.span)
     what = f"the laws have different ranges: {told}" if told else "nothing tells for how long the drivers move"
-    raise InvalidInput(Problem("time", what, "give time=numpy.linspace(0, seconds, 100), for instance"))
+    raise InvalidInput(Problem("time", what, "give time=numpy.linspace(0, 2, 201), --time 0:2:0.01, or time in the file"))
 
 
-def timed(drive: Drive, given: tuple[Number, ...], times: Number, asked: Mapping[str, bool]) -> tuple[Number, ...]:
+def timed(
+    drive: Drive, given: tuple[Number, ...], times: Number, asked: Mapping[str, bool], order: int
+) -> tuple[Number, ...]:
     """Value, speed, acceleration and jerk of a driver at times.
 
     `given` are those without a law, from which the driver moves as a polynomial in time; `asked` tells which of
@@ -75,7 +77,7 @@ def timed(drive: Drive, given: tuple[Number, ...], times: Number, asked: Mapping
         for what in [key for key, called in asked.items() if called]:
             remedy = f"leave the {what} out, or give values for every driver and no time"
             raise InvalidInput(Problem(f"{what}.{drive.name}", "the driver moves by its law in time", remedy))
-        return _by_law(drive, times)
+        return _by_law(drive, times, order)
     for what, value in zip(asked, given, strict=True):
         if np.ndim(value) and np.shape(value)[-1] > 1:
             text = f"its {what} {'vary' if what == 'values' else 'varies'} along the motion, which the times do already"
@@ -85,10 +87,10 @@ def timed(drive: Drive, given: tuple[Number, ...], times: Number, asked: Mapping
     return tuple(moved.derivative(k) for k in range(RATES))
 
 
-def _by_law(drive: Drive, times: Number) -> tuple[Number, ...]:
+def _by_law(drive: Drive, times: Number, order: int) -> tuple[Number, ...]:
     law: Any = drive.law
     try:
-        moved = law.coordinate(times, RATES - 1)
+        moved = law.coordinate(times, order)
     except InvalidInput as error:
         problems = [replace(p, where=f"drives.{drive.name}.{p.where}") for p in error.problems]
         raise InvalidInput(problems) from error.__cause__

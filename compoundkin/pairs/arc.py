@@ -118,10 +118,10 @@ class ArcSlot(Contact):
         return Groove(0, arc_line(ends[0].point, ends[0].measure, *way)), Stud(1, ends[1].point)
 
 
-def arc(link: str, *, on: str, centre: str, radius: Number, at: str = "", name: str = "") -> ArcSlot:
-    """A pin in a circular slot: the point `at` of `link` keeps the distance `radius` from the point `centre` of `on`.
+def arc(link: str, *, on: str, centre_at: str, radius: Number, at: str = "", name: str = "") -> ArcSlot:
+    """A pin in a circular slot: the point `at` of `link` keeps the distance `radius` from the point `centre_at` of `on`.
 
-    >>> arc("rocker", on="frame", at="B", centre="C", radius=40).letters
+    >>> arc("rocker", on="frame", at="B", centre_at="C", radius=40).letters
     ('B', 'C')
     """
-    return ArcSlot(name or f"{link}/{on}", link, on, at, centre, radius)
+    return ArcSlot(name or f"{link}/{on}", link, on, at, centre_at, radius)

@@ -26,6 +26,8 @@ from compoundkin.series import Number, Series, as_series
 THINNED = 4
 # A sample is one that a face can touch if the face with its normal touches within this part of the size.
 NEAR = 1e-6
+# A face within this angle (radians) of its own guide never comes nearer to a profile.
+ALONG = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +148,8 @@ class Face(Profiled):
         facing = np.conjugate(frame.u.c[0]) * normal
         if path.straight:
             reach = self.curve.at(self._support(frame, face).c[0]).c[0] - path.start
-            found = path.sense * _dot(facing, reach) / _dot(facing, path.centre)
+            rise = _dot(facing, path.centre)
+            found = path.sense * _dot(facing, reach) / np.where(np.abs(rise) < ALONG, np.nan, rise)
             return found, found
         middle = complex(np.mean(self._samples[0]))
 
@@ -164,7 +167,7 @@ class Face(Profiled):
 
     def lost(self) -> str:
         """The face does not reach the profile."""
-        return f"the face of {self.link} does not meet the profile of {self.on}"
+        return f"the face of {self.link} does not meet the profile of {self.on}, or lies along its own guide"
 
     @cached_property
     def _samples(self) -> tuple[Number, Number]:

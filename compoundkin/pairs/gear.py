@@ -55,6 +55,8 @@ class Gear(Geared):
             if self.internal and sizes is not None and not np.all(np.asarray(sizes[1]) > np.asarray(sizes[0])):
                 what = "an internal gear is not larger than the pinion in it"
                 yield Problem(f"{where}.{key}", what, "name the pinion first and the ring second")
+        if self.module is not None and not np.all(np.asarray(self.module) > 0):
+            yield Problem(f"{where}.module", f"{self.module!r} is not a positive length", "give a positive number")
         if self.module is not None and self.teeth is None:
             yield Problem(f"{where}.module", "a module says nothing without teeth", "give teeth = (20, 40)")
 

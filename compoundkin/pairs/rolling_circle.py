@@ -185,7 +185,7 @@ def roll_around(
     link: str,
     *,
     on: str,
-    centre: str,
+    centre_at: str,
     circle: Number,
     radius: Number,
     at: str = "",
@@ -197,7 +197,7 @@ def roll_around(
 
     `inside=True` where the circle is a ring around the wheel; `phase` in radians. See `RollingOnCircle`.
 
-    >>> roll_around("planet", on="frame", centre="O", at="P", circle=4, radius=2, inside=True).letters
+    >>> roll_around("planet", on="frame", centre_at="O", at="P", circle=4, radius=2, inside=True).letters
     ('P', 'O')
     """
-    return RollingOnCircle(name or f"{link}/{on}", link, on, centre, at, circle, radius, inside, phase)
+    return RollingOnCircle(name or f"{link}/{on}", link, on, centre_at, at, circle, radius, inside, phase)

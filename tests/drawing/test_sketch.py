@@ -318,7 +318,7 @@ def test_a_slide_without_values_is_drawn_where_it_is_asked_for() -> None:
 
 def test_grooves_are_as_long_as_the_way_of_their_pins() -> None:
     links = ck.link("frame", A=(0, 0), C=(60, 10)), ck.link("crank", A=(0, 0), B=(15, 0)), ck.link("rod", B=0, P=50)
-    arc = ck.arc("rod", on="frame", at="P", centre="C", radius=30)
+    arc = ck.arc("rod", on="frame", at="P", centre_at="C", radius=30)
     motion = ck.solve(ck.Mechanism("Arc", *links, arc, ck.drive("crank"), ck.drawn(P=(60, 40), B=(15, 0))))
     picture = ck.draw(motion)
     (groove,) = of(picture, "frame-track")

@@ -98,7 +98,7 @@ def mechanisms(draw: st.DrawFn) -> Mechanism:
         link("arm", C=0, F=(80, 0)),
         slot("cam", on="arm", at="A", through="C", angle=draw(angles), offset=draw(real)),
         link("lever", D=0, G=(80, 0)),
-        arc("cam", on="lever", at="A", centre="G", radius=draw(lengths)),
+        arc("cam", on="lever", at="A", centre_at="G", radius=draw(lengths)),
         drive("cam"),
         mode(draw(st.sampled_from([1, -1])), "flat"),
     ]

@@ -88,7 +88,7 @@ def test_epicycloids_and_hypocycloids(circle: float, radius: float, arm: float, 
         ck.link("frame", O=(1, 2)),
         ck.link("wheel", C=(0.5, 0), P=(0.5 + arm, 0)),
         ck.roll_around(
-            "wheel", on="frame", centre="O", at="C", circle=circle, radius=radius, inside=inside, phase=phase
+            "wheel", on="frame", centre_at="O", at="C", circle=circle, radius=radius, inside=inside, phase=phase
         ),
         ck.drive("wheel", values=q, speed=3, acceleration=-2),
     )
@@ -110,7 +110,7 @@ def test_a_wheel_rolls_as_the_gear_of_a_planetary_train_does() -> None:
         gear = ck.gear("wheel", "frame", carrier="arm", radii=(radius, circle), internal=inside)
         links = ck.link("frame", O=0), ck.link("wheel", C=0, P=(1.5, 0))
         train = ck.Mechanism("Train", *links, ck.link("arm", O=0, C=(away, 0)), gear, ck.drive("arm", values=q))
-        roll = ck.roll_around("wheel", on="frame", centre="O", at="C", circle=circle, radius=radius, inside=inside)
+        roll = ck.roll_around("wheel", on="frame", centre_at="O", at="C", circle=circle, radius=radius, inside=inside)
         wheel = ck.Mechanism("Wheel", *links, roll, ck.drive("wheel", values=q))
         one, two = ck.solve(train), ck.solve(wheel)
         assert passes(one)
@@ -126,7 +126,7 @@ def test_a_wheel_on_a_turning_circle_takes_its_turning_over() -> None:
         ck.link("frame", O=0),
         ck.link("table", O=0, T=(5, 0)),
         ck.link("wheel", C=0, P=(1, 0)),
-        ck.roll_around("wheel", on="table", centre="O", at="C", circle=3, radius=1.5),
+        ck.roll_around("wheel", on="table", centre_at="O", at="C", circle=3, radius=1.5),
         ck.drive("table", values=np.linspace(0, 20, 9)),
         ck.drive("wheel", on="table", values=np.linspace(0, -12, 9)),
     )
@@ -194,7 +194,7 @@ def test_a_driven_wheel_comes_to_where_it_is_drawn(direction: float) -> None:
         "Wheel drawn on a circle",
         ck.link("frame", O=0),
         ck.link("wheel", C=0, P=(1.5, 0)),
-        ck.roll_around("wheel", on="frame", centre="O", at="C", circle=3, radius=2),
+        ck.roll_around("wheel", on="frame", centre_at="O", at="C", circle=3, radius=2),
         ck.drive("wheel", values=ck.deg(np.arange(direction - 90, direction + 91, 10))),
         ck.drawn(C=middle, P=rim),
     )
@@ -224,7 +224,7 @@ def test_a_wheel_led_round_by_a_linkage_counts_its_turns() -> None:
         ck.link("crank", D=0, A=6),
         ck.link("rod", A=0, C=2.5),
         ck.link("wheel", C=0, P=(1.5, 0)),
-        ck.roll_around("wheel", on="frame", centre="O", at="C", circle=3, radius=2),
+        ck.roll_around("wheel", on="frame", centre_at="O", at="C", circle=3, radius=2),
         ck.drive("crank", values=ck.deg(np.arange(0, 721, 5))),
         ck.drawn(C=(4.5, 2), A=(6.4, 0.1)),
     )
@@ -242,7 +242,7 @@ def test_radii_as_designs() -> None:
         "Wheels of three sizes",
         ck.link("frame", O=0),
         ck.link("wheel", C=0, P=(1, 0)),
-        ck.roll_around("wheel", on="frame", centre="O", at="C", circle=6, radius=radius),
+        ck.roll_around("wheel", on="frame", centre_at="O", at="C", circle=6, radius=radius),
         ck.drive("wheel", values=np.linspace(0, 9, 10)),
     )
     motion = ck.solve(mechanism)
@@ -284,7 +284,7 @@ def test_mistakes_on_a_line_have_a_place(words: dict[str, Any], place: str, what
     [
         ({"link": "whel"}, "circular_rollings[0].link", "no link 'whel'"),
         ({"on": "fram"}, "circular_rollings[0].on", "no link 'fram'"),
-        ({"centre": "X"}, "circular_rollings[0].centre_at", "has no point 'X'"),
+        ({"centre_at": "X"}, "circular_rollings[0].centre_at", "has no point 'X'"),
         ({"at": ""}, "circular_rollings[0].at", "several points"),
         ({"radius": 0}, "circular_rollings[0].radius", "0 is not positive"),
         ({"circle": -4}, "circular_rollings[0].circle", "-4 is not positive"),
@@ -294,7 +294,7 @@ def test_mistakes_on_a_line_have_a_place(words: dict[str, Any], place: str, what
 )
 def test_mistakes_on_a_circle_have_a_place(words: dict[str, Any], place: str, what: str) -> None:
     links = ck.link("frame", O=0, Q=1), ck.link("wheel", C=0, P=1)
-    given_words = {"link": "wheel", "on": "frame", "centre": "O", "at": "C", "circle": 4.0, "radius": 2.0, **words}
+    given_words = {"link": "wheel", "on": "frame", "centre_at": "O", "at": "C", "circle": 4.0, "radius": 2.0, **words}
     with pytest.raises(ck.InvalidMechanism) as caught:
         ck.Mechanism("m", *links, ck.roll_around(**given_words))
     assert any(p.where == place and what in p.what for p in caught.value.problems), caught.value
