@@ -10,13 +10,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from compoundkin.cams import CamAnalysis, cam_analysis
-from compoundkin.centres import instant_centres
-from compoundkin.checks import Check, Finding, verify
-from compoundkin.circuits import circuits, configurations
-from compoundkin.equivalents import equivalent_linkage
 from compoundkin.errors import (
     CompoundkinError,
     InvalidInput,
@@ -26,11 +22,9 @@ from compoundkin.errors import (
     UnassembledPoses,
     UnknownName,
 )
-from compoundkin.formats import load, save, save_table, to_pandas
 from compoundkin.freedom import MobilityAnalysis, mobility_analysis
 from compoundkin.gaps import Gap, gaps
-from compoundkin.laws import constant_acceleration, constant_speed, time_table
-from compoundkin.laws.programs import dwell, fall, program, rise
+from compoundkin.laws import constant_acceleration, constant_speed, dwell, fall, program, rise, time_table
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion, solve
 from compoundkin.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
@@ -40,7 +34,17 @@ from compoundkin.structure import Structure, decompose
 from compoundkin.words import deg, drawn, drive, expect, link, mode, polar
 
 if TYPE_CHECKING:
+    from compoundkin.branches import circuits, configurations
+    from compoundkin.cams import CamAnalysis, cam_analysis
+    from compoundkin.centres import instant_centres
+    from compoundkin.checks import Check, Finding, verify
+    from compoundkin.choices import alternatives
+    from compoundkin.composing import Composer, random_mechanism
     from compoundkin.drawing import Picture, draw, draw_structure, vector_polygon
+    from compoundkin.equations import loop_equations
+    from compoundkin.equivalents import equivalent_linkage
+    from compoundkin.formats import load, save, save_table, to_pandas
+    from compoundkin.inverting import with_driver, with_frame
     from compoundkin.plots import plot
     from compoundkin.reports import rendered, report
 
@@ -49,6 +53,7 @@ __version__ = "0.1.0"
 __all__ = [
     "CamAnalysis",
     "Check",
+    "Composer",
     "CompoundkinError",
     "Finding",
     "Gap",
@@ -63,6 +68,7 @@ __all__ = [
     "Structure",
     "UnassembledPoses",
     "UnknownName",
+    "alternatives",
     "arc",
     "belt",
     "cam",
@@ -89,6 +95,7 @@ __all__ = [
     "instant_centres",
     "link",
     "load",
+    "loop_equations",
     "mobility_analysis",
     "mode",
     "plot",
@@ -97,6 +104,7 @@ __all__ = [
     "program",
     "quantity",
     "rack",
+    "random_mechanism",
     "rendered",
     "report",
     "rise",
@@ -112,25 +120,48 @@ __all__ = [
     "to_pandas",
     "vector_polygon",
     "verify",
+    "with_driver",
+    "with_frame",
 ]
+
+# What only some programs need is imported when they ask for it: the module of each such word.
+_LATE = {
+    "circuits": "branches",
+    "configurations": "branches",
+    "CamAnalysis": "cams",
+    "cam_analysis": "cams",
+    "instant_centres": "centres",
+    "Check": "checks",
+    "Finding": "checks",
+    "verify": "checks",
+    "alternatives": "choices",
+    "Composer": "composing",
+    "random_mechanism": "composing",
+    "Picture": "drawing",
+    "draw": "drawing",
+    "draw_structure": "drawing",
+    "vector_polygon": "drawing",
+    "loop_equations": "equations",
+    "equivalent_linkage": "equivalents",
+    "load": "formats",
+    "save": "formats",
+    "save_table": "formats",
+    "to_pandas": "formats",
+    "with_driver": "inverting",
+    "with_frame": "inverting",
+    "plot": "plots",
+    "rendered": "reports",
+    "report": "reports",
+}
 
 
 def __getattr__(name: str) -> Any:
-    # what only some programs need is imported when they ask for it
-    if name in ("rendered", "report"):
-        from compoundkin import reports
-
-        return getattr(reports, name)
-    if name in ("Picture", "draw", "draw_structure", "vector_polygon"):
-        from compoundkin import drawing
-
-        return getattr(drawing, name)
-    if name == "plot":
-        from compoundkin import plots
-
-        return plots.plot
+    if name in _LATE:
+        return getattr(import_module(f"compoundkin.{_LATE[name]}"), name)
     if name in ("catalog", "plots"):
-        from importlib import import_module
-
         return import_module(f"compoundkin.{name}")
     raise AttributeError(f"module 'compoundkin' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "catalog", "plots"]

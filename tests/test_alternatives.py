@@ -7,10 +7,10 @@ import time
 import pytest
 
 import compoundkin as ck
-from compoundkin.alternatives import alternatives, group_count
+from compoundkin.assembly.counting import laman_number
 from compoundkin.catalog import load_named
 from compoundkin.chains import chains, mechanism_from
-from compoundkin.configurations.counting import laman_number
+from compoundkin.choices import alternatives, group_count
 from compoundkin.errors import InvalidInput
 from compoundkin.inverting import with_driver, with_frame
 from compoundkin.reports.alternatives import alternatives_section

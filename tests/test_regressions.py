@@ -198,7 +198,9 @@ def test_a_rise_in_a_file_says_how_far(tmp_path):
 
 def test_a_law_is_asked_for_no_more_derivatives_than_the_motion_has() -> None:
     """The third derivative of t^2.5 is infinite at 0, the second is not."""
-    crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=1), ck.drive("crank", law=lambda t: t**2.5))
+    crank = ck.Mechanism(
+        "m", ck.link("frame", A=0), ck.link("crank", A=0, B=1), ck.drive("crank", law=lambda t: t**2.5)
+    )
     motion = ck.solve(crank, time=[0.0, 1.0], order=2)
     assert motion.links["crank"].angular_acceleration.tolist() == [0.0, 3.75]
     with pytest.raises(ck.InvalidInput):

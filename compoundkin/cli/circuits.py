@@ -49,7 +49,7 @@ def command(
     On a circuit the mechanism gets from any configuration to any other without being taken apart. Limit positions are
     told with the group that comes to the end of its reach there. Exit code 3: the mechanism cannot be assembled.
     """
-    from compoundkin.circuits import circuits
+    from compoundkin.branches import circuits
     from compoundkin.cli.progress import working
     from compoundkin.motion.solving import plan_of
     from compoundkin.reports.configurations import circuits_report

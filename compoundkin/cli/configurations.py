@@ -30,7 +30,7 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
 
     A name of the list chooses a configuration in Python: solve(..., modes="..."). Exit code 3: there is none.
     """
-    from compoundkin.circuits import configurations
+    from compoundkin.branches import configurations
     from compoundkin.cli import values
     from compoundkin.cli.progress import working
     from compoundkin.motion.solving import plan_of

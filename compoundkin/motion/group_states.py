@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.configurations import all_configurations, from_group
+from compoundkin.assembly import all_configurations, from_group
 from compoundkin.errors import InvalidInput
 from compoundkin.groups.general import Setting
 from compoundkin.motion.steps import GeneralStep

@@ -138,9 +138,7 @@ def by_name(mechanism: Mechanism, values: Any) -> Mapping[str, Any] | None:
     return {mechanism.drives[0].name: values}
 
 
-def _driver(
-    plan: Plan, drive: Drive, asked: Mapping[str, Any], times: Number | None, order: int
-) -> tuple[Number, ...]:
+def _driver(plan: Plan, drive: Drive, asked: Mapping[str, Any], times: Number | None, order: int) -> tuple[Number, ...]:
     """Value, speed, acceleration and jerk of a driver; those of a law beyond the order are not asked for."""
     value = (asked["values"] or {}).get(drive.name, drive.values)
     if value is None:

@@ -61,7 +61,9 @@ def _agreed(laws: Mapping[str, Law]) -> Number:
         return np.linspace(*spans[0], SAMPLES)
     told = ", ".join(f"{name} from {law.span[0]:g} to {law.span[1]:g} s" for name, law in laws.items() if law.span)
     what = f"the laws have different ranges: {told}" if told else "nothing tells for how long the drivers move"
-    raise InvalidInput(Problem("time", what, "give time=numpy.linspace(0, 2, 201), --time 0:2:0.01, or time in the file"))
+    raise InvalidInput(
+        Problem("time", what, "give time=numpy.linspace(0, 2, 201), --time 0:2:0.01, or time in the file")
+    )
 
 
 def timed(

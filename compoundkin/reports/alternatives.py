@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compoundkin.alternatives import MOST_CHOICES, Alternative, alternatives
+from compoundkin.choices import MOST_CHOICES, Alternative, alternatives
 from compoundkin.errors import InvalidInput
 from compoundkin.reports.model import Column, Paragraph, Section, Table
 from compoundkin.reports.wording import counted

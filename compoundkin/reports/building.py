@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from compoundkin.checks import Check, verify
+from compoundkin.freedom import relaxed
 from compoundkin.gaps import Gap, gaps
 from compoundkin.motion import Motion
 from compoundkin.quantities import order_of
@@ -48,6 +49,7 @@ def report(subject: Structure | Motion, outputs: Sequence[str] = (), design: int
 
 
 def _of_structure(structure: Structure) -> Report:
+    structure = relaxed(structure)
     outcome = Outcome(not structure.faults, 0, 0, 0, 0, 0, 0)
     about = _about(structure, _structure_in_short(structure))
     faults = [faults_section(structure)] if structure.faults else []

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from compoundkin.circuits import AllConfigurations, Branch, Circuit, Circuits, Limit
+from compoundkin.branches import AllConfigurations, Branch, Circuit, Circuits, Limit
 from compoundkin.quantities import degrees
 from compoundkin.reports.model import Alert, Cell, Column, Outcome, Paragraph, Report, Section, Table
 from compoundkin.reports.numbers import number

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from compoundkin.loop_equations import LoopEquations, latex, loop_equations, text
-from compoundkin.loop_equations.terms import Unknown
+from compoundkin.equations import LoopEquations, latex, loop_equations, text
+from compoundkin.equations.terms import Unknown
 from compoundkin.reports.model import Block, Cell, Column, Formula, Paragraph, Section, Table
 from compoundkin.reports.wording import counted
 from compoundkin.structure import Structure
