@@ -119,7 +119,7 @@ class ArcSlot(Contact):
 
 
 def arc(link: str, *, on: str, centre_at: str, radius: Number, at: str = "", name: str = "") -> ArcSlot:
-    """A pin in a circular slot: the point `at` of `link` keeps the distance `radius` from the point `centre_at` of `on`.
+    """A pin in a circular slot: the point `at` of `link` keeps its distance from the point `centre_at` of `on`.
 
     >>> arc("rocker", on="frame", at="B", centre_at="C", radius=40).letters
     ('B', 'C')
