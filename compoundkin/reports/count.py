@@ -78,7 +78,10 @@ def loops_section(structure: Structure) -> Section:
         blocks.append(Table((Column("loop", style="each"), Column("chain: link -pair- link")), rows))
     if loops > MOST_LOOPS:
         blocks.append(Paragraph(f"... and {loops - MOST_LOOPS} more."))
-    return Section("loops", "Loops and equations", (*blocks, *_equations(count)))
+    blocks += _equations(count)
+    if structure.relaxation and not structure.faults:
+        blocks.append(Paragraph("At these dimensions what is too much follows from the rest."))
+    return Section("loops", "Loops and equations", tuple(blocks))
 
 
 def _equations(count: EquationCount) -> tuple[Block, ...]:

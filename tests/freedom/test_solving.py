@@ -169,3 +169,27 @@ def test_the_report_tells_the_numbers_and_what_is_left_out():
     assert "verconstrained but mobile with 1 freedom, determined by its driver" in text
     assert "Left out is E along FE of third" in text
     assert "are not determined by equilibrium alone" in text
+
+
+def planets(count: int) -> ck.Mechanism:
+    """A planetary train with so many planets between a sun of 40 and a fixed annulus of 80 teeth."""
+    arm, gears = {"O": 0j}, []
+    for k in range(count):
+        arm[f"P{k}"] = 30 * np.exp(2j * np.pi * k / count)
+        on = {"carrier": "arm", "module": 1}
+        gears += [
+            ck.link(f"planet{k}", **{f"P{k}": 0}),
+            ck.gear(f"planet{k}", "sun", teeth=(20, 40), name=f"s{k}", **on),
+            ck.gear(f"planet{k}", "frame", teeth=(20, 80), internal=True, name=f"r{k}", **on),
+        ]
+    wheels = ck.link("frame", O=0), ck.link("arm", **arm), ck.link("sun", O=0)
+    return ck.Mechanism("Planets", *wheels, *gears, ck.drive("arm"))
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_further_planets_change_nothing(count):
+    motion = ck.solve(planets(count), speed=2.0)
+    # Willis: the sun makes 1 + 80 / 40 turns for one of the arm
+    np.testing.assert_allclose(motion.links["sun"].angular_velocity, 6.0, rtol=1e-12)
+    assert ck.mobility_analysis(planets(count)).redundant == count - 1
+    assert ck.verify(motion).passed
