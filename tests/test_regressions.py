@@ -221,3 +221,12 @@ def test_a_face_along_its_own_guide_is_told() -> None:
     with pytest.warns(ck.UnassembledPoses):
         motion = ck.solve(cam)
     assert "along its own guide" in ck.gaps(motion)[0].reason
+
+
+def test_differences_do_not_reach_across_a_change_point() -> None:
+    """A parallelogram in steps so fine that its neighbours are nearer than the stencil is wide."""
+    parallelogram = ck.catalog.load_named("parallelogram")
+    for start in (100.03, 179.9):
+        for step in (1.0, 0.01):
+            motion = ck.solve(parallelogram, {"crank": ck.deg(start + step * np.arange(90))})
+            assert ck.verify(motion).passed, (start, step)

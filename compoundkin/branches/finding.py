@@ -27,7 +27,8 @@ from compoundkin.motion.configuration import Configuration
 from compoundkin.motion.inputs import Inputs, inputs
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.solving import plan_of
-from compoundkin.motion.steps import AffineStep, GeneralStep, TrainStep
+from compoundkin.motion.steps import AffineStep, GeneralStep
+from compoundkin.motion.train import TrainStep
 from compoundkin.series import Number
 from compoundkin.structure.model import Structure
 

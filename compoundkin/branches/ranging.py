@@ -10,7 +10,8 @@ from compoundkin.branches.strands import Strands, base
 from compoundkin.branches.sweep import Sweep, count_turns, edge_root
 from compoundkin.errors import InvalidInput, Problem
 from compoundkin.motion.plan import Plan
-from compoundkin.motion.steps import AffineStep, GeneralStep, TrainStep
+from compoundkin.motion.steps import AffineStep, GeneralStep
+from compoundkin.motion.train import TrainStep
 from compoundkin.series import Number
 
 # A turn begins here: special positions lie at round angles, and none of them shall fall on the seam.

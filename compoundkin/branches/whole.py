@@ -15,7 +15,8 @@ from compoundkin.motion.inputs import Inputs
 from compoundkin.motion.openings import openings
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.run import Run
-from compoundkin.motion.steps import AffineStep, GeneralStep, Step, TrainStep
+from compoundkin.motion.steps import AffineStep, GeneralStep, Step
+from compoundkin.motion.train import TrainStep
 from compoundkin.series import Number
 
 # A redundant pair is closed where it opens by less than this part of the size: dimensions are given with few digits.

@@ -29,7 +29,7 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
     if motion.order < 1 or not counted.any():
         return
     step = STEP * _own_time(motion)
-    counted = counted & np.isfinite(step)
+    counted = counted & np.isfinite(step) & _before_change_points(motion, step * len(OFFSETS))
     stencils = [_positions(motion, step * j) for j in OFFSETS]
     counted = counted & _smooth(motion, stencils)
     if not counted.any():
@@ -119,4 +119,18 @@ def _away_from_change_points(motion: Motion) -> Number:
     index = np.arange(motion.inputs.poses, dtype=float)
     for flips in motion.tracker.flips.values():
         good = good & (np.abs(flips[:, :, None] - index).min(axis=1) > 1.0)
+    return good
+
+
+def _before_change_points(motion: Motion, reach: Number) -> Number:
+    """Poses from which the drivers do not come to a change point within a time."""
+    good: Number = np.ones(motion.failed.shape, dtype=bool)
+    for flips in motion.tracker.flips.values():
+        designs, which = np.nonzero(np.isfinite(flips))
+        there = motion.inputs.pick(designs, flips[designs, which])
+        away: Number = np.zeros((len(designs), motion.inputs.poses))
+        for name, (value, speed, *_) in motion.inputs.drives.items():
+            here, rate = (np.broadcast_to(v, motion.failed.shape)[designs] for v in (value, speed))
+            away = np.fmax(away, np.abs((there.drives[name][0] - here) / rate))
+        np.logical_and.at(good, designs, away > reach[designs])
     return good

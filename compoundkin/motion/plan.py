@@ -8,7 +8,8 @@ from functools import cached_property
 from compoundkin.groups import DYADS
 from compoundkin.groups.general import Setting
 from compoundkin.motion.run import Run
-from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep, GeneralStep, Step, TrainStep
+from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep, GeneralStep, Step
+from compoundkin.motion.train import TrainStep
 from compoundkin.pairs import Pair
 from compoundkin.pairs.contract import Ends, Equivalent
 from compoundkin.poses import FIXED, Pose

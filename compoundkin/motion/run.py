@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from math import factorial
 
@@ -34,17 +34,20 @@ class Run:
         setting = Setting(self.setting.ends, world, self.setting.local)
         return Run(setting, world, self.order, self.drives, self.failed)
 
-    def leading(self) -> Run:
-        """The same block without derivatives, to try a group on."""
-        world = {name: trimmed(pose, 0) for name, pose in self.world.items()}
+    def leading(self, names: Iterable[str]) -> Run:
+        """The same block without derivatives, to try a group on: of what is known the named links only."""
+        world = {name: trimmed(self.world[name], 0) for name in names if name in self.world}
         local = {name: trimmed(pose, 0) for name, pose in self.setting.local.items()}
         return Run(Setting(self.setting.ends, world, local), world, 0, self.drives, self.failed)
 
+    def links_of(self, body: Body, pose: Pose) -> dict[str, Pose]:
+        """The poses of a body's links from that of its base."""
+        local = self.setting.local
+        return {link: pose.compose(local[link]) if link in local else pose for link in body.links}
+
     def publish(self, body: Body, pose: Pose) -> None:
         """Add the links of a body whose pose is found to what is known."""
-        for link in body.links:
-            local = self.setting.local.get(link)
-            self.world[link] = pose if local is None else pose.compose(local)
+        self.world.update(self.links_of(body, pose))
 
 
 def rates(values: tuple[Number, ...], order: int) -> Series:

@@ -17,7 +17,8 @@ from compoundkin.motion.plan import Plan
 from compoundkin.motion.run import Run
 from compoundkin.motion.spacing import CLOSE
 from compoundkin.motion.starting import distance, first_state, shown
-from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep, TrainStep
+from compoundkin.motion.steps import AffineStep, DyadStep, FollowerStep
+from compoundkin.motion.train import TrainStep
 from compoundkin.motion.turns import Turns, turns_of
 from compoundkin.series import Number
 from compoundkin.words import vector
