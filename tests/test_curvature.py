@@ -40,6 +40,8 @@ def well_placed(motion: ck.Motion, link: str, point: Any, on: str) -> Any:
 def test_euler_savary_agrees_with_velocity_and_acceleration(name: str) -> None:
     motion = catalog(name)
     compared = 0
+    # where nothing turns, every path is straight or that of a slide: there is no pole to compare with
+    turning = any(np.any(np.abs(link.angular_velocity) > 1e-9) for link in motion.links.values())
     for link in motion.links:
         for on in [other for other in motion.links if other != link]:
             for letter in motion.mechanism.geometry.points[link]:
@@ -51,7 +53,7 @@ def test_euler_savary_agrees_with_velocity_and_acceleration(name: str) -> None:
                 bent = good & ~(a.inflection | b.inflection) & (a.radius < 1e3 * motion.size)
                 assert a.centre[bent] == pytest.approx(b.centre[bent], rel=1e-6, abs=1e-6 * motion.size)
                 compared += np.count_nonzero(good)
-    assert compared > 0
+    assert compared > 0 or not turning
 
 
 @pytest.mark.parametrize("seed", SEEDS)

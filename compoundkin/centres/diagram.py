@@ -90,7 +90,7 @@ def diagram_of(structure: Structure) -> Diagram:
     >>> from compoundkin.structure import decompose
     >>> bars = link("frame", A=0), link("crank", A=0, B=1)
     >>> diagram_of(decompose(Mechanism("m", *bars, drive("crank")))).primaries
-    (Primary(text='pin A', pair='A', links=(0, 1), kind='point'),)
+    (Primary(text='pin A', pair='A', links=(0, 1), kind='point', on=()),)
     """
     links = tuple(structure.mechanism.links)
     number = {name: k for k, name in enumerate(links)}

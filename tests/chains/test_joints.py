@@ -21,7 +21,7 @@ def joints_of(name: str) -> Joints:
 def test_the_count_of_freedoms_is_that_of_the_structure(name):
     structure = decompose(load_named(name))
     joints = Joints.of(structure.graph)
-    assert joints.mobility == structure.mobility.freedoms
+    assert joints.mobility == structure.mobility.freedoms + structure.mobility.passive
     assert dict(zip(joints.links, joints.degrees, strict=True)) == dict(structure.graph.nodes(data="pairs"))
 
 

@@ -194,7 +194,7 @@ def test_letters_of_what_is_not_one_loop():
         (("ab", "bc", "cd", "da", "ac"), "4-link structure of mobility -1"),
         (("ab", "bc", "ca", "cd", "de", "ea"), "5-link structure of mobility 0"),
         (("ab", "bc", "ca", "cd", "de", "ef", "fa"), "6-link chain with a rigid part"),
-        (("ab", "bc", "cd", "da", "de"), "5-link chain of mobility 2"),
+        (("ab", "bc", "cd", "da", "de"), "5-link chain of mobility 2, one link of it loose"),
     ],
 )
 def test_other_structures(pairs, title):

@@ -48,7 +48,7 @@ def word(make: Any, *names: str, **given_words: st.SearchStrategy[Any]) -> st.Se
     return both.map(lambda pair: make(*names, **pair[0], **pair[1]))
 
 
-REQUIRED = ("teeth", "on", "through", "at", "radius", "circle", "centre")
+REQUIRED = ("teeth", "on", "through", "at", "radius", "circle", "centre_at")
 PAIRS = st.one_of(
     word(gear, "one", "two", teeth=st.tuples(counts, counts), phase=angles),
     word(belt, "one", "two", teeth=st.tuples(counts, counts), phase=angles, crossed=st.booleans()),
@@ -59,7 +59,7 @@ PAIRS = st.one_of(
         "three",
         on=st.just("frame"),
         at=st.just("P"),
-        centre=st.just("A"),
+        centre_at=st.just("A"),
         circle=sizes.map(lambda size: size + 20.0),
         radius=small,
         inside=st.booleans(),
