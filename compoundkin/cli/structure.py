@@ -29,11 +29,13 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
     """
     from dataclasses import replace
 
+    from compoundkin.cli.progress import working
     from compoundkin.freedom import solvable
     from compoundkin.reports import report
 
-    structure = solvable(loaded(file))
-    made = report(structure)
+    with working("taking the mechanism apart"):
+        structure = solvable(loaded(file))
+        made = report(structure)
     if equations:
         from compoundkin.reports.equations import equations_section
 

@@ -13,6 +13,7 @@ from compoundkin.motion import Motion
 from compoundkin.quantities import order_of
 from compoundkin.reports.cams import cams_sections
 from compoundkin.reports.chain import chain_section
+from compoundkin.reports.configurations import assembly_sections
 from compoundkin.reports.count import loops_section
 from compoundkin.reports.equivalent import equivalent_section
 from compoundkin.reports.findings import checks_section, gaps_section
@@ -78,6 +79,7 @@ def _of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
             solving_section(structure, motion, design),
             drivers_section(structure, sample),
             *([equivalent] if (equivalent := equivalent_section(sample)) else []),
+            *assembly_sections(motion, design),
             moving,
             *cams_sections(sample),
             *([gaps_section(sample, missing)] if missing else []),

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import prod
 
 import numpy as np
 
-from compoundkin.branches import AllConfigurations, Branch, Circuit, Circuits, Limit
+from compoundkin.branches import AllConfigurations, Branch, Circuit, Circuits, Limit, circuits
+from compoundkin.errors import CompoundkinError
+from compoundkin.motion import Motion
 from compoundkin.quantities import degrees
 from compoundkin.reports.model import Alert, Cell, Column, Outcome, Paragraph, Report, Section, Table
 from compoundkin.reports.numbers import number
 from compoundkin.reports.wording import counted, listed
-from compoundkin.structure import Structure
+from compoundkin.structure import Group, Structure
 
 # A reader needs no more rows than this of a table; the JSON report has all.
 MOST_ROWS = 40
+# A report follows all circuits of mechanisms with at most so many combinations of modes: a fraction of a second.
+MOST_MODES = 64
+TRIAD_MODES, TRIAD_BODIES = 6, 4
 # Angles below this (degrees) are rounding.
 FLOOR = 1e-9
 MISSING = "The numbers of configurations and of branches do not agree everywhere, so that a circuit may be missing."
@@ -69,6 +75,31 @@ def circuits_report(found: Circuits) -> Report:
     page = _Page(found)
     sections = (page.circuits(), page.branches(), *page.limits(), *page.changes(), *page.toggles())
     return Report(found.structure.mechanism.title, sections, Outcome(True, 0, 0, 0, 0, 0, 0))
+
+
+def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
+    """What a report of one design says of configurations, circuits and limits, where that takes little time.
+
+    With several drivers the first one is moved, the others stay at their first values.
+    """
+    structure, drives = motion.structure, motion.mechanism.drives
+    modes = prod(step.modes or _modes(step.group) for step in motion.tracker.plan.steps)
+    if not drives or motion.inputs.designs > 1 or modes > MOST_MODES:
+        return ()
+    first = {name: float(np.ravel(values[0])[0]) for name, values in motion.inputs.drives.items()}
+    others = {name: value for name, value in first.items() if name != drives[0].name}
+    try:
+        found = circuits(structure, drives[0].name, others, design=design)
+    except CompoundkinError:
+        return ()
+    page = _Page(found)
+    return page.circuits(), *page.limits()
+
+
+def _modes(group: Group) -> int:
+    """The modes of a group without signs, for an estimate of the work: six of a triad of pins, many of any other."""
+    pins = all(pair.is_simple and pair.free_is_angle for pair in (*group.inner, *group.outer))
+    return TRIAD_MODES if pins and len(group.bodies) <= TRIAD_BODIES else MOST_MODES + 1
 
 
 class _Page:
