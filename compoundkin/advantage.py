@@ -7,10 +7,10 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from compoundkin.coupler.relative import SMALL, dot, moving, relative_link, relative_point
+from compoundkin.coupler.relative import SMALL, moving, relative_link, relative_point
 from compoundkin.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.motion import Motion
-from compoundkin.series import Number
+from compoundkin.series import Number, dot
 from compoundkin.words import FRAME
 
 

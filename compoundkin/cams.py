@@ -14,7 +14,7 @@ from compoundkin.pairs import Pair
 from compoundkin.pairs.profiled import Profiled
 from compoundkin.poses import Pose
 from compoundkin.profiles import Synthesised
-from compoundkin.series import Number, as_series
+from compoundkin.series import Number, as_series, dot
 
 # Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and
 # Manufacturing Handbook, 2nd ed., Industrial Press 2009, section 7.1.
@@ -198,7 +198,7 @@ def _radius(pair: Profiled, s: Number) -> Number:
 
 def _sliding(motion: Motion, pair: Profiled, place: Number, normal: Number) -> Number:
     first, second = (_velocity(motion.poses[name], place) for name in pair.members)
-    return _dot(second - first, 1j * normal)
+    return dot(second - first, 1j * normal)
 
 
 def _direction(motion: Motion, pair: Profiled, contact: Number) -> tuple[str, bool | None, Number]:
@@ -251,10 +251,6 @@ def _between(along: Number, normal: Number) -> Number:
     """The angle from a line to a normal, between a right angle clockwise and one counterclockwise."""
     turned = np.conjugate(along) * normal
     return np.angle(np.where(turned.real < 0.0, -turned, turned))
-
-
-def _dot(a: Number, b: Number) -> Number:
-    return a.real * b.real + a.imag * b.imag
 
 
 def _point(place: complex) -> str:

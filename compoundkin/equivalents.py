@@ -56,14 +56,13 @@ def equivalent_linkage(motion: Motion, at: int = 0) -> Mechanism:
     >>> [group.name for group in ck.decompose(linkage).groups]
     ['RPR']
     """
-    return _Builder(motion, at).mechanism()
+    return replaced(motion, at)[0]
 
 
-def replacements(motion: Motion, at: int = 0) -> tuple[Replacement, ...]:
-    """What stands for each higher pair at one pose, in the order of the pairs."""
+def replaced(motion: Motion, at: int = 0) -> tuple[Mechanism, tuple[Replacement, ...]]:
+    """The equivalent linkage, and what stands for each higher pair in the order of the pairs."""
     builder = _Builder(motion, at)
-    builder.mechanism()
-    return tuple(builder.found)
+    return builder.mechanism(), tuple(builder.found)
 
 
 class _Builder:

@@ -115,11 +115,11 @@ class Series:
 
     def dot(self, other: Series | Number) -> Series:
         """The scalar product of two planar vectors, ``Re(conj(a) b)``."""
-        return self._bilinear(other, _dot)
+        return self._bilinear(other, dot)
 
     def cross(self, other: Series | Number) -> Series:
         """The third component of the vector product of two planar vectors, ``Im(conj(a) b)``."""
-        return self._bilinear(other, _cross)
+        return self._bilinear(other, cross)
 
     def abs2(self) -> Series:
         """The squared length of a planar vector."""
@@ -146,7 +146,7 @@ class Series:
         >>> Series((0.0, 2.0, 0.0)).turn().c
         ((1+0j), 2j, (-2+0j))
         """
-        out = [_joined(np.cos(self.c[0]), np.sin(self.c[0]))]
+        out = [joined(np.cos(self.c[0]), np.sin(self.c[0]))]
         rates = self.c
         for k in range(1, len(rates)):
             terms = [(1j * j / k * rates[j]) * out[k - j] for j in range(1, k + 1) if not _is(rates[j], 0)]
@@ -208,7 +208,7 @@ def planar(x: Series, y: Series) -> Series:
     ((1+3j), (2+4j))
     """
     if len(x.c) == len(y.c):
-        return Series(tuple([_joined(a, b) for a, b in zip(x.c, y.c, strict=True)]))
+        return Series(tuple([joined(a, b) for a, b in zip(x.c, y.c, strict=True)]))
     return x + y * 1j
 
 
@@ -221,8 +221,12 @@ def _is(value: Number, number: int) -> bool:
     return isinstance(value, (float, complex, int)) and value == number
 
 
-def _joined(x: Number, y: Number) -> Number:
-    """The complex number or array with these parts; twice as fast as ``x + 1j * y``, which converts both."""
+def joined(x: Number, y: Number) -> Number:
+    """The complex number or array with these parts; twice as fast as ``x + 1j * y``, which converts both.
+
+    >>> joined(1.0, 2.0)
+    (1+2j)
+    """
     if not (isinstance(x, np.ndarray) or isinstance(y, np.ndarray)):
         return complex(x, y)
     out = np.empty(np.broadcast(x, y).shape, dtype=complex)
@@ -262,11 +266,21 @@ def _real_product(a: Number, b: Number) -> Number:
     return (a * b).real
 
 
-def _dot(a: Number, b: Number) -> Number:
+def dot(a: Number, b: Number) -> Number:
+    """The scalar product of planar vectors that are numbers or arrays.
+
+    >>> dot(1 + 2j, 3 + 4j)
+    11.0
+    """
     # one complex product takes less time than the four passes over strided parts
     return (a.conjugate() * b).real
 
 
-def _cross(a: Number, b: Number) -> Number:
+def cross(a: Number, b: Number) -> Number:
+    """The third component of the vector product of planar vectors that are numbers or arrays.
+
+    >>> cross(1 + 2j, 3 + 4j)
+    -2.0
+    """
     # written out, so that the cross product of a vector with itself is exactly zero
     return a.real * b.imag - a.imag * b.real

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.equivalents import equivalent_linkage, replacements
+from compoundkin.equivalents import equivalent_linkage, replaced
 from compoundkin.pairs import Pair
 
 # the geared five-bars do not close all round
@@ -114,7 +114,7 @@ def test_the_centres_of_curvature_of_an_ellipse() -> None:
     mechanism = cam_with(ck.link("follower", P=0), GUIDE, ck.cam("follower", on="cam", profile=oval()))
     motion = ck.solve(mechanism)
     for at in (3, 17, 40):
-        (found,) = replacements(motion, at)
+        (found,) = replaced(motion, at)[1]
         seen = complex(motion.points["P"].position.flat[at]) * np.exp(-1j * motion.links["cam"].angle[at]) - 4
         s = np.arctan2(seen.imag / 22, seen.real / 30)
         radius = (900 * np.sin(s) ** 2 + 484 * np.cos(s) ** 2) ** 1.5 / (30 * 22)
@@ -130,6 +130,6 @@ def test_without_higher_pairs_nothing_is_replaced() -> None:
     from compoundkin.catalog import load_named
 
     motion = ck.solve(load_named("six-bar"))
-    assert replacements(motion) == ()
+    assert replaced(motion)[1] == ()
     linkage = ck.solve(equivalent_linkage(motion, 5))
     assert abs(complex(linkage.points["G"].velocity) - complex(motion.points["G"].velocity[5])) < 1e-11

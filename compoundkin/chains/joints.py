@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 from compoundkin.chains.canonical import Canonical, Coloured, canonical
 from compoundkin.chains.chain import Chain
+from compoundkin.pairs import KINDS
 
 if TYPE_CHECKING:
     import networkx as nx
 
-REVOLUTE, SLIDE = "R", "P"
+REVOLUTE, SLIDE = (next(k.code for k in KINDS if k.is_simple and k.free_is_angle is turns) for turns in (True, False))
 _LOWER_HOLDS = 2
 # A pin of five links alone stands for 125 chains; above this number they are not told one by one.
 MOST_CHAINS = 2000

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import solved_at
+from compoundkin.cli.driving import pose_options, solved_at
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
 from compoundkin.cli.output import put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED
@@ -35,17 +35,7 @@ Examples:
     metavar="[NAME=]VALUE",
     help="The pose: a driver's value, degrees or length; the first of its range if left out.",
 )
-@click.option(
-    "--speed",
-    "speeds",
-    multiple=True,
-    metavar="[NAME=]VALUE",
-    help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).",
-)
-@click.option(
-    "--mode", "modes", multiple=True, metavar="LINK=SIGN", help="Assembly mode, +1 or -1, of the group with this link."
-)
-@click.option("--design", default=0, show_default=True, metavar="INDEX", help="Which one, where dimensions are arrays.")
+@pose_options
 @click.option("--derivation", is_flag=True, help="The steps in order, for any pose; without --at nothing else.")
 @report_options
 def command(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import names, solved_at
+from compoundkin.cli.driving import names, pose_options, solved_at
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
 from compoundkin.cli.shell import put, say
 
@@ -59,17 +59,7 @@ Examples:
     type=click.Choice(VIEWS),
     help="Instead: taken apart into groups; the graph of links and pairs; the circle diagram of centres.",
 )
-@click.option(
-    "--speed",
-    "speeds",
-    multiple=True,
-    metavar="[NAME=]VALUE",
-    help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).",
-)
-@click.option(
-    "--mode", "modes", multiple=True, metavar="LINK=SIGN", help="Assembly mode, +1 or -1, of the group with this link."
-)
-@click.option("--design", default=0, show_default=True, metavar="INDEX", help="Which one, where dimensions are arrays.")
+@pose_options
 @click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
 @click.option("-o", "--to-file", "path", metavar="PATH", help="Write an .svg, .png or .pdf file; else SVG to stdout.")

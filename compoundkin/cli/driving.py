@@ -16,6 +16,12 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+SPEED = click.option("--speed", "speeds", multiple=True, metavar="[NAME=]VALUE",
+                     help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).")  # fmt: skip
+MODE = click.option("--mode", "modes", multiple=True, metavar="LINK=SIGN",
+                    help="Assembly mode, +1 or -1, of the group with this link.")  # fmt: skip
+DESIGN = click.option("--design", default=0, show_default=True, metavar="INDEX",
+                      help="Which one, where dimensions are arrays.")  # fmt: skip
 # How the options are called on the command line, by the names of their values.
 OPTIONS: tuple[Any, ...] = (
     click.option("--at", "at", metavar="VALUES", help="Solve at these values of the only driver: 35 or 0,35,60."),
@@ -27,14 +33,12 @@ OPTIONS: tuple[Any, ...] = (
     click.option("--time", "time", metavar="SECONDS",
                  help="Solve at these times: 0:2:0.01 (from:to:step) or 0,0.5,1. Drivers move by their laws, others "
                  "from their value by their speed and acceleration."),
-    click.option("--speed", "speeds", multiple=True, metavar="[NAME=]VALUE",
-                 help="Its rate in rad/s or length/s; also 300rpm or 90deg (a second)."),
+    SPEED,
     click.option("--acceleration", "accelerations", multiple=True, metavar="[NAME=]VALUE",
                  help="Its second rate in rad/s^2 or length/s^2."),
     click.option("--order", type=click.IntRange(0, 3), help="0 position, 1 velocity, 2 acceleration, 3 jerk; "
                  "otherwise what the outputs need, at least 2."),
-    click.option("--mode", "modes", multiple=True, metavar="LINK=SIGN",
-                 help="Assembly mode, +1 or -1, of the group with this link."),
+    MODE,
     click.option("--output", "outputs", multiple=True, metavar="QUANTITY", callback=lambda _c, _p, given: names(given),
                  help="Such as G.velocity, G.speed, bar.angle, slot.rate; repeat it, or write commas."),
 )  # fmt: skip
@@ -43,6 +47,13 @@ OPTIONS: tuple[Any, ...] = (
 def drive_options(command: F) -> F:
     """The options of a command that solves a mechanism; values in degrees or lengths."""
     for option in reversed(OPTIONS):
+        command = option(command)
+    return command
+
+
+def pose_options(command: F) -> F:
+    """The options of a command that shows one pose: rates, modes, which design."""
+    for option in (DESIGN, MODE, SPEED):
         command = option(command)
     return command
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.coupler.relative import INFINITE, SMALL, UNKNOWN, Relative, cross, direction, rate, relative
+from compoundkin.coupler.relative import INFINITE, SMALL, UNKNOWN, Relative, direction, rate, relative
 from compoundkin.motion import Motion
-from compoundkin.series import Number, Series
+from compoundkin.series import Number, Series, cross
 from compoundkin.words import FRAME
 
 

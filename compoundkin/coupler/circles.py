@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.coupler.centrodes import pole_moves
-from compoundkin.coupler.relative import INFINITE, SMALL, Relative, cross, direction, dot, relative
+from compoundkin.coupler.relative import INFINITE, SMALL, Relative, direction, relative
 from compoundkin.motion import Motion
-from compoundkin.series import Number
+from compoundkin.series import Number, cross, dot
 from compoundkin.words import FRAME
 
 

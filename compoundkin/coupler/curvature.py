@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from compoundkin.coupler.circles import canonical
-from compoundkin.coupler.relative import INFINITE, SMALL, UNKNOWN, Relative, cross, dot, place, relative, relative_point
+from compoundkin.coupler.relative import INFINITE, SMALL, UNKNOWN, Relative, place, relative, relative_point
 from compoundkin.motion import Motion
-from compoundkin.series import Number
+from compoundkin.series import Number, cross, dot
 from compoundkin.words import FRAME
 
 

@@ -70,16 +70,6 @@ def place(motion: Motion, link: str, point: Any) -> Number:
         raise InvalidInput(error.problems) from None
 
 
-def dot(a: Number, b: Number) -> Number:
-    """The scalar product of two planar vectors."""
-    return a.real * b.real + a.imag * b.imag
-
-
-def cross(a: Number, b: Number) -> Number:
-    """The third component of the vector product of two planar vectors."""
-    return a.real * b.imag - a.imag * b.real
-
-
 def direction(vector: Number) -> Number:
     """The unit vector of a planar vector; 0 for the vector 0."""
     length = np.abs(vector)

@@ -50,13 +50,3 @@ def differentiated(coefficients: tuple[Number, ...]) -> tuple[Number, ...]:
     (4.0, 2.0)
     """
     return tuple([c * k for k, c in enumerate(coefficients)])[1:]
-
-
-def dot(a: Number, b: Number) -> Number:
-    """The scalar product of planar vectors that are arrays."""
-    return a.real * b.real + a.imag * b.imag
-
-
-def cross(a: Number, b: Number) -> Number:
-    """The third component of the vector product of planar vectors that are arrays."""
-    return a.real * b.imag - a.imag * b.real

@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.curves.composing import cross
 from compoundkin.curves.searching import Samples
-from compoundkin.series import Number
+from compoundkin.series import Number, cross
 
 # Sides of the sampled polygon that meet in a corner of it may miss each other by rounding: this part of a side.
 ROUNDING = 1e-9

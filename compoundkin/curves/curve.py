@@ -11,12 +11,12 @@ from math import factorial
 import numpy as np
 
 from compoundkin.curves.checking import check_points, checked_range
-from compoundkin.curves.composing import composed, cross, differentiated, dot
+from compoundkin.curves.composing import composed, differentiated
 from compoundkin.curves.crossing import Crossing, crossings
 from compoundkin.curves.searching import Samples
 from compoundkin.curves.touching import held, touching
 from compoundkin.curves.undercut import spans
-from compoundkin.series import Number, Series, as_series
+from compoundkin.series import Number, Series, as_series, cross, dot
 
 # Two places of a curve whose distances from a point differ by less than the square of this part of the curve cannot
 # be told apart by samples; Newton starts this close to its answer.

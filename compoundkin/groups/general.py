@@ -23,7 +23,7 @@ from compoundkin.groups.linear import Inverse, Row, stacked
 from compoundkin.pairs import Pair
 from compoundkin.pairs.contract import Ends, Poses
 from compoundkin.poses import Pose
-from compoundkin.series import Number, Series, as_series, constant
+from compoundkin.series import Number, Series, as_series, constant, joined
 
 # Newton stops when no correction exceeds this (of the mechanism's size, or radians): it doubles its digits with every
 # step, so that the pose is then exact to rounding.
@@ -180,7 +180,7 @@ class General:
         for i, body in enumerate(self.kept):
             x, y, theta = values[3 * i : 3 * i + 3]
             angle = constant(theta)
-            found[body] = Pose(constant(_joined(x, y)), angle.turn(), angle)
+            found[body] = Pose(constant(joined(x, y)), angle.turn(), angle)
         return found
 
     def _residual(self, bodies: Mapping[int, Pose], setting: Setting, k: int) -> list[Number]:
@@ -297,12 +297,6 @@ def _largest(values: list[Number]) -> Number:
     for value in values[1:]:
         found = np.maximum(found, np.abs(value))
     return found
-
-
-def _joined(x: Number, y: Number) -> Number:
-    out = np.empty(np.broadcast(x, y).shape, dtype=complex)
-    out.real, out.imag = x, y
-    return out
 
 
 def _turned(z: tuple[Number, ...], theta: tuple[Number, ...]) -> Pose:

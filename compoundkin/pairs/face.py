@@ -20,7 +20,7 @@ from compoundkin.pairs.profiled import Profiled
 from compoundkin.pairs.revolute import Revolute
 from compoundkin.poses import End, Pose
 from compoundkin.profiles import Profile, side_of
-from compoundkin.series import Number, Series, as_series
+from compoundkin.series import Number, Series, as_series, dot
 
 # One of so many samples of the profile is enough to find where a face touches it; Newton does the rest.
 THINNED = 4
@@ -148,19 +148,19 @@ class Face(Profiled):
         facing = np.conjugate(frame.u.c[0]) * normal
         if path.straight:
             reach = self.curve.at(self._support(frame, face).c[0]).c[0] - path.start
-            rise = _dot(facing, path.centre)
-            found = path.sense * _dot(facing, reach) / np.where(np.abs(rise) < ALONG, np.nan, rise)
+            rise = dot(facing, path.centre)
+            found = path.sense * dot(facing, reach) / np.where(np.abs(rise) < ALONG, np.nan, rise)
             return found, found
         middle = complex(np.mean(self._samples[0]))
 
         def level(at: Sequence[Number], of: Sequence[Number]) -> Number:
-            return _dot(of[1], of[0] - at[0]) - at[1]
+            return dot(of[1], of[0] - at[0]) - at[1]
 
         def coordinate(at: Sequence[Number], of: Sequence[Number]) -> Number:
             # seen from the pin the two tangents are on either side of the profile's middle
             return nearest_angle(of[1] / at[2], (at[0] - middle) / at[2])
 
-        numbers = (path.centre, _dot(facing, path.start - path.centre), facing)
+        numbers = (path.centre, dot(facing, path.start - path.centre), facing)
         right, left = outermost(level, coordinate, numbers, self._samples, self.curve.closed)
         against, along = (right, left) if self.side > 0 else (left, right)
         return path.sense * against, path.sense * along
@@ -225,10 +225,6 @@ class Face(Profiled):
         travel = reach(self.coordinate(ends, poses).c[0])
         track = Track(1, ends[1].point, ends[1].along.c[0], *travel, float(self.side))
         return Outline(0, line, self.curve.closed), track
-
-
-def _dot(a: Number, b: Number) -> Number:
-    return a.real * b.real + a.imag * b.imag
 
 
 def face(

@@ -80,12 +80,6 @@ class Gear(Geared):
         """From teeth or radii to base circles."""
         return distance / (one + two) * np.cos(PRESSURE_ANGLE)
 
-    def pitch_radii(self, geometry: Geometry) -> tuple[Number, Number]:
-        """The radii of the two pitch circles, which the distance of the axes and the ratio give."""
-        one, two = self.sizes
-        distance = self.distance(geometry)
-        return distance * np.abs(one / (one + two)), distance * np.abs(two / (one + two))
-
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """The pitch circles."""
         one, two = (abs(float(end.measure)) for end in ends[:2])

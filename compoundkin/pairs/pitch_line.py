@@ -14,7 +14,7 @@ from compoundkin.glyphs import Disc, Mark, Track, reach
 from compoundkin.pairs.contact import named_problems
 from compoundkin.pairs.contract import Ends, Pair, Point, Poses
 from compoundkin.poses import End
-from compoundkin.series import Number, Series
+from compoundkin.series import Number, Series, cross
 
 # A radius fits a drawn distance that it meets to this part of it: drawings are given to some five digits.
 FITS = 1e-5
@@ -151,8 +151,8 @@ class OnLine(Pair):
         e = poses[0].carry(ends[0]).along.c[0]
         away = poses[1].at(ends[1].point).c[0] - poses[0].z.c[0]
         arm = poses[1].at(ends[1].point).c[0] - poses[1].z.c[0]
-        along = (-e.real, -e.imag, -_cross(away, e), e.real, e.imag, _cross(arm, e))
-        across = (e.imag, -e.real, -_cross(away, 1j * e), -e.imag, e.real, _cross(arm, 1j * e))
+        along = (-e.real, -e.imag, -cross(away, e), e.real, e.imag, cross(arm, e))
+        across = (e.imag, -e.real, -cross(away, 1j * e), -e.imag, e.real, cross(arm, 1j * e))
         m = ends[1].measure
         return across, (*along[:2], along[2] - m, *along[3:5], along[5] + m), along
 
@@ -190,7 +190,3 @@ def radius_problems(where: str, key: str, radius: Number | None) -> Iterator[Pro
     if radius is not None and not np.all(np.asarray(radius) > 0):
         shown = f"{radius:g}" if np.ndim(radius) == 0 else str(np.asarray(radius).tolist())
         yield Problem(f"{where}.{key}", f"{shown} is not positive", "give the size of the wheel")
-
-
-def _cross(a: Number, b: Number) -> Number:
-    return a.real * b.imag - a.imag * b.real

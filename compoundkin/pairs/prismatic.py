@@ -14,7 +14,7 @@ from compoundkin.glyphs import Mark, Sliding, reach
 from compoundkin.keys import Key
 from compoundkin.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.poses import End, Pose
-from compoundkin.series import Number, Series
+from compoundkin.series import Number, Series, cross, dot
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,13 +155,13 @@ class Prismatic(Pair):
         arm0 = (poses[0].u * ends[0].point).c[0]
         arm1 = (poses[1].u * ends[1].point).c[0]
         # d(gap)/d(theta of the guide) = -i arm0, d(e)/d(theta of the guide) = i e
-        across = _cross(1j * e, gap) + _cross(e, -1j * arm0)
-        along = _dot(1j * e, gap) + _dot(e, -1j * arm0)
-        aligned = _dot(e, block.along.c[0])
+        across = cross(1j * e, gap) + cross(e, -1j * arm0)
+        along = dot(1j * e, gap) + dot(e, -1j * arm0)
+        aligned = dot(e, block.along.c[0])
         return table(
-            (e.imag, -e.real, across, -e.imag, e.real, _cross(e, 1j * arm1)),
+            (e.imag, -e.real, across, -e.imag, e.real, cross(e, 1j * arm1)),
             (0.0, 0.0, -aligned, 0.0, 0.0, aligned),
-            (-e.real, -e.imag, along, e.real, e.imag, _dot(e, 1j * arm1)),
+            (-e.real, -e.imag, along, e.real, e.imag, dot(e, 1j * arm1)),
         )
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
@@ -214,11 +214,3 @@ def slide(
     'block/bar'
     """
     return Prismatic(name or f"{link}/{on}", link, on, at, through, angle, toward, offset, turn)
-
-
-def _cross(a: Number, b: Number) -> Number:
-    return a.real * b.imag - a.imag * b.real
-
-
-def _dot(a: Number, b: Number) -> Number:
-    return a.real * b.real + a.imag * b.imag

@@ -17,9 +17,9 @@ from math import acos, asin, hypot, sqrt
 import numpy as np
 
 from compoundkin.curves import Analytic
-from compoundkin.curves.composing import composed, differentiated, dot
+from compoundkin.curves.composing import composed, differentiated
 from compoundkin.laws.programs import Program
-from compoundkin.series import Number, Series, constant
+from compoundkin.series import Number, Series, constant, dot
 
 FULL_TURN = 2.0 * np.pi
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.equivalents import equivalent_linkage, replacements
+from compoundkin.equivalents import replaced
 from compoundkin.errors import CompoundkinError
 from compoundkin.reports.model import Cell, Column, Paragraph, Section, Table
 from compoundkin.reports.sampling import Sample
@@ -20,7 +20,7 @@ def equivalent_section(sample: Sample) -> Section | None:
         return None
     at = sample.design * sample.poses + int(regular[0])
     try:
-        found, linkage = replacements(motion, at), equivalent_linkage(motion, at)
+        linkage, found = replaced(motion, at)
     except CompoundkinError:
         return None
     if not found:
