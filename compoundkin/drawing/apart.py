@@ -8,16 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.drawing.labels import WIDE, Label, placed
-from compoundkin.drawing.layout import layered, window_on
+from compoundkin.drawing.layout import by_links, in_layers, window_on
 from compoundkin.drawing.moving import moved
 from compoundkin.drawing.naming import below, label_shapes, letters, lines_of_text, numbered
 from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.picture import Picture, checked_size
 from compoundkin.drawing.scene import Scene
-from compoundkin.drawing.shapes import Polygon, Shape, Text, corners
+from compoundkin.drawing.shapes import Group, Polygon, Shape, Text, corners
 from compoundkin.drawing.style import LETTER, LINE
 from compoundkin.drawing.window import MARGIN, Window
-from compoundkin.structure import Group, roman
+from compoundkin.structure import Group as AssurGroup
+from compoundkin.structure import roman
 from compoundkin.words import FRAME
 
 # Parts stand side by side until they are so wide together, in picture units.
@@ -54,12 +55,12 @@ def apart(scene: Scene, size: float | None) -> Picture:
     return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))
 
 
-def heading(group: Group) -> str:
+def heading(group: AssurGroup) -> str:
     """What a group is called: its class and the letters of its pairs."""
     return f"class {roman(group.class_)}: {group.name}"
 
 
-def outer_letters(group: Group) -> frozenset[str]:
+def outer_letters(group: AssurGroup) -> frozenset[str]:
     """The points of the pairs by which a group is attached to what stands before it."""
     return frozenset(letter for pair in group.outer for letter in pair.letters[:1])
 
@@ -67,7 +68,7 @@ def outer_letters(group: Group) -> frozenset[str]:
 def _part(scene: Scene, whole: Window, links: frozenset[str], title: str, outer: frozenset[str] = frozenset()) -> Part:
     """The links of a part as they are in the mechanism, with their letters and numbers."""
     painter = Painter(scene, whole, links, outer)
-    shapes = layered(painter)
+    shapes = by_links(in_layers(painter))
     points = np.array(corners(shapes) or [0j])
     low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
     high = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j)
@@ -79,7 +80,8 @@ def _part(scene: Scene, whole: Window, links: frozenset[str], title: str, outer:
     tall = (high - low).imag
     shapes += label_shapes(scene, placed(own, shapes, wide, tall))
     named_part = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")
-    return Part((named_part, *moved(shapes, HEADING * 1j)), wide, tall + HEADING)
+    own_links = tuple(name for name in scene.numbers if name in links)
+    return Part((Group((named_part, *moved(shapes, HEADING * 1j)), links=own_links),), wide, tall + HEADING)
 
 
 def _shifted(label: Label, by: complex) -> Label:

@@ -45,7 +45,7 @@ def _chord(step: Step, places: Mapping[str, complex], numbers: Mapping[str, int]
 
 
 def _node(name: str, at: complex, number: int) -> Shape:
-    return Group((Circle(at, NUMBER + 1.5, "pin ink"), Text(at, str(number), "number")), title=name)
+    return Group((Circle(at, NUMBER + 1.5, "pin ink"), Text(at, str(number), "number")), title=name, links=(name,))
 
 
 def _list(steps: Sequence[Step], numbers: Mapping[str, int]) -> tuple[list[Shape], float]:

@@ -52,7 +52,7 @@ def _node(name: str, at: complex, number: int, group: int) -> Shape:
     style = "pin frame" if name == FRAME else f"pin {style_of('ring', group)}"
     around = tuple(at + corner * turn for turn in (1, 1j, -1, -1j))
     rim: Shape = Polygon(around, style) if name == FRAME else Circle(at, NODE, style)
-    return Group((rim, Text(at, str(number), "number")), title=name)
+    return Group((rim, Text(at, str(number), "number")), title=name, links=(name,))
 
 
 def _edges(pairs: Sequence[Pair], places: Mapping[str, complex], driven: set[str]) -> tuple[list[Shape], list[Label]]:

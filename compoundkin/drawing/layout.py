@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
 
 import numpy as np
 
@@ -70,13 +71,24 @@ def _extent(scene: Scene) -> Iterator[Number]:
 
 def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:
     """The shapes of a scene from back to front; without what does not move where it is a ghost."""
+    return [laid.shape for laid in in_layers(painter, grounded=grounded)]
+
+
+def in_layers(painter: Painter, *, grounded: bool = True) -> list[Laid]:
+    """As `layered`, each shape with the link that it moves with."""
     laid: list[Laid] = [*marks(painter)]
     for name in filter(painter.shows, painter.scene.mechanism.links):
         shapes = body(painter.scene, painter.window, name)
-        laid += [(Layer.PLATE if isinstance(shape, Polygon) else Layer.BAR, shape) for shape in shapes]
+        laid += [Laid(Layer.PLATE if isinstance(shape, Polygon) else Layer.BAR, shape, name) for shape in shapes]
     laid += [*pins(painter), *drives(painter)] if grounded else []
-    ordered = sorted(range(len(laid)), key=lambda k: (laid[k][0], k))
-    return [laid[k][1] for k in ordered if grounded or laid[k][0] not in (Layer.BACK, Layer.FRAME)]
+    ordered = sorted(laid, key=lambda one: one.layer)  # which keeps the order within a layer
+    return [one for one in ordered if grounded or one.layer not in (Layer.BACK, Layer.FRAME)]
+
+
+def by_links(laid: Iterable[Laid]) -> list[Shape]:
+    """Shapes in their order, those of one link that follow each other as a group of that link."""
+    runs = groupby(laid, key=lambda one: one.link)
+    return [Group(tuple(one.shape for one in run), links=(link,)) for link, run in runs]
 
 
 def ghost(scene: Scene, window: Window) -> Group:

@@ -48,8 +48,8 @@ def _groove(painter: Painter, seen: Seen, mark: Groove) -> Iterator[Laid]:
     line = painter.line(link, mark.line)
     # a groove of a bar covers it; one of the frame is behind all bars
     layer = Layer.FRAME if link == FRAME else Layer.GROOVE
-    yield layer, Polyline(line, painter.style("track", link))
-    yield layer, Polyline(line, "knock")
+    yield Laid(layer, Polyline(line, painter.style("track", link)), link)
+    yield Laid(layer, Polyline(line, "knock"), link)
     own = [painter.place(link, p) for p in painter.scene.points[link].values()]
     if link != FRAME and min(abs(p - q) for p in own for q in line) > 2.0 * PIN:
         yield from painter.stub(link, min(line, key=lambda q: min(abs(p - q) for p in own)))
@@ -57,7 +57,7 @@ def _groove(painter: Painter, seen: Seen, mark: Groove) -> Iterator[Laid]:
 
 def _stud(painter: Painter, seen: Seen, mark: Stud) -> Iterator[Laid]:
     link = seen.members[mark.member]
-    yield Layer.PIN, Circle(painter.place(link, mark.at), STUD, "dot")
+    yield Laid(Layer.PIN, Circle(painter.place(link, mark.at), STUD, "dot"), link)
 
 
 def _disc(painter: Painter, seen: Seen, mark: Disc) -> Iterator[Laid]:
@@ -65,22 +65,24 @@ def _disc(painter: Painter, seen: Seen, mark: Disc) -> Iterator[Laid]:
     middle, radius = painter.place(link, mark.at), float(mark.radius * painter.window.scale)
     e = painter.along(link, 1 + 0j)
     if mark.is_ring:
-        yield Layer.WHEEL, Circle(middle, radius, painter.style("line", link))
-        yield Layer.WHEEL, Circle(middle, radius + RIM, painter.style("line", link))
+        yield Laid(Layer.WHEEL, Circle(middle, radius, painter.style("line", link)), link)
+        yield Laid(Layer.WHEEL, Circle(middle, radius + RIM, painter.style("line", link)), link)
         if link == FRAME:
             count = max(12, round(2.0 * np.pi * radius / (2.0 * CLOSEST)))
             lines = ticks(middle, radius + RIM, 0.0, count, 0.0, RIM / 1.5)
-            yield Layer.BACK, Strokes(tuple((a, b + 1j * (b - a) * 0.7) for a, b in lines), "hatch")
+            yield Laid(Layer.BACK, Strokes(tuple((a, b + 1j * (b - a) * 0.7) for a, b in lines), "hatch"), link)
         else:
-            yield Layer.WHEEL, Polyline((middle + e * radius, middle + e * (radius + RIM)), painter.style("bar", link))
+            spoke = Polyline((middle + e * radius, middle + e * (radius + RIM)), painter.style("bar", link))
+            yield Laid(Layer.WHEEL, spoke, link)
     else:
-        yield Layer.WHEEL, Circle(middle, radius, painter.style("plate", link))
+        yield Laid(Layer.WHEEL, Circle(middle, radius, painter.style("plate", link)), link)
         if radius > TINY and link != FRAME:
-            yield Layer.WHEEL, Polyline((middle + e * radius * 0.62, middle + e * radius), painter.style("line", link))
+            hand = Polyline((middle + e * radius * 0.62, middle + e * radius), painter.style("line", link))
+            yield Laid(Layer.WHEEL, hand, link)
     if mark.teeth:
         fewer = max(1, int(np.ceil(mark.teeth * CLOSEST / (2.0 * np.pi * radius))))
         lines = ticks(middle, radius, float(np.angle(e)), max(6, round(mark.teeth / fewer)), -TOOTH, TOOTH)
-        yield Layer.WHEEL, Strokes(lines, "hatch" if link == FRAME else painter.style("thin", link))
+        yield Laid(Layer.WHEEL, Strokes(lines, "hatch" if link == FRAME else painter.style("thin", link)), link)
 
 
 def _track(painter: Painter, seen: Seen, mark: Track) -> Iterator[Laid]:
@@ -92,10 +94,11 @@ def _track(painter: Painter, seen: Seen, mark: Track) -> Iterator[Laid]:
     # what runs on it is to the left, which on paper, y downward, is -1j
     under = 1j * e * mark.side
     if link == FRAME and not mark.pitch:
-        yield Layer.FRAME, Polyline((start, stop), "frame")
-        yield Layer.BACK, hatching(start, stop, mark.side)
+        yield Laid(Layer.FRAME, Polyline((start, stop), "frame"), link)
+        yield Laid(Layer.BACK, hatching(start, stop, mark.side), link)
         return
-    yield Layer.BAR, Polygon((start, stop, stop + under * RIM, start + under * RIM), painter.style("plate", link))
+    side = Polygon((start, stop, stop + under * RIM, start + under * RIM), painter.style("plate", link))
+    yield Laid(Layer.BAR, side, link)
     if mark.pitch:
         step = mark.pitch * painter.window.scale
         step *= max(1, int(np.ceil(CLOSEST / step)))
@@ -103,14 +106,13 @@ def _track(painter: Painter, seen: Seen, mark: Track) -> Iterator[Laid]:
         first = int(np.ceil((np.conjugate(e) * (start - origin)).real / step))
         last = int(np.floor((np.conjugate(e) * (stop - origin)).real / step))
         feet = [origin + e * step * k for k in range(first, last + 1)]
-        yield (
-            Layer.BAR,
-            Strokes(tuple((p - under * TOOTH, p + under * TOOTH) for p in feet), painter.style("thin", link)),
-        )
+        teeth = Strokes(tuple((p - under * TOOTH, p + under * TOOTH) for p in feet), painter.style("thin", link))
+        yield Laid(Layer.BAR, teeth, link)
 
 
 def _strap(painter: Painter, seen: Seen, mark: Strap) -> Iterator[Laid]:
-    yield Layer.BAR, Polyline(painter.line(seen.members[mark.member], mark.line), "strap")
+    link = seen.members[mark.member]
+    yield Laid(Layer.BAR, Polyline(painter.line(link, mark.line), "strap"), link)
 
 
 def _outline(painter: Painter, seen: Seen, mark: Outline) -> Iterator[Laid]:
@@ -118,12 +120,13 @@ def _outline(painter: Painter, seen: Seen, mark: Outline) -> Iterator[Laid]:
     line = painter.line(link, mark.line)
     if mark.is_hollow:
         middle = complex(np.mean(line))
-        yield Layer.WHEEL, Polygon(line, painter.style("line", link))
-        yield Layer.WHEEL, Polygon(tuple(p + RIM * direction(p - middle) for p in line), painter.style("line", link))
+        outside = tuple(p + RIM * direction(p - middle) for p in line)
+        yield Laid(Layer.WHEEL, Polygon(line, painter.style("line", link)), link)
+        yield Laid(Layer.WHEEL, Polygon(outside, painter.style("line", link)), link)
     elif mark.closed:
-        yield Layer.WHEEL, Polygon(line, painter.style("plate", link))
+        yield Laid(Layer.WHEEL, Polygon(line, painter.style("plate", link)), link)
     else:
-        yield Layer.WHEEL, Polyline(line, painter.style("line", link))
+        yield Laid(Layer.WHEEL, Polyline(line, painter.style("line", link)), link)
     own = [painter.place(link, p) for p in painter.scene.points[link].values()]
     if not mark.closed and own:
         yield from painter.stub(link, min(line, key=lambda q: min(abs(p - q) for p in own)))

@@ -11,7 +11,7 @@ from compoundkin.drawing.labels import Label, around, text_half
 from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.pins import joints
 from compoundkin.drawing.scene import Scene
-from compoundkin.drawing.shapes import Circle, Shape, Text
+from compoundkin.drawing.shapes import Circle, Group, Shape, Text
 from compoundkin.drawing.slides import guide_line, rod_line
 from compoundkin.drawing.style import LETTER, LINE, NUMBER, PIN, SMALL, style_of
 from compoundkin.glyphs import Disc, Sliding
@@ -107,11 +107,16 @@ def label_shapes(scene: Scene, found: dict[str, complex]) -> list[Shape]:
     for key, at in found.items():
         kind, _, name = key.partition(" ")
         if kind == "link":
-            shapes.append(Circle(at, NUMBER, f"pin {style_of('ring', scene.groups[name])}"))
-            shapes.append(Text(at, str(scene.numbers[name]), "number"))
+            shapes.append(badge(scene, name, at))
         else:
             shapes.append(Text(at, name, "letter" if kind == "point" else "centre-name"))
     return shapes
+
+
+def badge(scene: Scene, name: str, at: complex) -> Shape:
+    """The number of a link in a circle of its colour."""
+    rim = Circle(at, NUMBER, f"pin {style_of('ring', scene.groups[name])}")
+    return Group((rim, Text(at, str(scene.numbers[name]), "number")), links=(name,))
 
 
 def lines_of_text(parts: Sequence[str], width: float) -> list[str]:

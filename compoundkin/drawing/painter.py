@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,8 +31,13 @@ class Layer(IntEnum):
     PIN = 7
 
 
-# Shapes with their layer.
-Laid: TypeAlias = tuple[Layer, Shape]
+class Laid(NamedTuple):
+    """A shape with its layer and the link with which it moves; at a point with a `letter` it does not turn with it."""
+
+    layer: Layer
+    shape: Shape
+    link: str
+    letter: str = ""
 
 
 @dataclass(frozen=True)
@@ -88,11 +93,11 @@ class Painter:
     def block_at(self, link: str, middle: complex, along: complex) -> Laid:
         """A block."""
         style = "pin frame" if link == FRAME else f"pin {style_of('ring', self.scene.groups[link])}"
-        return Layer.BLOCK, Polygon(box(middle, along, *BLOCK), style)
+        return Laid(Layer.BLOCK, Polygon(box(middle, along, *BLOCK), style), link)
 
     def stub(self, link: str, foot: complex) -> Iterator[Laid]:
         """A bar from a place to the nearest point of its link, where it is none of them."""
         own = [self.place(link, p) for p in self.scene.points[link].values()]
         nearest = min(own, key=lambda p: abs(p - foot), default=foot)
         if link != FRAME and abs(nearest - foot) > PIN:
-            yield Layer.BAR, Polyline((nearest, foot), self.style("bar", link))
+            yield Laid(Layer.BAR, Polyline((nearest, foot), self.style("bar", link)), link)

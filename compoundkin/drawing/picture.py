@@ -10,7 +10,7 @@ from typing import Any
 
 from compoundkin.drawing.export import converted
 from compoundkin.drawing.shapes import Shape
-from compoundkin.drawing.svg import svg
+from compoundkin.drawing.svg import NATURAL, inline, svg
 from compoundkin.drawing.window import Window
 from compoundkin.errors import InvalidInput, Problem
 from compoundkin.formats.atomic import write_atomically
@@ -18,8 +18,8 @@ from compoundkin.formats.atomic import write_atomically
 # The longer side of a picture has so many pixels, at least and at most.
 SMALLEST, LARGEST = 16, 20000
 
-# Pixels for a picture unit where no size is asked for, and the longest side then.
-NATURAL, PAGE = 1.1, 800.0
+# The longest side of a picture for which no size is asked for.
+PAGE = 800.0
 
 SUFFIXES = (".svg", ".png", ".pdf")
 
@@ -46,6 +46,11 @@ class Picture:
         longer = max(self.width, self.height)
         size = min(NATURAL * longer, PAGE) if self.size is None else self.size
         return svg(self.shapes, self.width, self.height, size, self.title, self.description)
+
+    @property
+    def inline(self) -> str:
+        """It as part of a page, which must have the style sheet for its shapes."""
+        return inline(self.shapes, self.width, self.height, self.title, self.description)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write it to an .svg, .png or .pdf file, whole or not at all.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 
 import numpy as np
 
@@ -40,13 +39,13 @@ def pins(painter: Painter) -> Iterator[Laid]:
         if FRAME in carriers and joined:
             yield from pivot(painter, letter, at)
         if letter in painter.outer:
-            yield Layer.PIN, Circle(at, OUTER, "outer")
+            yield Laid(Layer.PIN, Circle(at, OUTER, "outer"), carriers[0], letter)
         if len(joined) > 1 and painter.only is None:
-            yield Layer.PIN, Circle(at, PIN + 3.5, "pin ink")
+            yield Laid(Layer.PIN, Circle(at, PIN + 3.5, "pin ink"), carriers[0], letter)
         if joined:
-            yield Layer.PIN, Circle(at, PIN, "pin ink")
+            yield Laid(Layer.PIN, Circle(at, PIN, "pin ink"), carriers[0], letter)
         elif letter not in gliding(painter):
-            yield Layer.PIN, Circle(at, 2.5, "dot")
+            yield Laid(Layer.PIN, Circle(at, 2.5, "dot"), carriers[0], letter)
 
 
 def joints(painter: Painter, letter: str) -> tuple[str, ...]:
@@ -66,10 +65,10 @@ def pivot(painter: Painter, letter: str, at: complex) -> Iterator[Laid]:
     down = _free_side(painter, letter, at)
     along = 1j * down
     left, right = at + down * PIVOT + along * FOOT, at + down * PIVOT - along * FOOT
-    yield Layer.FRAME, Polygon((at, left, right), "frame-face frame")
+    yield Laid(Layer.FRAME, Polygon((at, left, right), "frame-face frame"), FRAME)
     over = along * 4.0
-    yield Layer.FRAME, Polyline((left + over, right - over), "frame")
-    yield Layer.BACK, hatching(left + over, right - over, 1.0)
+    yield Laid(Layer.FRAME, Polyline((left + over, right - over), "frame"), FRAME)
+    yield Laid(Layer.BACK, hatching(left + over, right - over, 1.0), FRAME)
 
 
 def _free_side(painter: Painter, letter: str, at: complex) -> complex:
@@ -104,11 +103,7 @@ def drives(painter: Painter) -> Iterator[Laid]:
             mark, link = straight.mark, straight.members[0]
             e = painter.along(link, mark.along) * float(np.sign(speed))  # type: ignore[union-attr]
             shapes = pushing(painter, at, e)
-        yield from map(partial(_laid, Layer.PIN), shapes)
-
-
-def _laid(layer: Layer, shape: Shape) -> Laid:
-    return layer, shape
+        yield from (Laid(Layer.PIN, shape, step.link) for shape in shapes)
 
 
 def turning(painter: Painter, step: DrivenPair, at: complex, sense: float) -> tuple[Shape, ...]:

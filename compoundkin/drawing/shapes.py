@@ -63,11 +63,15 @@ class Text:
 
 @dataclass(frozen=True)
 class Group:
-    """Shapes that belong together, with a title that a browser shows under the pointer."""
+    """Shapes that belong together, with a title that a browser shows under the pointer.
+
+    `links` are the names of the links that they show.
+    """
 
     shapes: tuple[Shape, ...]
     style: str = ""
     title: str = ""
+    links: tuple[str, ...] = ()
 
 
 Shape: TypeAlias = Polyline | Polygon | Strokes | Circle | Arc | Text | Group

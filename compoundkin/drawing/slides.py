@@ -31,7 +31,7 @@ def sliding(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
         yield from _cylinder(painter, seen, mark)
     elif painter.is_rod(seen):
         # the link that carries the guide is the block, and the guide the rod that runs through it
-        yield Layer.BAR, Polyline(rod_line(painter, block, mark), painter.style("bar", block))
+        yield Laid(Layer.BAR, Polyline(rod_line(painter, block, mark), painter.style("bar", block)), block)
         yield painter.block_at(guide, painter.place(guide, mark.at), painter.along(guide, mark.along))
     else:
         yield from _guide(painter, guide, mark)
@@ -45,7 +45,7 @@ def _half(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
         yield from _guide(painter, guide, mark)
     elif painter.shows(block):
         middle, e = painter.place(block, mark.block), painter.along(guide, mark.along)
-        yield Layer.BACK, Polyline((middle - e * 2.0 * BEYOND, middle + e * 2.0 * BEYOND), "ray")
+        yield Laid(Layer.BACK, Polyline((middle - e * 2.0 * BEYOND, middle + e * 2.0 * BEYOND), "ray"), block)
         yield painter.block_at(block, middle, e)
 
 
@@ -73,16 +73,16 @@ def _spanned(points: tuple[complex, ...], e: complex) -> tuple[complex, complex]
 def _guide(painter: Painter, link: str, mark: Sliding) -> Iterator[Laid]:
     e = painter.along(link, mark.along)
     if link != FRAME:
-        yield Layer.BAR, Polyline(guide_line(painter, link, mark), painter.style("bar", link))
+        yield Laid(Layer.BAR, Polyline(guide_line(painter, link, mark), painter.style("bar", link)), link)
         yield from painter.stub(link, painter.place(link, mark.at))
         return
     low, high = (painter.place(link, mark.at + mark.along * s) for s in (mark.low, mark.high))
     side = _outer_side(e, (low + high) / 2.0, painter.middle)
     down = 1j * e * side * BLOCK[1] / 2.0
     start, stop = low - e * BEYOND, high + e * BEYOND
-    yield Layer.FRAME, Polyline((start + down, stop + down), "frame")
-    yield Layer.FRAME, Polyline((start - down, stop - down), "hatch")
-    yield Layer.BACK, hatching(start + down, stop + down, side)
+    yield Laid(Layer.FRAME, Polyline((start + down, stop + down), "frame"), FRAME)
+    yield Laid(Layer.FRAME, Polyline((start - down, stop - down), "hatch"), FRAME)
+    yield Laid(Layer.BACK, hatching(start + down, stop + down, side), FRAME)
 
 
 def _outer_side(e: complex, place: complex, middle: complex) -> float:
@@ -104,7 +104,8 @@ def _cylinder(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
     here = float((np.conjugate(out) * (eye - foot)).real)
     piston = min(max(PISTON + here - shortest, PISTON), length - PISTON)
     rim = box(foot + out * length / 2.0, out, length, CYLINDER)
-    yield Layer.BAR, Polygon(rim, painter.style("plate", barrel))
-    yield Layer.BAR, Polyline((foot + out * piston, eye), painter.style("bar", rod))
+    yield Laid(Layer.BAR, Polygon(rim, painter.style("plate", barrel)), barrel)
+    style = painter.style("bar", rod)
+    yield Laid(Layer.BAR, Polyline((foot + out * piston, eye), style), rod)
     across = 1j * out * (CYLINDER / 2.0 - 1.5)
-    yield Layer.BAR, Polyline((foot + out * piston - across, foot + out * piston + across), painter.style("bar", rod))
+    yield Laid(Layer.BAR, Polyline((foot + out * piston - across, foot + out * piston + across), style), rod)

@@ -70,6 +70,7 @@ CLASSES: Mapping[str, tuple[str, tuple[str, str]]] = {
     "note": (f"fill:{{}};font-size:{SMALL:g}px", FRAME),
     "heading": (f"fill:{{}};font-size:{LETTER:g}px;font-weight:bold", INK),
     "code": (f"fill:{{}};font-size:{SMALL:g}px;font-style:italic", FRAME),
+    "halo": ("stroke:{};stroke-width:3.5;stroke-linejoin:round", PAPER),
     "centre-name": (f"fill:{{}};font-size:{SMALL:g}px", ("#b3261e", "#ff8a80")),
 }
 # The same for every group of links, by the number of the group.
@@ -98,9 +99,23 @@ def css(shapes: Iterable[Shape]) -> str:
     Of two classes of one shape the later in the alphabet counts: "pin" fills what "ink" or "frame" strokes.
     """
     used = sorted({name for style in _styles(shapes) for name in style.split()})
-    light = "\n".join(_rule(name, 0) for name in used)
-    dark = "\n".join(_rule(name, 1) for name in used if _rule(name, 0) != _rule(name, 1))
+    light, dark = _sheets(used)
     return f"{light}\n@media (prefers-color-scheme: dark) {{\n{dark}\n}}"
+
+
+def page_css() -> str:
+    """The style sheet of all pictures of a page, whose root may say `data-theme="light"` or "dark"; light on paper."""
+    grouped = [f"{kind}{k}" for kind in GROUPED for k in range(len(COLOURS))]
+    light, dark = _sheets(["ghost", *CLASSES, *grouped])
+    asked = "\n".join(f":root[data-theme=dark] {rule}" for rule in dark.splitlines())
+    system = "\n".join(f":root:not([data-theme=light]) {rule}" for rule in dark.splitlines())
+    return f"{light}\n@media screen {{\n{asked}\n}}\n@media screen and (prefers-color-scheme: dark) {{\n{system}\n}}"
+
+
+def _sheets(names: Iterable[str]) -> tuple[str, str]:
+    """The rules of classes on light paper, and those that differ on dark."""
+    both = [(_rule(name, 0), _rule(name, 1)) for name in sorted(names)]
+    return "\n".join(light for light, _ in both), "\n".join(dark for light, dark in both if light != dark)
 
 
 def _rule(name: str, paper: int) -> str:

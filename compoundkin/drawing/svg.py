@@ -9,6 +9,8 @@ from compoundkin.drawing.shapes import Arc, Circle, Group, Polygon, Polyline, Sh
 from compoundkin.drawing.style import css
 
 FONT = "font-family:Helvetica,Arial,sans-serif"
+# Pixels for a picture unit where texts are as large as those of a page.
+NATURAL = 1.1
 # From the middle of a line of text to its baseline, in parts of the size of the letters.
 BASELINE = 0.35
 
@@ -26,7 +28,30 @@ def svg(shapes: Sequence[Shape], width: float, height: float, size: float, title
     )
     about = [f"<title>{escape(title)}</title>", *([f"<desc>{escape(description)}</desc>"] if description else [])]
     sheet = f"<style>\n{css(shapes)}\n</style>"
-    return "\n".join([head, *about, sheet, *_elements(shapes), "</svg>", ""])
+    return "\n".join([head, *about, sheet, *elements(shapes), "</svg>", ""])
+
+
+def inline(shapes: Sequence[Shape], width: float, height: float, title: str, description: str = "") -> str:
+    """A picture as part of a page: as wide as there is room, its style that of the page, its links told.
+
+    >>> inline((Group((), links=("bar", "block")),), 100, 50, "A").splitlines()[2]
+    '<g data-links="bar|block">'
+    """
+    name = escape(f"{title}. {description}" if description else title)
+    head = (
+        f'<svg viewBox="0 0 {number(width)} {number(height)}" style="max-width:{number(width * NATURAL)}px;{FONT}" '
+        f'role="img" aria-label="{name}">'
+    )
+    return "\n".join([head, f"<title>{escape(title)}</title>", *elements(shapes, tagged=True), "</svg>"])
+
+
+def link_names(names: Iterable[str]) -> str:
+    """The names of links as one attribute of an element of a page.
+
+    >>> link_names(["bar", "block"])
+    'bar|block'
+    """
+    return escape("|".join(names))
 
 
 def number(value: float) -> str:
@@ -40,14 +65,18 @@ def number(value: float) -> str:
     return "0" if text == "-0" else text
 
 
-def _elements(shapes: Iterable[Shape]) -> Iterator[str]:
+def elements(shapes: Iterable[Shape], *, tagged: bool = False) -> Iterator[str]:
+    """The elements of shapes, line by line; `tagged` tells the links that groups of them show."""
     for shape in shapes:
         if isinstance(shape, Group):
-            yield f"<g{_class(shape.style)}>"
+            tag = f' data-links="{link_names(shape.links)}"' if tagged and shape.links else ""
+            if shape.style or shape.title or tag:
+                yield f"<g{_class(shape.style)}{tag}>"
             if shape.title:
                 yield f"<title>{escape(shape.title)}</title>"
-            yield from _elements(shape.shapes)
-            yield "</g>"
+            yield from elements(shape.shapes, tagged=tagged)
+            if shape.style or shape.title or tag:
+                yield "</g>"
         else:
             yield _element(shape)
 
