@@ -116,7 +116,7 @@ class Scene:
     @property
     def count(self) -> int:
         """How many assembled poses the motion has."""
-        return max(int(np.size(pose.z.c[0])) for pose in self.whole.values())
+        return 1 if self.known is None else max(1, len(self.known))
 
     def rate(self, letter: str, k: int) -> complex:
         """The k-th derivative of where a point is, at the pose shown."""

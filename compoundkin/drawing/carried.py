@@ -1,0 +1,160 @@
+"""A sketch that moves: its parts as seen from points of the links that carry them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+
+import numpy as np
+
+from compoundkin.drawing.labels import placed
+from compoundkin.drawing.layout import in_layers, path, window_on
+from compoundkin.drawing.moving import moved
+from compoundkin.drawing.naming import badge, letters, numbered
+from compoundkin.drawing.painter import Painter
+from compoundkin.drawing.posing import scene_in
+from compoundkin.drawing.scene import Scene
+from compoundkin.drawing.shapes import Group, Polygon, Shape, Text
+from compoundkin.drawing.vectors import KINDS_OF_VECTOR, LONGEST, Scale, scale_of
+from compoundkin.drawing.window import Window
+from compoundkin.motion import Motion
+from compoundkin.series import Number
+from compoundkin.words import FRAME
+
+# So many poses along the motion tell how much room it takes, besides all places of all points.
+SAMPLED = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Shapes that a link carries: in picture units as seen from its point `at` (in the link's own frame), y downward.
+
+    They are turned as at the pose shown. A part that `turns` turns with the link; any other one stays upright, as labels
+    and pins do. `letter` is that of the point, where it is one.
+    """
+
+    link: str
+    at: complex
+    shapes: tuple[Shape, ...]
+    turns: bool = True
+    letter: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class MovingSketch:
+    """The sketch of a motion in one window for all its poses.
+
+    `scene` is the pose shown first, `still` what is behind all parts and does not move, `parts` the others from back to
+    front. All arrays are over the assembled poses, whose indices in the motion are `scene.known`.
+    """
+
+    motion: Motion
+    design: int
+    scene: Scene
+    window: Window
+    still: tuple[Shape, ...]
+    parts: tuple[Part, ...]
+
+    def places(self, part: Part) -> Number:
+        """Where the point of a part is on the picture, complex (poses,)."""
+        return np.broadcast_to(self.window.at(self.scene.whole[part.link].at(part.at).c[0]), (self.scene.count,))
+
+    def turns(self, link: str) -> Number:
+        """By how much a link is turned on the picture from where it is at the pose shown, unit complex (poses,)."""
+        here = complex(self.scene.here[link].u.c[0])
+        turned = np.conjugate(np.atleast_1d(self.scene.whole[link].u.c[0]) / here)
+        return np.broadcast_to(turned, (self.scene.count,))
+
+    @cached_property
+    def _moves(self) -> tuple[tuple[Number, Number], ...]:
+        return tuple((self.places(part), self.turns(part.link)) for part in self.parts)
+
+    def shapes(self, k: int) -> list[Shape]:
+        """All shapes at the k-th assembled pose, those of one link together.
+
+        >>> from compoundkin.catalog import load_named
+        >>> from compoundkin.motion import solve
+        >>> sketch = moving_sketch(solve(load_named("six-bar")))
+        >>> len(sketch.shapes(0)) == len(sketch.still) + len(sketch.parts)
+        True
+        """
+        found = list(self.still)
+        for part, (places, turns) in zip(self.parts, self._moves, strict=True):
+            turn = complex(turns[k]) if part.turns else 1 + 0j
+            found.append(Group(tuple(moved(part.shapes, complex(places[k]), turn)), links=(part.link,)))
+        return found
+
+    def rates(self, kind: str) -> dict[str, Number]:
+        """The velocities or accelerations of all points but those of the frame, complex (poses,); "velocity" and so on.
+
+        Raises InvalidInput where the motion has none.
+        """
+        order = KINDS_OF_VECTOR[kind][0]
+        carriers = self.scene.mechanism.carriers
+        found = {}
+        for letter in (letter for letter, links in carriers.items() if FRAME not in links):
+            rows = np.asarray(self.motion.points[letter].derivative(order)).reshape(self.motion.inputs.designs, -1)
+            row = np.broadcast_to(rows[min(self.design, len(rows) - 1)], (self.motion.inputs.poses,))
+            found[letter] = row[self.scene.known]
+        return found
+
+    def scale(self, kind: str) -> Scale | None:
+        """The scale of vectors, one for all poses: that at which the longest of them has room; None where nothing moves."""
+        longest = {k: np.nanmax(np.abs(v), initial=0.0, where=np.isfinite(v)) for k, v in self.rates(kind).items()}
+        return scale_of(kind, longest, LONGEST * self.window.diagonal, self.scene.mechanism.unit)
+
+
+def moving_sketch(
+    motion: Motion, design: int = 0, *, paths: Sequence[str] = (), labels: Sequence[str] = ("points", "links")
+) -> MovingSketch:
+    """The sketch of a motion whose parts move with its links; the pose shown first is the one nearest to the drawing.
+
+    `paths` names points whose paths are drawn. Raises NotAssembled where no pose is assembled.
+    """
+    scene = scene_in(motion, None, None, design)
+    window = window_on(scene, _sample(scene), tuple(scene.letters))
+    painter = Painter(scene, window)
+    corners = 0j, complex(window.width), complex(window.width, window.height), complex(0.0, window.height)
+    lines = [line for letter in paths for line in path(scene, window, letter)]
+    parts = [*_carried(painter), *_labelled(painter, labels)]
+    return MovingSketch(motion, design, scene, window, (Polygon(corners, "paper"), *lines), tuple(parts))
+
+
+def _sample(scene: Scene) -> list[Scene]:
+    """The scene at some poses along the motion."""
+    places = np.linspace(0, scene.count - 1, min(SAMPLED, scene.count)).round().astype(int)
+    return [scene.ghost(int(k)) for k in dict.fromkeys(places)]
+
+
+def _carried(painter: Painter) -> Iterator[Part]:
+    """The shapes of the mechanism; those that one link carries and that follow each other are one part."""
+    scene = painter.scene
+    for (link, letter), run in groupby(in_layers(painter), key=lambda one: (one.link, one.letter)):
+        at = scene.points[link][letter] if letter else 0j
+        shapes = moved((one.shape for one in run), -painter.place(link, at))
+        yield Part(link, complex(at), tuple(shapes), not letter, letter)
+
+
+def _labelled(painter: Painter, labels: Sequence[str]) -> Iterator[Part]:
+    """Numbers and letters, where they are in nobody's way at the pose shown."""
+    scene, window = painter.scene, painter.window
+    wanted = [*(numbered(painter) if "links" in labels else []), *(letters(painter) if "points" in labels else [])]
+    drawn = [one.shape for one in in_layers(painter)]
+    for key, place in placed(wanted, drawn, window.width, window.height).items():
+        kind, _, name = key.partition(" ")
+        if kind == "link":
+            yield Part(name, _own(scene, window, name, place), (badge(scene, name, 0j),), False)
+        else:
+            link = scene.mechanism.carriers[name][0]
+            at = scene.points[link][name]
+            off = place - painter.place(link, at)
+            yield Part(link, complex(at), (Text(off, name, "halo letter"), Text(off, name, "letter")), False, name)
+
+
+def _own(scene: Scene, window: Window, link: str, place: complex) -> complex:
+    """A place of the picture as a point in a link's own frame."""
+    world = np.conjugate(place) / window.scale + window.corner
+    pose: Mapping[str, Number] = {"z": scene.here[link].z.c[0], "u": scene.here[link].u.c[0]}
+    return complex((world - pose["z"]) / pose["u"])
