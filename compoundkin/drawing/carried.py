@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -19,7 +19,9 @@ from compoundkin.drawing.scene import Scene
 from compoundkin.drawing.shapes import Group, Polygon, Shape, Text
 from compoundkin.drawing.vectors import KINDS_OF_VECTOR, LONGEST, Scale, scale_of
 from compoundkin.drawing.window import Window
+from compoundkin.errors import InvalidInput, Problem
 from compoundkin.motion import Motion
+from compoundkin.motion.inputs import fit
 from compoundkin.series import Number
 from compoundkin.words import FRAME
 
@@ -31,8 +33,8 @@ SAMPLED = 24
 class Part:
     """Shapes that a link carries: in picture units as seen from its point `at` (in the link's own frame), y downward.
 
-    They are turned as at the pose shown. A part that `turns` turns with the link; any other one stays upright, as labels
-    and pins do. `letter` is that of the point, where it is one.
+    They are turned as at the pose shown. A part that `turns` turns with the link; any other one stays upright, as
+    labels and pins do. `letter` is that of the point, where it is one; `is_label` that it is a name or number.
     """
 
     link: str
@@ -40,6 +42,7 @@ class Part:
     shapes: tuple[Shape, ...]
     turns: bool = True
     letter: str = ""
+    is_label: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +69,11 @@ class MovingSketch:
         here = complex(self.scene.here[link].u.c[0])
         turned = np.conjugate(np.atleast_1d(self.scene.whole[link].u.c[0]) / here)
         return np.broadcast_to(turned, (self.scene.count,))
+
+    @property
+    def pose(self) -> int:
+        """The index of the pose shown first in the motion."""
+        return self.scene.pose[1]
 
     @cached_property
     def _moves(self) -> tuple[tuple[Number, Number], ...]:
@@ -101,8 +109,8 @@ class MovingSketch:
         return found
 
     def scale(self, kind: str) -> Scale | None:
-        """The scale of vectors, one for all poses: that at which the longest of them has room; None where nothing moves."""
-        longest = {k: np.nanmax(np.abs(v), initial=0.0, where=np.isfinite(v)) for k, v in self.rates(kind).items()}
+        """The scale of vectors, one for all poses, at which the longest of them has room; None where nothing moves."""
+        longest = {k: float(np.max(np.abs(v), initial=0.0, where=np.isfinite(v))) for k, v in self.rates(kind).items()}
         return scale_of(kind, longest, LONGEST * self.window.diagonal, self.scene.mechanism.unit)
 
 
@@ -111,8 +119,10 @@ def moving_sketch(
 ) -> MovingSketch:
     """The sketch of a motion whose parts move with its links; the pose shown first is the one nearest to the drawing.
 
-    `paths` names points whose paths are drawn. Raises NotAssembled where no pose is assembled.
+    `paths` names points whose paths are drawn. Raises NotAssembled where no pose is assembled, InvalidInput where links
+    change their dimensions along the motion.
     """
+    _check_rigid(motion)
     scene = scene_in(motion, None, None, design)
     window = window_on(scene, _sample(scene), tuple(scene.letters))
     painter = Painter(scene, window)
@@ -120,6 +130,16 @@ def moving_sketch(
     lines = [line for letter in paths for line in path(scene, window, letter)]
     parts = [*_carried(painter), *_labelled(painter, labels)]
     return MovingSketch(motion, design, scene, window, (Polygon(corners, "paper"), *lines), tuple(parts))
+
+
+def _check_rigid(motion: Motion) -> None:
+    """Raise InvalidInput where the axis of poses is one of dimensions too: no link is carried then, each is another."""
+    for link, points in motion.mechanism.geometry.points.items():
+        for letter, p in points.items():
+            known = np.atleast_1d(fit(motion.shape)(p))
+            if known.shape[-1] > 1 and np.ptp(known.real, axis=-1).max() + np.ptp(known.imag, axis=-1).max() > 0:
+                what = f"{letter} on {link} is elsewhere at every pose"
+                raise InvalidInput(Problem("motion", what, "give the dimensions an axis of their own before the last"))
 
 
 def _sample(scene: Scene) -> list[Scene]:
@@ -145,16 +165,18 @@ def _labelled(painter: Painter, labels: Sequence[str]) -> Iterator[Part]:
     for key, place in placed(wanted, drawn, window.width, window.height).items():
         kind, _, name = key.partition(" ")
         if kind == "link":
-            yield Part(name, _own(scene, window, name, place), (badge(scene, name, 0j),), False)
+            yield Part(name, _own(scene, window, name, place), (badge(scene, name, 0j),), False, "", True)
         else:
             link = scene.mechanism.carriers[name][0]
             at = scene.points[link][name]
             off = place - painter.place(link, at)
-            yield Part(link, complex(at), (Text(off, name, "halo letter"), Text(off, name, "letter")), False, name)
+            yield Part(
+                link, complex(at), (Text(off, name, "halo letter"), Text(off, name, "letter")), False, name, True
+            )
 
 
 def _own(scene: Scene, window: Window, link: str, place: complex) -> complex:
     """A place of the picture as a point in a link's own frame."""
     world = np.conjugate(place) / window.scale + window.corner
-    pose: Mapping[str, Number] = {"z": scene.here[link].z.c[0], "u": scene.here[link].u.c[0]}
-    return complex((world - pose["z"]) / pose["u"])
+    pose = scene.here[link]
+    return complex((world - pose.z.c[0]) / pose.u.c[0])
