@@ -6,10 +6,10 @@ from dataclasses import replace
 
 from compoundkin.checks import Finding, verify
 from compoundkin.motion import Motion
-from compoundkin.reports.building import gaps_of, motion_in_short, outcome_of
 from compoundkin.reports.findings import checks_section, finding_place, gaps_section
 from compoundkin.reports.instant_centres import centres_sections
 from compoundkin.reports.model import Alert, Outcome, Paragraph, Report, Section
+from compoundkin.reports.motions import gaps_of, motion_in_short, outcome_of
 from compoundkin.reports.numbers import brief
 from compoundkin.reports.sampling import Sample
 from compoundkin.structure import Structure

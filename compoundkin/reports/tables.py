@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from compoundkin.mechanism import Mechanism
+from compoundkin.motion import Motion
 from compoundkin.motion.inputs import FULL_TURN
-from compoundkin.quantities import PER_SECOND, Quantity
+from compoundkin.quantities import PER_SECOND, Quantity, order_of
 from compoundkin.reports.laws import Wording
 from compoundkin.reports.model import Block, Cell, Column, Paragraph, Section, Table
 from compoundkin.reports.parts import driven_pairs
@@ -44,6 +45,11 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
     moving = [name for name in mechanism.links if name != FRAME and name not in driven]
     lines = [f"{sliding[name]}.displacement" if name in sliding else f"{name}.angle" for name in moving]
     return tuple([*(f"{name}.position" for name in tracers), *lines][:MOST_OUTPUTS])
+
+
+def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:
+    """The outputs asked for, else those that the mechanism has by default and the motion was solved for."""
+    return tuple(outputs or (name for name in default_outputs(motion.mechanism) if order_of(name) <= motion.order))
 
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
