@@ -230,3 +230,21 @@ def test_differences_do_not_reach_across_a_change_point() -> None:
         for step in (1.0, 0.01):
             motion = ck.solve(parallelogram, {"crank": ck.deg(start + step * np.arange(90))})
             assert ck.verify(motion).passed, (start, step)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_circuits_begin_where_a_written_mode_has_the_mechanism(sign: int) -> None:
+    """The start was sought without the modes that the mechanism names."""
+    four_bar = ck.Mechanism(
+        "Crank-rocker", ck.link("frame", A=(0, 0), D=(4, 0)), ck.link("crank", A=0, B=1), ck.link("coupler", B=0, C=3),
+        ck.link("rocker", D=0, C=3), ck.drive("crank", values=ck.deg(range(0, 361, 30))),
+        ck.mode(sign, "coupler", "rocker"))  # fmt: skip
+    found, motion = ck.circuits(four_bar), ck.solve(four_bar)
+    assert found.start is not None
+    begun = found.branches[found.start.branch - 1].configuration
+    own = motion.points["C"].position[0]
+    # the crank-rocker's two circuits are mirror images: C above or below the diagonal
+    assert np.sign(begun.points["C"].imag) == np.sign(own.imag)
+    for modes, circuit in ((None, found.start.circuit), ({"coupler": -sign}, 3 - found.start.circuit)):
+        told = ck.rendered(ck.report(ck.solve(four_bar, modes=modes)))
+        assert f"Solving begins on circuit {circuit}," in " ".join(told.split())

@@ -140,6 +140,15 @@ class AllConfigurations:
     def _shaped(self, found: Number) -> Number:
         return np.moveaxis(found, 0, -1).reshape(*self.shape, len(found))
 
+    def _repr_html_(self) -> str | None:
+        """The table of the configurations at the first driver values, for notebooks."""
+        from compoundkin.showing import html_of
+
+        return html_of(self)
+
+    def __repr__(self) -> str:
+        return f"AllConfigurations({', '.join(map(repr, self.names))})"
+
 
 def dimensions_at(structure: Structure, design: int, pose: int) -> dict[str, dict[str, complex]]:
     """The points of all links, in their frames, of one design."""

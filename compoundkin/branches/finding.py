@@ -99,6 +99,15 @@ class Circuits:
             raise InvalidInput(Problem("path", f"there is no branch {what}", f"they are 1 to {len(self.branches)}"))
         return self.at(self.branches[what - 1].configuration)
 
+    def _repr_html_(self) -> str | None:
+        """The tables of circuits, branches and limit positions, for notebooks."""
+        from compoundkin.showing import html_of
+
+        return html_of(self)
+
+    def __repr__(self) -> str:
+        return f"Circuits({len(self.circuits)} circuits, {len(self.branches)} branches of the driver {self.driver!r})"
+
 
 def circuits(
     mechanism: Mechanism | Structure,

@@ -11,14 +11,17 @@ from compoundkin.branches.all_of import dimensions_at
 from compoundkin.branches.model import Circuit, Place
 from compoundkin.branches.placing import Placing, gap_between
 from compoundkin.errors import InvalidInput, NotAssembled, Problem
+from compoundkin.motion import Motion
 from compoundkin.motion.configuration import Configuration
 from compoundkin.motion.home import approach
 from compoundkin.motion.inputs import inputs
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.run import places
+from compoundkin.motion.solving import signs_of
 from compoundkin.motion.tracking import Tracker
 from compoundkin.poses import Pose
 from compoundkin.series import Number, constant
+from compoundkin.structure.model import Structure
 from compoundkin.words import Drive
 
 # A configuration lies on a strand within this: it may be at a limit position, where poses are known to the square
@@ -106,16 +109,38 @@ def starting_configuration(plan: Plan, values: Mapping[str, float], design: int)
     """The configuration in which `solve` begins at these values; None where it does not close there."""
     given = inputs(plan, values, None, None, None)
     try:
-        tracker = Tracker(plan, given, {}, {})
+        tracker = Tracker(plan, given, signs_of(plan), {})
     except NotAssembled:
         return None
     run = tracker.run(tracker.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))
     if np.broadcast_to(run.failed, (given.designs, given.poses))[design, 0]:
         return None
 
-    def one(value: Number) -> complex:
-        return complex(np.broadcast_to(value, (given.designs, given.poses))[design, 0])
+    return _configuration(plan.structure, values, run.world, (given.designs, given.poses), (design, 0))
 
-    poses = {name: Pose(constant(one(p.z.c[0])), constant(one(p.u.c[0]))) for name, p in run.world.items()}
-    structure = plan.structure
-    return Configuration(structure, dict(values), poses, {}, {}, dimensions_at(structure, design, 0))
+
+def first_configuration(motion: Motion, design: int) -> Configuration | None:
+    """The configuration of the first assembled pose of a motion, without its modes; None where it has none."""
+    shape = motion.inputs.designs, motion.inputs.poses
+    known = np.flatnonzero(np.broadcast_to(motion.failed, shape)[design] == 0)
+    if not known.size:
+        return None
+    at = design, int(known[0])
+    values = {name: float(np.broadcast_to(v[0], shape)[at]) for name, v in motion.inputs.drives.items()}
+    return _configuration(motion.structure, values, motion.poses, shape, at)
+
+
+def _configuration(
+    structure: Structure,
+    values: Mapping[str, float],
+    poses: Mapping[str, Pose],
+    shape: tuple[int, int],
+    at: tuple[int, int],
+) -> Configuration:
+    """One of an array of configurations."""
+
+    def one(value: Number) -> complex:
+        return complex(np.broadcast_to(value, shape)[at])
+
+    found = {name: Pose(constant(one(p.z.c[0])), constant(one(p.u.c[0]))) for name, p in poses.items()}
+    return Configuration(structure, dict(values), found, {}, {}, dimensions_at(structure, *at))

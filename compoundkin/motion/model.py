@@ -21,6 +21,7 @@ from compoundkin.structure.model import Structure
 from compoundkin.words import FRAME, vector
 
 if TYPE_CHECKING:
+    from compoundkin.animation import Animation
     from compoundkin.plots import Plot
 
 HIGHEST_ORDER = 3
@@ -272,6 +273,11 @@ class Motion:
         drawn: Plot = import_module("compoundkin.plots").plot(self, *names, **options)
         return drawn
 
+    def animate(self, **options: Any) -> Animation:
+        """An animation to be saved as GIF, MP4 or SVG: `compoundkin.animate` of this motion."""
+        made: Animation = import_module("compoundkin.animation").animate(self, **options)
+        return made
+
     @property
     def _plan(self) -> Plan:
         return self.tracker.plan
@@ -296,9 +302,19 @@ class Motion:
 
         return replace(self, poses={n: FIXED if n == FRAME else mended(p, poses[n]) for n, p in self.poses.items()})
 
+    def __repr__(self) -> str:
+        missing = int(np.count_nonzero(self.failed))
+        told = f", {missing} of them not assembled" if missing else ""
+        return f"Motion({self.mechanism.title!r} at {self.shape} poses to order {self.order}{told})"
+
     def _repr_svg_(self) -> str | None:
         """Its picture, for notebooks; None where it has none, or is too large to be shown unasked."""
         made: str | None = import_module("compoundkin.drawing").shown(self)
+        return made
+
+    def _repr_html_(self) -> str | None:
+        """It plays in notebooks; None where it has but one pose, or is too large to be shown unasked."""
+        made: str | None = import_module("compoundkin.pages").framed(self)
         return made
 
     def _point(self, name: str) -> PointMotion:

@@ -83,7 +83,7 @@ def solve(
         start = _start(plan, modes)
         named = isinstance(modes, str)
         with explained(plan.structure):
-            tracker = Tracker(plan, given, _signs(plan, modes), read_hint(plan, hint), start, named)
+            tracker = Tracker(plan, given, signs_of(plan, modes), read_hint(plan, hint), start, named)
         motion = replace(_settled(plan, tracker.given, tracker, order), time=times)
         if plan.structure.relaxation:
             hold_redundant(motion)
@@ -122,7 +122,7 @@ def _start(plan: Plan, modes: Any) -> Configuration | None:
     return modes
 
 
-def _signs(plan: Plan, modes: Mapping[str, int] | str | Configuration | None) -> dict[int, int]:
+def signs_of(plan: Plan, modes: Mapping[str, int] | str | Configuration | None = None) -> dict[int, int]:
     """The modes chosen by sign, by group; those of the call go before those of the mechanism."""
     mechanism = plan.structure.mechanism
     if isinstance(modes, Configuration):

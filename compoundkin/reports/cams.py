@@ -18,11 +18,12 @@ WAYS = {True: "oscillates about a pin", False: "translates on a slide", None: "h
 def cams_sections(sample: Sample) -> tuple[Section, ...]:
     """One section for all cams, where there are any."""
     names = cam_pairs(sample.motion) if sample.motion.order and sample.assembled.any() else ()
-    blocks = [block for name in names for block in _blocks(sample, cam_analysis(sample.motion, name))]
+    blocks = [block for name in names for block in cam_blocks(sample, cam_analysis(sample.motion, name))]
     return (Section("cams", "Cams", tuple(blocks)),) if blocks else ()
 
 
-def _blocks(sample: Sample, found: CamAnalysis) -> Iterator[Block]:
+def cam_blocks(sample: Sample, found: CamAnalysis) -> Iterator[Block]:
+    """What there is to say of one cam."""
     pair = found.pair
     said = f"{pair.name}: {found.follower} {WAYS[found.oscillates]}. The pressure angle is customarily not greater than"
     yield Paragraph(f"{said} {number(float(np.rad2deg(found.allowed_pressure_angle)))} degrees.")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from math import prod
 
 import numpy as np
 
-from compoundkin.branches import AllConfigurations, Branch, Circuit, Circuits, Limit, circuits
-from compoundkin.errors import CompoundkinError
+from compoundkin.branches import AllConfigurations, Branch, Circuit, Circuits, Limit, Place, circuits
+from compoundkin.branches.locating import first_configuration
+from compoundkin.errors import CompoundkinError, InvalidInput
 from compoundkin.motion import Motion
 from compoundkin.quantities import degrees
 from compoundkin.reports.model import Alert, Cell, Column, Outcome, Paragraph, Report, Section, Table
@@ -92,8 +94,17 @@ def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
         found = circuits(structure, drives[0].name, others, design=design)
     except CompoundkinError:
         return ()
-    page = _Page(found)
+    page = _Page(replace(found, start=_begun(found, motion, design)))
     return page.circuits(), *page.limits()
+
+
+def _begun(found: Circuits, motion: Motion, design: int) -> Place | None:
+    """Where on the circuits the motion begins, in whatever modes it was solved."""
+    first = first_configuration(motion, design)
+    try:
+        return None if first is None else found.at(first)
+    except InvalidInput:
+        return None
 
 
 def _modes(group: Group) -> int:

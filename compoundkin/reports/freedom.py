@@ -30,7 +30,7 @@ def mobility_section(structure: Structure, motion: Motion | None = None) -> Sect
     if found.agrees:
         text += " General dimensions and these ones say the same."
     blocks: list[Block] = [Formula(mobility.formula), Paragraph(text)]
-    return Section("mobility", "Mobility", (*blocks, *([] if plain else _differing(found))))
+    return Section("mobility", "Mobility", (*blocks, *([] if plain else analysis_blocks(found))))
 
 
 def _pose(motion: Motion) -> dict[str, Pose] | None:
@@ -51,7 +51,8 @@ def _pose(motion: Motion) -> dict[str, Pose] | None:
     return found
 
 
-def _differing(found: MobilityAnalysis) -> Iterator[Block]:
+def analysis_blocks(found: MobilityAnalysis) -> Iterator[Block]:
+    """The freedoms by the count, at general dimensions and at its own ones, and what follows."""
     known = "" if found.at_pose is None else str(found.at_pose)
     rows = [("by the count", str(found.gruebler), ""),
             ("at general dimensions", str(found.generic), str(found.redundant_generic))]  # fmt: skip

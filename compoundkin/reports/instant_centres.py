@@ -22,6 +22,8 @@ from compoundkin.structure import Structure
 
 # A direction this close to 0 or 180 degrees is rounding.
 NEARLY = 1e-9
+# Of so many centres, pose by pose, each is looked at within a second.
+MOST_CENTRES = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,11 +31,12 @@ class Shown:
     """The centres of one pose of a design, the first one, in the order of the derivation."""
 
     sample: Sample
+    given: Centres | None = None
 
     @cached_property
     def centres(self) -> Centres:
-        """The centres of the motion."""
-        return instant_centres(self.sample.motion)
+        """The centres of the motion: those given, if they are known already."""
+        return self.given or instant_centres(self.sample.motion)
 
     @cached_property
     def pose(self) -> tuple[int, ...]:
@@ -83,6 +86,16 @@ def centres_sections(sample: Sample) -> tuple[Section, ...]:
         *([Section("secondary", "Secondary centres", secondary)] if secondary else []),
         _velocities(shown),
     )
+
+
+def centre_blocks(found: Centres) -> tuple[Block, ...]:
+    """Centres at the first pose, the primary ones first; of many at many poses the derivation alone."""
+    sample = Sample(found.motion)
+    if len(found) * found.motion.inputs.designs * sample.poses > MOST_CENTRES:
+        return derivation_section(found.motion.structure).blocks
+    shown = Shown(sample, found)
+    tables = _table(shown, shown.primary, "pair"), _table(shown, shown.secondary, "lines")
+    return (Paragraph(_place(sample)), *_count(shown), *(table for table in tables if table.rows))
 
 
 def derivation_section(structure: Structure) -> Section:

@@ -129,3 +129,12 @@ class Report:
     def section(self, key: str) -> Section | None:
         """The section of a key, where the report has it."""
         return next((section for section in self.sections if section.key == key), None)
+
+    def _repr_html_(self) -> str | None:
+        """The report as a page, for notebooks."""
+        from compoundkin.showing import html_of
+
+        return html_of(self)
+
+    def __repr__(self) -> str:
+        return f"Report({self.title!r}: {', '.join(section.key for section in self.sections)})"
