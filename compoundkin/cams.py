@@ -128,6 +128,15 @@ class CamAnalysis:
         points = [(complex(self.pair.curve.at(a).c[0]), complex(self.pair.curve.at(b).c[0])) for a, b in found]
         return ", ".join(f"{_point(a)} to {_point(b)}" for a, b in points)
 
+    def _repr_html_(self) -> str | None:
+        """The table of extremes and what to look at, for notebooks."""
+        from compoundkin.showing import html_of
+
+        return html_of(self)
+
+    def __repr__(self) -> str:
+        return f"CamAnalysis({self.pair.name!r}, follower {self.follower!r})"
+
 
 def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
     """The analysis of a cam or flat-faced cam pair over a motion.

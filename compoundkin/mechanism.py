@@ -179,9 +179,20 @@ class Mechanism:
 
     def _repr_svg_(self) -> str | None:
         """Its picture, for notebooks; None where it has none, or is too large to be shown unasked."""
-        from compoundkin.drawing import shown
+        return self._picture
 
-        return shown(self)
+    @cached_property
+    def _picture(self) -> str | None:
+        """The picture that a notebook shows, drawn once."""
+        from compoundkin.showing import svg_of
+
+        return svg_of(self)
+
+    def _repr_html_(self) -> str | None:
+        """Its picture with what it is, for notebooks; the table of its links where it has no picture."""
+        from compoundkin.showing import html_of
+
+        return html_of(self)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Mechanism) and same(_plain(self), _plain(other))

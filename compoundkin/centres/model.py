@@ -145,6 +145,15 @@ class Centres:
             raise InvalidInput(Problem("centre", f"{links[0]!r} has no centre relative to itself", "name two links"))
         return names.index(links[0]), names.index(links[1])
 
+    def _repr_html_(self) -> str | None:
+        """The centres at the first pose and what gives them, for notebooks."""
+        from compoundkin.showing import html_of
+
+        return html_of(self)
+
+    def __repr__(self) -> str:
+        return f"Centres({len(self)} of {len(self.plan.diagram.links)} links)"
+
     @cached_property
     def velocities(self) -> Velocities:
         """Every link's velocity from the centres and the drivers' rates alone."""

@@ -42,6 +42,12 @@ class Check:
         """Whether every finding passed, and there was something to check."""
         return self.poses > 0 and all(finding.passed for finding in self.findings)
 
+    def _repr_html_(self) -> str | None:
+        """The table of the findings, for notebooks."""
+        from compoundkin.showing import html_of
+
+        return html_of(self)
+
 
 def worst(motion: Motion, name: str, limit: float, parts: dict[str, Number], counted: Number) -> Finding:
     """The worst value over all parts (each designs x poses, or broadcast to it) at the poses that count.

@@ -129,6 +129,12 @@ class MobilityAnalysis:
         what = f"{_counted(self.redundant, 'coordinate')} held twice"
         return [f"{what}: {', '.join(self.freed)} could be freed" if self.freed else what]
 
+    def _repr_html_(self) -> str | None:
+        """The freedoms as a table, for notebooks."""
+        from compoundkin.showing import html_of
+
+        return html_of(self)
+
 
 def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose] | None = None) -> MobilityAnalysis:
     """The mobility by count, for general dimensions and at the assembled pose, and what is redundant or passive.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.motion.plan import Plan
@@ -51,6 +52,12 @@ class Configuration:
     def angles(self) -> Mapping[str, float]:
         """The angle of every link, radians, between -pi and pi."""
         return {link: float(pose.u.angle().c[0]) for link, pose in self.poses.items()}
+
+    def _repr_html_(self) -> str | None:
+        """Its picture and the angles of its links, for notebooks."""
+        # found by its name: what is shown comes after motions, and only notebooks pay for it
+        made: str | None = import_module("compoundkin.showing").html_of(self)
+        return made
 
     def __repr__(self) -> str:
         return f"Configuration({self.name!r} at {', '.join(f'{k} = {v:.6g}' for k, v in self.values.items())})"

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from compoundkin.structure.loops import Loop
     from compoundkin.structure.mobility import Mobility
 
+# So many groups are named where a structure is printed.
+SHOWN_GROUPS = 12
+
 
 @dataclass(frozen=True)
 class DrivenPair:
@@ -173,3 +176,27 @@ class Structure:
         from compoundkin.structure.loops import independent_loops
 
         return independent_loops(self)
+
+    def _repr_svg_(self) -> str | None:
+        """The mechanism taken apart, for notebooks; None where it has no picture, or is too large."""
+        return self._picture
+
+    @cached_property
+    def _picture(self) -> str | None:
+        """The picture that a notebook shows, drawn once."""
+        from compoundkin.showing import svg_of
+
+        return svg_of(self)
+
+    def _repr_html_(self) -> str | None:
+        """Its picture and the table of its groups, for notebooks."""
+        from compoundkin.showing import html_of
+
+        return html_of(self)
+
+    def __repr__(self) -> str:
+        groups = ", ".join(group.name for group in self.groups[:SHOWN_GROUPS])
+        more = f" and {len(self.groups) - SHOWN_GROUPS} more" if len(self.groups) > SHOWN_GROUPS else ""
+        faults = f", {len(self.faults)} faults" if self.faults else ""
+        found = f"groups {groups}{more}" if groups else "no groups"
+        return f"Structure({self.mechanism.title!r}: mobility {self.mobility.freedoms}, {found}{faults})"
