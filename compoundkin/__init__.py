@@ -34,6 +34,7 @@ from compoundkin.structure import Structure, decompose
 from compoundkin.words import deg, drawn, drive, expect, link, mode, polar
 
 if TYPE_CHECKING:
+    from compoundkin.animation import Animation, animate
     from compoundkin.branches import circuits, configurations
     from compoundkin.cams import CamAnalysis, cam_analysis
     from compoundkin.centres import instant_centres
@@ -45,12 +46,14 @@ if TYPE_CHECKING:
     from compoundkin.equivalents import equivalent_linkage
     from compoundkin.formats import load, save, save_table, to_pandas
     from compoundkin.inverting import with_driver, with_frame
+    from compoundkin.pages import Page, page
     from compoundkin.plots import plot
     from compoundkin.reports import rendered, report
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "Animation",
     "CamAnalysis",
     "Check",
     "Composer",
@@ -64,11 +67,13 @@ __all__ = [
     "Motion",
     "NotAssembled",
     "NotDetermined",
+    "Page",
     "Picture",
     "Structure",
     "UnassembledPoses",
     "UnknownName",
     "alternatives",
+    "animate",
     "arc",
     "belt",
     "cam",
@@ -98,6 +103,7 @@ __all__ = [
     "loop_equations",
     "mobility_analysis",
     "mode",
+    "page",
     "plot",
     "polar",
     "profile",
@@ -126,6 +132,8 @@ __all__ = [
 
 # What only some programs need is imported when they ask for it: the module of each such word.
 _LATE = {
+    "Animation": "animation",
+    "animate": "animation",
     "circuits": "branches",
     "configurations": "branches",
     "CamAnalysis": "cams",
@@ -149,6 +157,8 @@ _LATE = {
     "to_pandas": "formats",
     "with_driver": "inverting",
     "with_frame": "inverting",
+    "Page": "pages",
+    "page": "pages",
     "plot": "plots",
     "rendered": "reports",
     "report": "reports",

@@ -35,6 +35,15 @@ def test_it_holds_all_of_the_catalog_and_the_types_marker(unpacked):
     assert (unpacked / "compoundkin" / "py.typed").is_file()
 
 
+def test_it_holds_what_pages_are_made_with(unpacked):
+    assets = ROOT / "compoundkin" / "pages" / "assets"
+    held = {path.relative_to(assets) for path in assets.rglob("*") if path.is_file()}
+    there = unpacked / "compoundkin" / "pages" / "assets"
+    assert {path.relative_to(there) for path in there.rglob("*") if path.is_file()} == held
+    page = run(unpacked, "-m", "compoundkin", "report", "crank-rocker", "--format", "html").stdout
+    assert page.startswith("<!DOCTYPE html>")
+
+
 def test_it_holds_the_list_of_kinematic_chains(unpacked):
     code = "import compoundkin.chains as c; print(c.__file__, len(c.chains(10)), c.number_of(c.chains(10)[136]))"
     where, *numbers = run(unpacked, "-c", code).stdout.split()

@@ -12,9 +12,11 @@ from compoundkin.cli.shell import guarded
 # Each verb with its one-line help, so that neither `--help` nor completion has to load them.
 VERBS = {
     "report": "Everything about a mechanism: structure, motion, checks.",
+    "open": "The report in the browser: moving sketch, plots, tables.",
     "structure": "Take a mechanism apart: links, pairs, mobility, loops, groups.",
     "solve": "Positions, velocities, accelerations as a table.",
     "draw": "A picture: kinematic sketch, vectors, instant centres, structure.",
+    "animate": "A motion as GIF, MP4 or SVG that moves.",
     "plot": "Draw quantities, phase plots, hodographs, coupler curves, centrodes.",
     "centres": "All instant centres at one pose, primary ones first.",
     "configurations": "Every way in which it can be assembled at one pose.",
@@ -30,6 +32,7 @@ VERBS = {
 EPILOG = """\b
 Examples:
   compoundkin report six-bar
+  compoundkin open six-bar
   compoundkin new linkage.toml
   compoundkin structure linkage.toml
   compoundkin solve linkage.toml --from 0 --to 90 --step 1 -o linkage.csv

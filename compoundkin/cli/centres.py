@@ -9,7 +9,7 @@ import click
 
 from compoundkin.cli.driving import pose_options, solved_at
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import put_report, report_options
+from compoundkin.cli.output import About, put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED
 from compoundkin.cli.structure import unsolvable
 
@@ -55,14 +55,14 @@ def command(
 
     structure = solvable(loaded(file))
     if structure.faults:
-        put_report(report(structure), form, path)
+        put_report(report(structure), form, path, About(structure))
         return unsolvable(len(structure.faults))
     made = Report(structure.mechanism.title, (), NOT_SOLVED)
     if at or not derivation:
         made = centres_report(solved_at_pose(structure, at, asked), design)
     if derivation:
         made = replace(made, sections=(derivation_section(structure), *made.sections))
-    put_report(made, form, path)
+    put_report(made, form, path, About(structure))
     return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
 
 

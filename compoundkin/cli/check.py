@@ -8,7 +8,7 @@ import click
 
 from compoundkin.cli.driving import drive_options, solved
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import put_report, report_options
+from compoundkin.cli.output import About, put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
 from compoundkin.cli.structure import unsolvable
 
@@ -40,12 +40,12 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
 
     structure = solvable(loaded(file))
     if structure.faults:
-        put_report(report(structure), form, path)
+        put_report(report(structure), form, path, About(structure))
         return unsolvable(len(structure.faults))
     motion = solved(structure, asked)
     with working("checking"):
         made = check_report(motion)
-    put_report(made, form, path)
+    put_report(made, form, path, About(motion=motion))
     return _verdict(made)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import put_report, report_options
+from compoundkin.cli.output import About, put_report, report_options
 
 if TYPE_CHECKING:
     from compoundkin.structure import Structure
@@ -57,8 +57,8 @@ def command(
     structure = plan_of(loaded(file)).structure
     fixed = _fixed(structure, at)
     with working("following all circuits"):
-        made = circuits_report(circuits(structure, driver, fixed, between=_between(structure, driver, start, stop)))
-    put_report(made, form, path)
+        made = circuits_report(circuits(structure, driver, fixed, between=range_of(structure, driver, start, stop)))
+    put_report(made, form, path, About(structure))
     return 0
 
 
@@ -70,7 +70,7 @@ def _fixed(structure: Structure, at: Sequence[str]) -> dict[str, float]:
     return {name: value for name, value in values.of_pose(structure, at).items() if name in named} if at else {}
 
 
-def _between(
+def range_of(
     structure: Structure, driver: str | None, start: float | None, stop: float | None
 ) -> tuple[float, float] | None:
     """The range of the driver, in radians or lengths."""

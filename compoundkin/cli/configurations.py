@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import put_report, report_options
+from compoundkin.cli.output import About, put_report, report_options
 
 
 @click.command(
@@ -39,5 +39,5 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
     structure = plan_of(loaded(file)).structure
     with working("finding all configurations"):
         made = configurations_report(configurations(structure, values.of_pose(structure, at)))
-    put_report(made, form, path)
+    put_report(made, form, path, About(structure))
     return 0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from time import monotonic
 
 # Work done before this many seconds needs no comment.
@@ -46,3 +46,34 @@ def _tick(what: str, patience: float, done: threading.Event) -> None:
             sys.stderr.write(f"\r{' ' * len(line)}\r")
             sys.stderr.flush()
             return
+
+
+@contextmanager
+def counting(what: str, things: str, patience: float = PATIENCE) -> Iterator[Callable[[int, int], None]]:
+    """A function to be told how much is done, of how much; it shows a bar on stderr as `working` shows a line.
+
+    >>> with counting("drawing", "frames") as progress:
+    ...     progress(1, 2)
+    """
+    start, shown = monotonic(), ExitStack()
+    update: list[Callable[[int, int], None]] = []
+
+    def told(done: int, total: int) -> None:
+        if not update and monotonic() - start >= patience and sys.stderr.isatty():
+            update.append(shown.enter_context(_bar(what, things)))
+        for tell in update:
+            tell(done, total)
+
+    with shown:
+        yield told
+
+
+@contextmanager
+def _bar(what: str, things: str) -> Iterator[Callable[[int, int], None]]:
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TextColumn(things), TimeRemainingColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what)
+        yield lambda done, total: bar.update(task, completed=done, total=total)

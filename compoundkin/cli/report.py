@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from compoundkin.cli.driving import drive_options, solved
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import put_report, report_options
+from compoundkin.cli.output import About, put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
 from compoundkin.cli.structure import unsolvable
 
 if TYPE_CHECKING:
     from compoundkin.reports import Report
     from compoundkin.structure import Structure
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def asking_options(command: F) -> F:
+    """The options that say what is reported of a mechanism."""
+    centres = click.option(
+        "--centres", "centres", metavar="VALUES", help="Add the instant centres at a pose: 35 or left=60,right=100."
+    )
+    text = "Which one, where dimensions are arrays."
+    design = click.option("--design", default=0, show_default=True, metavar="INDEX", help=text)
+    return drive_options(design(centres(command)))
 
 
 @click.command(
@@ -24,43 +36,53 @@ Examples:
   compoundkin report six-bar
   compoundkin report six-bar --output G.speed --output rocker.angle
   compoundkin report six-bar --from 0 --to 90 --step 5 -o six-bar.md
+  compoundkin report six-bar -o six-bar.html
   compoundkin report linkage.toml --format json
 """
 )
 @mechanism_argument
-@drive_options
-@click.option("--design", default=0, show_default=True, metavar="INDEX", help="Which one, where dimensions are arrays.")
-@click.option(
-    "--centres", "centres", metavar="VALUES", help="Add the instant centres at a pose: 35 or left=60,right=100."
-)
+@asking_options
 @report_options
-def command(file: str, design: int, centres: str | None, form: str | None, path: str | None, **asked: Any) -> int:
+def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     """Report a mechanism: its structure, its motion over the cycle, the checks, and published numbers.
 
-    Angles are in degrees and lengths in the unit of the file. Exit code 3: some poses cannot be assembled;
-    4: a check failed or a published number was not reproduced.
+    Angles are in degrees and lengths in the unit of the file. An .html file is a page with the moving sketch and plots.
+    Exit code 3: some poses cannot be assembled; 4: a check failed or a published number was not reproduced.
     """
+    made, about = reported(file, asked)
+    put_report(made, form, path, about)
+    return verdict(made, about)
+
+
+def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, About]:
+    """The report of a mechanism, and what it is about: a structure alone where that cannot be solved."""
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
     from compoundkin.freedom import solvable
     from compoundkin.reports import report
 
-    structure = solvable(loaded(file))
+    structure, design = solvable(loaded(file)), asked["design"]
     if structure.faults:
-        put_report(report(structure), form, path)
-        return unsolvable(len(structure.faults))
+        return report(structure), About(structure)
     motion = solved(structure, asked)
     with working("checking and reporting"):
         parts = [report(motion, asked["outputs"], design)]
-        if centres is not None:
-            parts.append(_of_centres(structure, centres.split(","), design, asked))
+        if asked["centres"] is not None:
+            parts.append(_of_centres(structure, asked["centres"].split(","), design, asked))
+    closed = all(part.outcome.assembled == part.outcome.poses for part in parts)
     made = replace(parts[0], sections=tuple(section for part in parts for section in part.sections))
-    put_report(made, form, path)
+    return made, About(motion=motion, outputs=asked["outputs"], design=design, closed=closed)
+
+
+def verdict(made: Report, about: About) -> int:
+    """The exit code of a report; what failed is said on stderr too."""
+    if about.structure is not None:
+        return unsolvable(len(about.structure.faults))
     if not made.outcome.passed:
         say("A check or a published number FAILED; the report says which.")
         return FAILED
-    return NOT_ASSEMBLED if any(part.outcome.assembled < part.outcome.poses for part in parts) else 0
+    return 0 if about.closed else NOT_ASSEMBLED
 
 
 def _of_centres(structure: Structure, at: Sequence[str], design: int, asked: Mapping[str, Any]) -> Report:

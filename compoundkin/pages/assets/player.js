@@ -1,0 +1,354 @@
+// The player: the sketch moves with its links, pose by pose as they were solved; nothing here computes a mechanism.
+(() => {
+  "use strict";
+  const page = (window.compoundkin = window.compoundkin || {});
+  const SVG = "http://www.w3.org/2000/svg";
+  const DEGREE = 180 / Math.PI;
+  const FAR = 1e5; // picture units: beyond, a place is a direction
+  const DOT = 3.2;
+  const LEGIBLE = 0.85, LARGEST = 2.2; // pixels for a picture unit below which names grow, and by how much at most
+  const TOGETHER = 3; // centres nearer to each other are named together
+  const HEAD = 10, HALF = 3.6; // an arrow's head, as in every other picture
+
+  // --- numbers as packing.py writes them: one for all poses, or one for each ----------------------------------------
+  const unpacked = (text, count) => {
+    if (text === null) return new Float64Array(count).fill(NaN);
+    if (typeof text === "number") return new Float64Array(count).fill(text);
+    const bytes = Uint8Array.from(atob(text.slice(2)), (c) => c.charCodeAt(0));
+    return text[0] === "d" ? new Float64Array(bytes.buffer) : Float64Array.from(new Float32Array(bytes.buffer));
+  };
+  // six digits, as in the report; no minus sign without a number
+  const written = (value) => {
+    if (!Number.isFinite(value)) return "–";
+    const size = Math.abs(value);
+    const text = size && (size >= 1e6 || size < 1e-4) ? value.toExponential(5) : String(Number(value.toPrecision(6)));
+    return text.replace("-", "−");
+  };
+  const make = (name, attributes, parent) => {
+    const element = document.createElementNS(SVG, name);
+    for (const key in attributes) element.setAttribute(key, attributes[key]);
+    if (parent) parent.append(element);
+    return element;
+  };
+  const raised = (unit) => unit.replace("^2", "²").replace("^3", "³").replace(/^deg$/, "°").replace(/^deg\//, "°/");
+  const withUnit = (value, unit) => (unit === "deg" ? `${written(value)}°` : `${written(value)} ${raised(unit)}`.trim());
+
+  class Player {
+    constructor(root, data) {
+      this.root = root;
+      this.data = data;
+      this.poses = data.poses;
+      this.pose = -1;
+      this.listeners = [];
+      const open = (text) => unpacked(text, data.poses);
+      this.assembled = open(data.assembled);
+      this.along = { ...data.along, values: open(data.along.values) };
+      this.indices = open(data.indices);
+      this.links = data.links.map((link) => ({
+        ...link, x: open(link.x), y: open(link.y), angle: open(link.angle),
+        v: link.v && link.v.map(open), a: link.a && link.a.map(open),
+      }));
+      const quantity = (one) => ({
+        ...one, parts: Object.fromEntries(Object.entries(one.parts).map(([name, text]) => [name, open(text)])),
+      });
+      this.drivers = data.drivers.map(quantity);
+      this.outputs = data.outputs.map(quantity);
+      this.centres = data.centres.map((centre) => ({ ...centre, at: centre.at.map(open) }));
+      this.points = Object.fromEntries(data.points.map((point) => [point.name, point]));
+      this.shown = new Set(["names"]);
+      this.letters = 1;
+      this.find();
+      this.listen();
+      this.show(data.start);
+      new ResizeObserver(() => this.fit()).observe(this.svg);
+    }
+
+    find() {
+      const one = (selector) => this.root.querySelector(selector);
+      this.svg = one("svg.sketch");
+      this.parts = [...this.svg.querySelectorAll(".parts > g")];
+      this.layers = Object.fromEntries(["traces", "rays", "velocities", "accelerations", "dots"].map((k) => [k, one(`svg .${k}`)]));
+      Object.assign(this, { slider: one(".slider"), play: one(".play"), where: one(".where"), said: one(".said") });
+      this.reading = one(".reading tbody");
+      this.rows = this.outputs.map((output) => {
+        const row = this.reading.insertRow();
+        const head = document.createElement("th");
+        head.scope = "row";
+        // long names may be broken after their dots and underscores
+        head.textContent = output.name.replace(/([._])/g, "$1\u200b");
+        row.append(head);
+        const cell = row.insertCell();
+        return Object.entries(output.parts).map(([name, values]) => {
+          const place = document.createElement("span");
+          cell.append(place, " ");
+          return { place, values, name, unit: output.unit };
+        });
+      });
+    }
+
+    listen() {
+      const on = (selector, kind, act) => {
+        const element = this.root.querySelector(selector);
+        if (element) element.addEventListener(kind, act);
+      };
+      this.slider.addEventListener("input", () => { this.stop(); this.show(Number(this.slider.value)); });
+      on(".back", "click", () => { this.stop(); this.step(-1); });
+      on(".forth", "click", () => { this.stop(); this.step(1); });
+      this.play.addEventListener("click", () => (this.playing ? this.stop() : this.start()));
+      if (this.poses < 2) for (const control of this.root.querySelectorAll(".transport :is(button, input, select)")) control.disabled = true;
+      for (const box of this.root.querySelectorAll("[data-show]")) {
+        // browsers remember what was switched on when a page is loaded again
+        const take = () => { this.shown[box.checked ? "add" : "delete"](box.dataset.show); this.switched(); };
+        box.addEventListener("change", take);
+        if (box.checked !== box.defaultChecked) queueMicrotask(take);
+      }
+    }
+
+    // on a small picture names are drawn larger, so that they stay legible
+    fit() {
+      const { width, height } = this.data.window;
+      const pixels = Math.min(this.svg.clientWidth / width, this.svg.clientHeight / height);
+      const letters = pixels > 0 ? Math.min(LARGEST, Math.max(1, LEGIBLE / pixels)) : 1;
+      if (Math.abs(letters - this.letters) < 0.02) return;
+      this.letters = letters;
+      if (this.assembled[this.pose] === 1) this.move(this.pose);
+      this.overlay();
+    }
+
+    // --- where things are, in the user's length unit ----------------------------------------------------------------
+    place(letter, k = this.pose) {
+      const point = this.points[letter];
+      return this.at(point.link, point.x, point.y, k);
+    }
+    at(index, px, py, k) {
+      const link = this.links[index];
+      const c = Math.cos(link.angle[k]), s = Math.sin(link.angle[k]);
+      return [link.x[k] + c * px - s * py, link.y[k] + s * px + c * py];
+    }
+    // the velocity (order 1) or acceleration (order 2) of a point: of the link's origin, and of its turning
+    rate(letter, order, k = this.pose) {
+      const point = this.points[letter], link = this.links[point.link];
+      if (!link.v || (order === 2 && !link.a)) return [NaN, NaN];
+      const [x, y] = this.place(letter, k), rx = x - link.x[k], ry = y - link.y[k];
+      const turning = link.v[2][k];
+      if (order === 1) return [link.v[0][k] - turning * ry, link.v[1][k] + turning * rx];
+      const alpha = link.a[2][k];
+      return [link.a[0][k] - alpha * ry - turning ** 2 * rx, link.a[1][k] + alpha * rx - turning ** 2 * ry];
+    }
+    paper([x, y]) {
+      const window = this.data.window;
+      return [(x - window.x) * window.scale, (window.y - y) * window.scale];
+    }
+    // where the sketch really shows a point, read back from the picture
+    drawn(letter) {
+      const part = this.parts.find((one) => one.dataset.letter === letter), window = this.data.window;
+      const [x, y] = part.getAttribute("transform").match(/-?[\d.]+(e-?\d+)?/g).map(Number);
+      return [x / window.scale + window.x, window.y - y / window.scale];
+    }
+
+    // --- one pose ---------------------------------------------------------------------------------------------------
+    show(k) {
+      if (k === this.pose) return;
+      this.pose = k;
+      const known = this.assembled[k] === 1;
+      this.svg.classList.toggle("unassembled", !known);
+      this.slider.value = k;
+      const where = this.told(k);
+      this.where.textContent = where;
+      this.slider.setAttribute("aria-valuetext", known ? where : `${where}, cannot be assembled`);
+      this.said.textContent = known ? "" : "The mechanism cannot be assembled here.";
+      if (known) this.move(k);
+      this.overlay();
+      for (const row of this.rows) {
+        for (const { place, values, name, unit } of row) place.textContent = `${name ? `${name} ` : ""}${withUnit(values[k], unit)}`;
+      }
+      for (const heard of this.listeners) heard(k);
+      document.dispatchEvent(new CustomEvent("compoundkin:pose", { detail: { pose: this.indices[k], player: this } }));
+    }
+    step(by) {
+      const last = this.poses - 1;
+      const to = this.pose + by;
+      this.show(to < 0 ? last : to > last ? 0 : to);
+    }
+    told(k) {
+      const words = this.drivers.map((driver) => `${driver.name} ${withUnit(driver.parts[""][k], driver.unit)}`);
+      if (this.along.name === "time") words.unshift(`${written(this.along.values[k])} s`);
+      return words.length ? words.join(", ") : `pose ${k + 1} of ${this.poses}`;
+    }
+    move(k) {
+      this.parts.forEach((part, index) => {
+        const [link, px, py, turns] = this.data.parts[index];
+        const [x, y] = this.paper(this.at(link, px, py, k));
+        const angle = this.links[link].angle;
+        // y points downward on paper: what turns counterclockwise has a negative angle there
+        const turned = turns ? ` rotate(${-(angle[k] - angle[this.data.start]) * DEGREE})` : "";
+        const enlarged = this.letters > 1 && part.classList.contains("name") ? ` scale(${this.letters})` : "";
+        part.setAttribute("transform", `translate(${x} ${y})${turned}${enlarged}`);
+      });
+    }
+
+    // --- what is switched on and off --------------------------------------------------------------------------------
+    switched() {
+      this.svg.classList.toggle("nameless", !this.shown.has("names"));
+      this.trace();
+      this.overlay();
+    }
+    overlay() {
+      const known = this.assembled[this.pose] === 1;
+      for (const [kind, order, layer] of [["velocity", 1, "velocities"], ["acceleration", 2, "accelerations"]]) {
+        this.layers[layer].replaceChildren();
+        if (known && this.shown.has(kind)) this.vectors(kind, order, this.layers[layer]);
+      }
+      this.layers.dots.replaceChildren();
+      this.layers.rays.replaceChildren();
+      if (known && this.shown.has("centres")) this.centred();
+    }
+    vectors(kind, order, layer) {
+      const scale = this.data.vectors[kind];
+      for (const letter in this.points) {
+        const [vx, vy] = this.rate(letter, order).map((c) => c * scale.scale);
+        if (Math.hypot(vx, vy) >= scale.shortest) this.arrow(this.paper(this.place(letter)), [vx, -vy], kind, layer);
+      }
+      const both = kind === "acceleration" && this.shown.has("velocity");
+      const y = this.data.window.height - (both ? 10 + 18 * this.letters : 10);
+      this.arrow([12, y], [scale.length, 0], kind, layer);
+      this.text(`${kind}, ${scale.text}`, 20 + scale.length, y, "ck-note", "start", layer);
+    }
+    text(words, x, y, style, anchor, layer) {
+      const grown = this.letters > 1 ? ` scale(${this.letters})` : "";
+      make("text", { class: style, transform: `translate(${x} ${y})${grown}`, dy: "0.35em", "text-anchor": anchor }, layer).textContent = words;
+    }
+    arrow([x, y], [dx, dy], kind, layer) {
+      const length = Math.hypot(dx, dy), ex = dx / length, ey = dy / length, head = Math.min(HEAD, 0.6 * length);
+      const tip = [x + dx, y + dy], back = [tip[0] - ex * head, tip[1] - ey * head], half = (HALF * head) / HEAD;
+      make("path", { class: `ck-${kind}`, d: `M${x} ${y}L${tip[0] - ex * head * 0.8} ${tip[1] - ey * head * 0.8}` }, layer);
+      const sides = `L${back[0] - ey * half} ${back[1] + ex * half}L${back[0] + ey * half} ${back[1] - ex * half}Z`;
+      make("path", { class: `ck-${kind}-head`, d: `M${tip[0]} ${tip[1]}${sides}` }, layer);
+    }
+    centred() {
+      const { width, height } = this.data.window;
+      const places = this.centres.map((centre) => {
+        const [x, y, w] = centre.at.map((values) => values[this.pose]);
+        if (!Number.isFinite(x + y + w)) return null;
+        const [px, py] = this.paper([x / w, y / w]);
+        const near = Math.abs(px) < FAR && Math.abs(py) < FAR;
+        return near ? { x: px, y: py } : { far: [x / Math.hypot(x, y), -y / Math.hypot(x, y)] };
+      });
+      const inside = (p) => p && !p.far && p.x >= 0 && p.y >= 0 && p.x <= width && p.y <= height;
+      for (const [own, ...through] of this.data.lines) if (inside(places[own])) this.ray([own, ...through].map((k) => places[k]));
+      const named = [];
+      this.centres.forEach(({ name }, k) => {
+        const p = places[k];
+        if (!inside(p)) return;
+        const same = named.find((other) => Math.hypot(other.x - p.x, other.y - p.y) < TOGETHER);
+        if (same) same.names.push(name);
+        else named.push({ ...p, names: [name] });
+      });
+      const taken = this.shown.has("names") ? this.names() : [];
+      for (const { x, y, names } of named) {
+        make("circle", { class: "ck-centre", cx: x, cy: y, r: DOT }, this.layers.dots);
+        const text = names.join(" ");
+        const at = this.beside(x, y, 3.4 * text.length * this.letters, taken);
+        taken.push(at);
+        for (const style of ["ck-halo ck-centre-name", "ck-centre-name"]) {
+          this.text(text, at.x, at.y, style, "middle", this.layers.dots);
+        }
+      }
+      const gone = this.centres.filter((_, k) => places[k] && places[k].far).map(({ name }) => name);
+      if (gone.length) this.text(`at infinity: ${gone.join(", ")}`, 12, 12, "ck-note", "start", this.layers.dots);
+    }
+    // where the letters and numbers are: boxes by their middle and half their size
+    names() {
+      return this.parts.filter((part) => part.classList.contains("name")).map((part) => {
+        const [x, y] = part.getAttribute("transform").match(/-?[\d.]+(e-?\d+)?/g).map(Number);
+        const text = part.querySelector("text");
+        const [dx, dy] = ["x", "y"].map((name) => Number(text.getAttribute(name)) * this.letters);
+        return { x: x + dx, y: y + dy, half: (4 * text.textContent.length + 2) * this.letters };
+      });
+    }
+    // a place for a name of that half width beside a point: the first that covers none, or the one that covers fewest
+    beside(x, y, half, taken) {
+      const { width, height } = this.data.window;
+      let best = null;
+      for (const far of [0, 8, 18]) {
+        for (const [ex, ey] of [[1, 1], [1, -1], [-1, 1], [-1, -1], [0, 1], [0, -1]]) {
+          const at = { x: x + ex * (half + 6 + far), y: y + ey * (5 + 6 * this.letters + far), half };
+          const out = at.x < half || at.x > width - half || at.y < 6 || at.y > height - 6;
+          const covers = taken.filter((one) => Math.abs(one.x - at.x) < one.half + half && Math.abs(one.y - at.y) < 13 * this.letters).length;
+          at.cost = covers + 10 * out;
+          if (!best || at.cost < best.cost) best = at;
+          if (!best.cost) return best;
+        }
+      }
+      return best;
+    }
+    // a line through centres: as long as they reach, or across the picture where one is at infinity
+    ray(places) {
+      const near = places.filter((p) => p && !p.far), far = places.find((p) => p && p.far);
+      if (!near.length || (near.length < 2 && !far)) return;
+      let [a, b] = [near[0], near[0]];
+      if (far) {
+        const reach = 2 * Math.hypot(this.data.window.width, this.data.window.height);
+        a = { x: a.x - far.far[0] * reach, y: a.y - far.far[1] * reach };
+        b = { x: b.x + far.far[0] * reach, y: b.y + far.far[1] * reach };
+      } else {
+        const farthest = (from) => near.reduce((best, p) => (Math.hypot(p.x - from.x, p.y - from.y) > Math.hypot(best.x - from.x, best.y - from.y) ? p : best), from);
+        a = farthest(near[0]);
+        b = farthest(a);
+      }
+      make("path", { class: "ck-ray", d: `M${a.x} ${a.y}L${b.x} ${b.y}` }, this.layers.rays);
+    }
+    trace() {
+      this.layers.traces.replaceChildren();
+      for (const letter in this.points) {
+        if (!this.shown.has(`path ${letter}`)) continue;
+        let d = "", on = false;
+        for (let k = 0; k < this.poses; k++) {
+          const known = this.assembled[k] === 1;
+          if (known) d += `${on ? "L" : "M"}${this.paper(this.place(letter, k)).map((c) => c.toFixed(2)).join(" ")}`;
+          on = known;
+        }
+        make("path", { class: "ck-path", d }, this.layers.traces);
+      }
+    }
+
+    // --- playing ----------------------------------------------------------------------------------------------------
+    start() {
+      this.playing = true;
+      this.pressed();
+      const last = this.poses - 1, period = this.data.seconds * 1000;
+      // how far the motion is, in poses; one that does not close goes there and back
+      let at = this.pose, way = 1, before = null;
+      const tick = (now) => {
+        if (!this.playing) return;
+        if (before !== null) at += (way * Math.min(now - before, 100) * this.speed * last) / period;
+        before = now;
+        if (this.data.closes) at = ((at % last) + last) % last;
+        else if (at > last || at < 0) { way = -way; at = Math.min(Math.max(at, 0), last); }
+        this.show(Math.round(at));
+        this.frame = requestAnimationFrame(tick);
+      };
+      this.frame = requestAnimationFrame(tick);
+    }
+    stop() {
+      if (!this.playing) return;
+      this.playing = false;
+      cancelAnimationFrame(this.frame);
+      this.pressed();
+    }
+    pressed() {
+      this.play.setAttribute("aria-pressed", String(this.playing));
+      this.play.firstElementChild.textContent = this.playing ? "Pause" : "Play";
+    }
+    get speed() {
+      const choice = this.root.querySelector(".speed");
+      return choice ? Number(choice.value) : 1;
+    }
+  }
+
+  Object.assign(page, { Player, written, withUnit, raised, players: [] });
+  for (const root of document.querySelectorAll(".player")) {
+    const data = JSON.parse(document.getElementById("ck-motion").textContent);
+    page.players.push(new Player(root, data));
+  }
+})();

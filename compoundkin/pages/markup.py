@@ -1,0 +1,71 @@
+"""Pieces of HTML: text made safe, elements, data for scripts."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable
+from html import escape
+from typing import Any
+
+# Characters that a page may not hold, not even escaped. Source: HTML Living Standard, 13.2.3.5.
+_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
+# Where a long name such as "bar.angular_acceleration" may be broken.
+_BREAK = re.compile(r"([._])(?=\w)")
+
+
+def safe(text: str) -> str:
+    """Text in which nothing is taken for markup, in elements and in attributes.
+
+    >>> safe('<b> & "c"')
+    '&lt;b&gt; &amp; &quot;c&quot;'
+    """
+    return escape(_FORBIDDEN.sub("\ufffd", text))
+
+
+def broken(text: str) -> str:
+    """A name as text that may be broken after its dots and underscores.
+
+    >>> broken("bar.angular_velocity")
+    'bar.<wbr>angular_<wbr>velocity'
+    """
+    return _BREAK.sub(r"\1<wbr>", safe(text))
+
+
+def element(tag: str, inside: str = "", **attributes: str | None) -> str:
+    """An element; `inside` is markup, attributes are texts, and one that is None is left out.
+
+    >>> element("td", "1.0", class_="number", data_sort="1.03")
+    '<td class="number" data-sort="1.03">1.0</td>'
+    """
+    return f"<{tag}{_written(attributes)}>{inside}</{tag}>"
+
+
+def _written(attributes: dict[str, str | None]) -> str:
+    told = ((name.rstrip("_").replace("_", "-"), value) for name, value in attributes.items() if value is not None)
+    return "".join(f' {name}="{safe(value)}"' for name, value in told)
+
+
+def lines(parts: Iterable[str]) -> str:
+    """Pieces of markup, one below the other."""
+    return "\n".join(part for part in parts if part)
+
+
+def hidden(text: str) -> str:
+    """Text for screen readers only."""
+    return element("span", safe(text), class_="unseen")
+
+
+def data_script(name: str, value: Any) -> str:
+    """Data for scripts, found by the id `name`; no text in it can end the element."""
+    text = json.dumps(value, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    return f'<script type="application/json" id="{safe(name)}">{embedded(text)}</script>'
+
+
+def embedded(text: str) -> str:
+    r"""JSON that cannot end the element around it: "<" is written as an escape.
+
+    >>> embedded('{"a":"</script>"}')
+    '{"a":"\\u003c/script>"}'
+    """
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

@@ -1,0 +1,70 @@
+"""A motion that plays in a notebook: the moving sketch alone, in a frame of its own."""
+
+from __future__ import annotations
+
+from compoundkin.drawing.sketching import MOST_UNASKED
+from compoundkin.drawing.style import page_css
+from compoundkin.errors import CompoundkinError
+from compoundkin.motion import Motion
+from compoundkin.pages.document import POLICY
+from compoundkin.pages.files import asset
+from compoundkin.pages.markup import data_script, element, lines, safe
+from compoundkin.pages.moving import Moving
+from compoundkin.pages.palette import palette
+from compoundkin.pages.viewer import player_html
+from compoundkin.reports.sampling import Sample
+
+# A notebook keeps every output that it shows: a few dozen kilobytes each are enough.
+MOST_POSES = 181
+# The frame is so high, in pixels: the sketch as it is on a page so wide, and the controls below it.
+WIDTH, HIGHEST, CONTROLS = 640.0, 448.0, 190.0
+STYLE = "html,body{margin:0;background:var(--paper);font-size:15px}.player{padding:8px}"
+
+
+def player(motion: Motion, design: int = 0) -> str:
+    """A document that shows one design of a motion under a slider and a play button, and asks for nothing else.
+
+    Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
+
+    >>> from compoundkin.catalog import load_named
+    >>> from compoundkin.motion import solve
+    >>> player(solve(load_named("crank-rocker"))).splitlines()[0]
+    '<!DOCTYPE html>'
+    """
+    moving = Moving(Sample(motion, design), most=MOST_POSES, with_centres=False)
+    return _document(moving)
+
+
+def _document(moving: Moving) -> str:
+    data = moving.data
+    styles = palette(), page_css(), asset("page.css"), asset("player.css"), STYLE
+    head = [
+        '<meta charset="utf-8">',
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+        element("title", safe(data["title"])),
+        *(element("style", text) for text in styles),
+    ]
+    scripted = "<script>document.documentElement.classList.add('scripted')</script>"
+    body = [
+        scripted,
+        player_html(moving, data),
+        data_script("ck-motion", data),
+        f"<script>{asset('player.js')}</script>",
+    ]
+    return f'<!DOCTYPE html>\n<html lang="en">\n<head>{lines(head)}</head>\n<body>{lines(body)}</body>\n</html>\n'
+
+
+def framed(motion: Motion) -> str | None:
+    """The player of a motion's first design in a frame, for notebooks; None where it cannot play."""
+    if len(motion.mechanism.links) > MOST_UNASKED or motion.inputs.poses < 2:
+        return None
+    moving = Moving(Sample(motion), most=MOST_POSES, with_centres=False)
+    try:
+        document = _document(moving)
+    except CompoundkinError:
+        return None
+    window = moving.sketch.window
+    height = min(HIGHEST, WIDTH * window.height / window.width, window.height * 1.1) + CONTROLS
+    style = f"width:100%;max-width:{WIDTH:.0f}px;height:{height:.0f}px;border:1px solid #8886;border-radius:8px"
+    title = f"{motion.mechanism.title}, moving"
+    return f'<iframe srcdoc="{safe(document)}" title="{safe(title)}" style="{style}" sandbox="allow-scripts"></iframe>'
