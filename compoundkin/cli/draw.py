@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from compoundkin.structure import Structure
 
 VECTORS = ("velocity", "acceleration")
-VIEWS = ("groups", "graph", "circle")
+VIEWS = ("groups", "loops", "graph", "circle")
 # What belongs to the sketch only, by the names of the values of the options.
 OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels")
 
@@ -57,7 +57,8 @@ Examples:
     "--structure",
     "view",
     type=click.Choice(VIEWS),
-    help="Instead: taken apart into groups; the graph of links and pairs; the circle diagram of centres.",
+    help="Instead: taken apart into groups; the independent loops; the graph of links and pairs; the circle diagram "
+    "of centres.",
 )
 @pose_options
 @click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")

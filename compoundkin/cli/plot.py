@@ -15,6 +15,19 @@ from compoundkin.cli.solve import explained
 if TYPE_CHECKING:
     from compoundkin.motion import Motion
     from compoundkin.plots import Plot
+    from compoundkin.structure import Structure
+
+
+# What says how a motion is solved, which circuits are not: options by the names of their values.
+OF_MOTIONS = {
+    "at": "--at",
+    "step": "--step",
+    "time": "--time",
+    "speeds": "--speed",
+    "accelerations": "--acceleration",
+    "order": "--order",
+    "modes": "--mode",
+}
 
 
 @click.command(
@@ -25,6 +38,7 @@ Examples:
   compoundkin plot crank-rocker rocker.angle --phase > phase.svg
   compoundkin plot jansen-leg foot --path --every 5 -o foot.pdf
   compoundkin plot elliptic-trammel --centrodes rod frame -o centrodes.png
+  compoundkin plot triple-rocker rocker.angle --circuits -o circuits.svg
 """
 )
 @mechanism_argument
@@ -37,6 +51,14 @@ Examples:
 @click.option("--hodograph", "kinds", flag_value="hodograph", multiple=True, help="The curve of a vector's tip.")
 @click.option("--path", "kinds", flag_value="paths", multiple=True, help="The paths of points: coupler curves.")
 @click.option("--centrodes", nargs=2, metavar="LINK ON", help="Fixed and moving centrode of a link seen from another.")
+@click.option(
+    "--circuits",
+    "kinds",
+    flag_value="circuits",
+    multiple=True,
+    help="Every branch of all circuits over the driver. Other drivers stand where --drive NAME=VALUE says.",
+)
+@click.option("--driver", metavar="NAME", help="With --circuits: the driver that moves, where there are several.")
 @click.option("--every", type=click.IntRange(1), metavar="POSES", help="Distance of the marks along curves in a plane.")
 @click.option("--title", help="Instead of the mechanism's own.")
 @click.option(
@@ -58,28 +80,41 @@ def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: A
     _fitting(asked)
     structure = decompose(loaded(file))
     names = (*quantities, *asked["outputs"])
+    if "circuits" in asked["kinds"]:
+        _put(_of_circuits(structure, names, asked), path)
+        return 0
     motion = solved(structure, {**asked, "outputs": (), "order": _order(asked, names or structure.mechanism.outputs)})
-    picture = _drawn(motion, names, asked)
+    _put(_drawn(motion, names, asked), path)
+    return 0 if motion.assembled.all() else explained(motion)
+
+
+def _put(picture: Plot, path: str | None) -> None:
     if path is None:
         put(picture.content("svg"))
     else:
         picture.save(path)
         say(f"Wrote {path}.")
-    return 0 if motion.assembled.all() else explained(motion)
 
 
 def _fitting(asked: Mapping[str, Any]) -> None:
     """Raise InvalidInput for options that do not go together."""
     from compoundkin.errors import InvalidInput, Problem
 
-    kinds = [f"--{kind.removesuffix('s')}" for kind in asked["kinds"]] + ["--centrodes"] * bool(asked["centrodes"])
+    called = {"paths": "path"}
+    kinds = [f"--{called.get(kind, kind)}" for kind in asked["kinds"]] + ["--centrodes"] * bool(asked["centrodes"])
     if len(kinds) > 1:
         raise InvalidInput(Problem(" ".join(kinds), "a plot is of one kind", "leave all but one out"))
     for option in ("against", "together"):
         if kinds and asked[option]:
             raise InvalidInput(Problem(f"--{option}", f"it does not go with {kinds[0]}", "leave one of them out"))
-    if asked["every"] and kinds in ([], ["--polar"]):
+    if asked["every"] and kinds in ([], ["--polar"], ["--circuits"]):
         raise InvalidInput(Problem("--every", "it marks curves in a plane", "give --path, --phase or --hodograph too"))
+    if asked["driver"] and kinds != ["--circuits"]:
+        raise InvalidInput(Problem("--driver", "it tells which driver --circuits follow", "give --circuits too"))
+    unfit = [key for key in OF_MOTIONS if asked[key] not in (None, ())] if kinds == ["--circuits"] else []
+    if unfit:
+        remedy = "the range of the driver: --from and --to; where others stand: --drive NAME=VALUE"
+        raise InvalidInput(Problem(OF_MOTIONS[unfit[0]], "it does not go with --circuits", remedy))
 
 
 def _order(asked: Mapping[str, Any], names: tuple[str, ...]) -> int:
@@ -116,3 +151,23 @@ def _drawn(motion: Motion, names: tuple[str, ...], asked: Mapping[str, Any]) -> 
     draw: Any = getattr(plots, kind)
     picture: Plot = draw(motion, *names, every=every, title=title)
     return picture
+
+
+def _of_circuits(structure: Structure, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
+    from compoundkin import plots
+    from compoundkin.cli import values
+    from compoundkin.cli.circuits import range_of
+    from compoundkin.cli.progress import working
+    from compoundkin.errors import InvalidInput, Problem
+
+    given = {text.rpartition("=")[0] for text in asked["drives"]}
+    drivers = [drive.name for drive in structure.mechanism.drives]
+    if given & {"", asked["driver"] or "", *(drivers if len(drivers) == 1 else [])}:
+        told = "the driver that moves takes all its values"
+        raise InvalidInput(Problem("--drive", told, "for a part of them: --from and --to"))
+    fixed = {k: v for k, v in values.of_pose(structure, asked["drives"], "--drive").items() if k in given}
+    between = range_of(structure, asked["driver"], asked["start"], asked["stop"])
+    with working("following all circuits"):
+        return plots.circuits(
+            structure, *names, driver=asked["driver"], values=fixed, between=between, title=asked["title"]
+        )

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-
 import numpy as np
 
 from compoundkin.drawing.labels import WIDE, Label, placed
@@ -13,29 +10,19 @@ from compoundkin.drawing.moving import moved
 from compoundkin.drawing.naming import below, label_shapes, letters, lines_of_text, numbered
 from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.picture import Picture, checked_size
+from compoundkin.drawing.rows import Part, in_rows
 from compoundkin.drawing.scene import Scene
-from compoundkin.drawing.shapes import Group, Polygon, Shape, Text, corners
+from compoundkin.drawing.shapes import Group, Polygon, Text, corners
 from compoundkin.drawing.style import LETTER, LINE
 from compoundkin.drawing.window import MARGIN, Window
 from compoundkin.structure import Group as AssurGroup
 from compoundkin.structure import roman
 from compoundkin.words import FRAME
 
-# Parts stand side by side until they are so wide together, in picture units.
-WIDEST = 1000.0
 # Parts are drawn in this part of the size of a sketch.
 SMALLER = 0.52
-# Between parts, with a plus sign; and above each part, for its heading.
-GAP, HEADING = 30.0, 30.0
-
-
-@dataclass(frozen=True)
-class Part:
-    """A part with its size, its upper left corner at zero."""
-
-    shapes: tuple[Shape, ...]
-    width: float
-    height: float
+# Above each part, for its heading.
+HEADING = 30.0
 
 
 def apart(scene: Scene, size: float | None) -> Picture:
@@ -45,7 +32,7 @@ def apart(scene: Scene, size: float | None) -> Picture:
     ground = frozenset((FRAME, *scene.structure.ground.links))
     parts = [_part(scene, whole, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")]
     parts += [_part(scene, whole, frozenset(g.links), heading(g), outer_letters(g)) for g in scene.structure.groups]
-    shapes, width, height = _in_rows(parts)
+    shapes, width, height = in_rows(parts, "+")
     notes = [f"{number} {name}" for name, number in scene.numbers.items()]
     notes += ["dashed circles: outer pairs"] if scene.structure.groups else []
     texts, height = below(lines_of_text(notes, width - 32.0), height + LINE)
@@ -87,25 +74,3 @@ def _part(scene: Scene, whole: Window, links: frozenset[str], title: str, outer:
 def _shifted(label: Label, by: complex) -> Label:
     own = tuple((a + by, b + by) for a, b in label.own)
     return Label(label.key, label.half, tuple(place + by for place in label.places), label.costs, own)
-
-
-def _in_rows(parts: Sequence[Part]) -> tuple[list[Shape], float, float]:
-    """The parts side by side, in rows, with plus signs between them; and the size of them all."""
-    rows: list[list[Part]] = []
-    for part in parts:
-        if rows and sum(p.width + GAP for p in rows[-1]) + part.width <= WIDEST:
-            rows[-1].append(part)
-        else:
-            rows.append([part])
-    shapes: list[Shape] = []
-    y, first = MARGIN / 2.0, True
-    for row in rows:
-        x, tall = MARGIN / 2.0 + GAP, max(part.height for part in row)
-        for part in row:
-            if not first:
-                shapes.append(Text(complex(x - GAP / 2.0, y + tall / 2.0), "+", "heading"))
-            shapes += moved(part.shapes, complex(x, y + (tall - part.height) / 2.0))
-            x, first = x + part.width + GAP, False
-        y += tall + LINE
-    width = max(sum(part.width + GAP for part in row) for row in rows) + MARGIN
-    return shapes, round(width, 1), round(y, 1)

@@ -28,12 +28,12 @@ BULGE = 26.0
 def graph(structure: Structure, numbers: Mapping[str, int], groups: Mapping[str, int], size: float | None) -> Picture:
     """The picture of the kinematic graph, each link in the colour of its group; driven pairs are drawn thick."""
     names = list(numbers)
-    places = dict(zip(names, _spread(names, structure.pairs), strict=True))
+    places = dict(zip(names, spread(names, structure.pairs), strict=True))
     window = fitted(Window(1.0, 0j, 0.0, 0.0), np.array(list(places.values())))
     places = {name: complex(window.at(np.conjugate(place))) for name, place in places.items()}
     driven = {d.pair.name for body in _bodies(structure) for d in body.driven if not d.is_passive}
     lines, named = _edges(structure.pairs, places, driven)
-    nodes = [_node(name, places[name], numbers[name], groups[name]) for name in names]
+    nodes = [node(name, places[name], numbers[name], groups[name]) for name in names]
     found = placed(named, [*lines, *nodes], window.width, window.height)
     texts: list[Shape] = [Text(at, key.partition(" ")[2], "code") for key, at in found.items()]
     notes = [f"{number} {name}" for name, number in numbers.items()]
@@ -46,7 +46,7 @@ def graph(structure: Structure, numbers: Mapping[str, int], groups: Mapping[str,
     return Picture(shapes, window.width, height, title, described, checked_size(size))
 
 
-def _node(name: str, at: complex, number: int, group: int) -> Shape:
+def node(name: str, at: complex, number: int, group: int) -> Shape:
     """A link: the frame is square."""
     corner = (1 + 1j) * NODE * 0.9
     style = "pin frame" if name == FRAME else f"pin {style_of('ring', group)}"
@@ -92,7 +92,7 @@ def _label(k: int, pair: Pair, first: complex, middle: complex, second: complex,
     return Label(f"{k} {text}", half, tuple(places), tuple(costs))
 
 
-def _spread(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
+def spread(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     """Places for the links, as far apart as there are pairs between them.
 
     Source: J. de Leeuw, Applications of convex analysis to multidimensional scaling, 1977 (majorization of stress).

@@ -5,24 +5,26 @@ from __future__ import annotations
 from compoundkin.drawing.apart import apart
 from compoundkin.drawing.circle import circle_diagram
 from compoundkin.drawing.graph import graph
+from compoundkin.drawing.loops import loops, loops_in_graph
 from compoundkin.drawing.picture import Picture
 from compoundkin.drawing.posing import scene_of, solved_over
 from compoundkin.drawing.scene import groups_of, numbers_of
-from compoundkin.errors import InvalidInput, NotDetermined, Problem, nearest
+from compoundkin.errors import InvalidInput, NotAssembled, NotDetermined, Problem, nearest
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion
 from compoundkin.structure import Structure, decompose
 
-VIEWS = ("groups", "graph", "circle")
+VIEWS = ("groups", "loops", "graph", "circle")
 
 
 def draw_structure(what: Motion | Mechanism | Structure, view: str = "groups", *, size: float | None = None) -> Picture:
     """A picture of the structure of a mechanism.
 
     `view` is "groups", the mechanism taken apart: frame and driver, then each Assur group in solving order, the pairs
-    by which it is attached to what stands before it in dashed circles; "graph", the kinematic graph of links and pairs;
-    or "circle", the circle diagram of the instant centres. Raises InvalidInput for another view; NotDetermined where a
-    mechanism that the drivers do not determine is asked for its groups or centres.
+    by which it is attached to what stands before it in dashed circles; "loops", the independent loops as polygons of
+    vectors; "graph", the kinematic graph of links and pairs; or "circle", the circle diagram of the instant centres.
+    Raises InvalidInput for another view, or for the loops of a mechanism without any; NotDetermined where a mechanism
+    that the drivers do not determine is asked for its groups or centres.
 
     >>> from compoundkin.words import drive, link
     >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
@@ -32,6 +34,8 @@ def draw_structure(what: Motion | Mechanism | Structure, view: str = "groups", *
     if view not in VIEWS:
         raise InvalidInput(Problem("view", f"there is no view {view!r}", nearest(str(view), list(VIEWS))))
     structure = _structure(what)
+    if view == "loops":
+        return _loops(what, structure, size)
     if structure.faults and view != "graph":
         # some of its pairs may be redundant, as solving finds
         motion = solved_over(structure.mechanism)
@@ -44,6 +48,15 @@ def draw_structure(what: Motion | Mechanism | Structure, view: str = "groups", *
     if view == "circle":
         return circle_diagram(structure, numbers_of(structure), size)
     return apart(scene_of(what if isinstance(what, Motion) else structure.mechanism, None, None, 0), size)
+
+
+def _loops(what: Motion | Mechanism | Structure, structure: Structure, size: float | None) -> Picture:
+    """The loops on the mechanism; in its graph where it cannot be shown at any pose."""
+    try:
+        scene = scene_of(what, None, None, 0)
+    except (InvalidInput, NotAssembled, NotDetermined):
+        return loops_in_graph(structure, size)
+    return loops(scene, size)
 
 
 def _structure(what: Motion | Mechanism | Structure) -> Structure:

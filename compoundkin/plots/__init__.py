@@ -1,5 +1,6 @@
 """Plots of motions, drawn with Matplotlib, which is loaded when the first one is drawn."""
 
+from compoundkin.plots.circuits import circuits
 from compoundkin.plots.coupler_curves import paths
 from compoundkin.plots.hodographs import hodograph
 from compoundkin.plots.over import plot
@@ -8,4 +9,4 @@ from compoundkin.plots.picture import Plot
 from compoundkin.plots.polars import polar
 from compoundkin.plots.rolling import centrodes
 
-__all__ = ["Plot", "centrodes", "hodograph", "paths", "phase", "plot", "polar"]
+__all__ = ["Plot", "centrodes", "circuits", "hodograph", "paths", "phase", "plot", "polar"]

@@ -93,7 +93,7 @@ def test_a_belt_touches_its_pulleys_and_cuts_neither(seed: int, crossed: bool) -
 # --- structure pictures ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("view", ["groups", "graph", "circle"])
+@pytest.mark.parametrize("view", ["groups", "loops", "graph", "circle"])
 @pytest.mark.parametrize("name", ["six-bar", "jansen-leg", "planetary-train", "excavator-arm", "scissor-lift"])
 def test_structure_pictures_are_well_formed_and_the_same_every_time(name: str, view: str) -> None:
     mechanism = catalog.load_named(name)
