@@ -248,3 +248,9 @@ def test_circuits_begin_where_a_written_mode_has_the_mechanism(sign: int) -> Non
     for modes, circuit in ((None, found.start.circuit), ({"coupler": -sign}, 3 - found.start.circuit)):
         told = ck.rendered(ck.report(ck.solve(four_bar, modes=modes)))
         assert f"Solving begins on circuit {circuit}," in " ".join(told.split())
+
+
+def test_circuits_of_many_groups_are_refused_at_once() -> None:
+    """Each of twenty dyads doubles the branches: the search went on for ten minutes and more."""
+    with pytest.raises(ck.InvalidInput, match="the groups multiply them"):
+        ck.circuits(ck.random_mechanism(20, seed=3, kinds=("RRR",)))

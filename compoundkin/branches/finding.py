@@ -35,6 +35,8 @@ from compoundkin.structure.model import Structure
 # The configurations are counted anew at so many driver values, spread by the golden ratio.
 FRESH = 48
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+# More pieces of curves than these nobody can read, and with each group they are twice as many.
+MOST_STRANDS = 8192
 # Angles along a strand at which redundant pairs must be closed.
 INSIDE = (0.7, 1.3, 2.1)
 # Where the counts differ, everything is done again with slices so many times as dense.
@@ -123,8 +125,8 @@ def circuits(
     `between` the range of the driver where it shall not be a full turn, or all lengths within reach. Of dimensions that
     are arrays one `design` is taken, at its first pose.
 
-    Raises NotDetermined where the structure cannot be solved, InvalidInput for drivers and values that do not fit,
-    NotAssembled where the mechanism cannot be assembled at all.
+    Raises NotDetermined where the structure cannot be solved, InvalidInput for drivers and values that do not fit and
+    where there are thousands of branches, NotAssembled where the mechanism cannot be assembled at all.
 
     >>> from compoundkin.words import drive, link
     >>> triple_rocker = Mechanism(
@@ -201,6 +203,9 @@ def _lifted(sweep: Sweep, strands: Strands, fineness: int) -> tuple[Strands, int
             lost += missing
         elif not isinstance(step, AffineStep | TrainStep):
             strands = dyads.lifted(sweep, strands, k, fineness)
+        if strands.rows > MOST_STRANDS:
+            what = f"the circuits are in more than {MOST_STRANDS:,} pieces: the groups multiply them"
+            raise InvalidInput(Problem("circuits", what, "ask for a part of the mechanism"))
     return _with_redundant(sweep, strands), lost
 
 
