@@ -213,7 +213,7 @@ class Curve(ABC):
         """The spans of s where ``1 + distance * curvature`` is not positive, so that the parallel curve turns back.
 
         On a closed curve a span may run past `high`; spans shorter than the distance of two samples are not seen.
-        Differentiating C + d n with Frenet's n' = curvature |C'| tangent gives |C'| (1 + d curvature) along the curve.
+        Differentiating C + d n with Frenet's ``n' = curvature |C'| tangent`` gives ``|C'| (1 + d curvature)`` along it.
         """
         return spans(self.samples, self.low, self.high, lambda s: 1.0 + distance * self.curvature(s))
 

@@ -1,0 +1,92 @@
+"""The figures of the pages, drawn by the program itself. Run `python -m tests.figures` to write them."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import compoundkin as ck
+from compoundkin.catalog import load_named
+from compoundkin.drawing.labels import placed
+from compoundkin.drawing.layout import ghost, layered, window_on
+from compoundkin.drawing.naming import label_shapes, letters
+from compoundkin.drawing.painter import Painter
+from compoundkin.drawing.posing import scene_of
+from compoundkin.drawing.shapes import Polygon
+
+FOLDER = Path(__file__).parents[1] / "docs" / "figures"
+FIRST = Path(__file__).parents[1] / "docs" / "index.md"
+SIX_BAR, AT = load_named("six-bar"), ck.deg(35)
+
+
+def crank_rocker() -> ck.Picture:
+    """What the first page makes: its code, run here."""
+    code = re.findall(r"```python\n(.*?)```", FIRST.read_text(encoding="utf-8"), re.DOTALL)
+    names: dict[str, Any] = {}
+    with TemporaryDirectory() as folder, contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()):
+        exec("".join(code), names)
+    found: ck.Picture = names["picture"]
+    return found
+
+
+def six_bar() -> ck.Picture:
+    """The six-bar at 35 degrees, with the path of G."""
+    return ck.draw(SIX_BAR, AT, paths="G")
+
+
+def posed() -> ck.Motion:
+    """The six-bar at that pose alone."""
+    return ck.solve(SIX_BAR, {"crank": [AT]})
+
+
+def modes() -> ck.Picture:
+    """A four-bar in both assembly modes of its dyad, the second one faint."""
+    mechanism, values = load_named("crank-rocker"), {"crank": [ck.deg(60)]}
+    return with_ghosts(*(ck.solve(mechanism, values, modes={"rocker": sign}) for sign in (1, -1)))
+
+
+def limit() -> ck.Picture:
+    """A triple rocker at a limit position, where its two modes meet; faint both modes before it."""
+    mechanism = load_named("triple-rocker")
+    (greatest,) = {limit.value for limit in ck.circuits(mechanism).limits if limit.greatest and limit.value > 0}
+    at_limit = ck.solve(mechanism, {"driver": [greatest]})
+    before = [ck.solve(mechanism, {"driver": [ck.deg(70)]}, modes={"rocker": sign}) for sign in (1, -1)]
+    return with_ghosts(at_limit, *before)
+
+
+def with_ghosts(motion: ck.Motion, *others: ck.Motion) -> ck.Picture:
+    """The sketch of a motion of one pose, others drawn faintly behind it."""
+    shown, *ghosts = (scene_of(one, None, None, 0) for one in (motion, *others))
+    window = window_on(shown, ghosts)
+    painter = Painter(shown, window)
+    sketch = layered(painter)
+    names = label_shapes(shown, placed(letters(painter), sketch, window.width, window.height))
+    wide, high = complex(window.width), complex(0.0, window.height)
+    paper = Polygon((0j, wide, wide + high, high), "paper")
+    shapes = (paper, *(ghost(scene, window) for scene in ghosts), *sketch, *names)
+    return ck.Picture(shapes, window.width, window.height, motion.mechanism.title, window=window)
+
+
+FIGURES: dict[str, Callable[[], ck.Picture]] = {
+    "crank-rocker": crank_rocker,
+    "six-bar": six_bar,
+    "apart": lambda: ck.draw_structure(posed()),
+    "graph": lambda: ck.draw_structure(SIX_BAR, "graph"),
+    "loops": lambda: ck.draw_structure(posed(), "loops"),
+    "modes": modes,
+    "limit": limit,
+    "centres": lambda: ck.draw(SIX_BAR, AT, centres=True),
+    "circle": lambda: ck.draw_structure(SIX_BAR, "circle"),
+    "velocities": lambda: ck.vector_polygon(SIX_BAR, "velocity", AT),
+    "accelerations": lambda: ck.vector_polygon(SIX_BAR, "acceleration", AT),
+}
+
+
+if __name__ == "__main__":
+    for name, figure in FIGURES.items():
+        figure().save(FOLDER / f"{name}.svg")
