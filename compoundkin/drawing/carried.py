@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import groupby
 
 import numpy as np
 
-from compoundkin.drawing.labels import placed
+from compoundkin.drawing.labels import ROOM, placed, text_half
 from compoundkin.drawing.layout import in_layers, path, window_on
 from compoundkin.drawing.moving import moved
 from compoundkin.drawing.naming import badge, letters, numbered
 from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.posing import scene_in
 from compoundkin.drawing.scene import Scene
-from compoundkin.drawing.shapes import Group, Polygon, Shape, Text
+from compoundkin.drawing.shapes import Group, Polygon, Shape, Text, corners, leaves
+from compoundkin.drawing.style import LETTER
 from compoundkin.drawing.vectors import KINDS_OF_VECTOR, LONGEST, Scale, scale_of
 from compoundkin.drawing.window import Window
 from compoundkin.errors import InvalidInput, Problem
@@ -113,6 +114,19 @@ class MovingSketch:
         longest = {k: float(np.max(np.abs(v), initial=0.0, where=np.isfinite(v))) for k, v in self.rates(kind).items()}
         return scale_of(kind, longest, LONGEST * self.window.diagonal, self.scene.mechanism.unit)
 
+    def holding(self, points: Number, room: float) -> MovingSketch:
+        """The same sketch in a window that holds some points of its picture too, with room around them."""
+        old, low, high = self.window, 0j, complex(self.window.width, self.window.height)
+        if np.size(points):
+            low = complex(min(0.0, points.real.min() - room), min(0.0, points.imag.min() - room))
+            high = complex(max(high.real, points.real.max() + room), max(high.imag, points.imag.max() + room))
+        if low == 0 and high == complex(old.width, old.height):
+            return self
+        size = high - low
+        corner = old.corner + low.conjugate() / old.scale
+        window = Window(old.scale, corner, round(size.real, 1), round(size.imag, 1))
+        return replace(self, window=window, still=(_paper(window), *moved(self.still[1:], -low)))
+
 
 def moving_sketch(
     motion: Motion, design: int = 0, *, paths: Sequence[str] = (), labels: Sequence[str] = ("points", "links")
@@ -126,10 +140,29 @@ def moving_sketch(
     scene = scene_in(motion, None, None, design)
     window = window_on(scene, _sample(scene), tuple(scene.letters))
     painter = Painter(scene, window)
-    corners = 0j, complex(window.width), complex(window.width, window.height), complex(0.0, window.height)
     lines = [line for letter in paths for line in path(scene, window, letter)]
     parts = [*_carried(painter), *_labelled(painter, labels)]
-    return MovingSketch(motion, design, scene, window, (Polygon(corners, "paper"), *lines), tuple(parts))
+    sketch = MovingSketch(motion, design, scene, window, (_paper(window), *lines), tuple(parts))
+    return sketch.holding(_reach_of_labels(sketch), ROOM)
+
+
+def _paper(window: Window) -> Polygon:
+    """The paper of a picture."""
+    corners = 0j, complex(window.width), complex(window.width, window.height), complex(0.0, window.height)
+    return Polygon(corners, "paper")
+
+
+def _reach_of_labels(sketch: MovingSketch) -> Number:
+    """Corners of the boxes around all labels at all poses: where links go, their names must not leave the picture."""
+    found = [np.zeros(0, dtype=complex)]
+    for part in (part for part in sketch.parts if part.is_label):
+        boxes = list(corners(part.shapes))
+        for shape in leaves(part.shapes):
+            if isinstance(shape, Text):
+                half = text_half(shape.text, LETTER)
+                boxes += [shape.at - half, shape.at + half]
+        found += [sketch.places(part) + corner for corner in boxes]
+    return np.concatenate(found)
 
 
 def _check_rigid(motion: Motion) -> None:

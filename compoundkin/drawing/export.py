@@ -19,11 +19,11 @@ def converted(source: str, form: str) -> bytes:
         raise InvalidInput(Problem(f".{form}", what, "pip install compoundkin[pictures], or save an .svg")) from None
     convert: Any = cairosvg.svg2png if form == "png" else cairosvg.svg2pdf
     extra = {"scale": FINE} if form == "png" else {}
-    made: bytes = convert(bytestring=_on_light_paper(source).encode("utf-8"), **extra)
+    made: bytes = convert(bytestring=on_light_paper(source).encode("utf-8"), **extra)
     return made
 
 
-def _on_light_paper(source: str) -> str:
+def on_light_paper(source: str) -> str:
     """The source without its rules for dark paper, which CairoSVG would apply to any."""
     start, end = source.find("@media"), source.find("</style>")
     return source[:start] + source[end:] if 0 <= start < end else source

@@ -103,7 +103,9 @@ def drives(painter: Painter) -> Iterator[Laid]:
             mark, link = straight.mark, straight.members[0]
             e = painter.along(link, mark.along) * float(np.sign(speed))  # type: ignore[union-attr]
             shapes = pushing(painter, at, e)
-        yield from (Laid(Layer.PIN, shape, step.link) for shape in shapes)
+        # the arrow beside a wheel that is pushed along its track does not turn with it
+        rolls = straight is not None and isinstance(straight.mark, Track) and letter in painter.scene.points[step.link]
+        yield from (Laid(Layer.PIN, shape, step.link, letter if rolls else "") for shape in shapes)
 
 
 def turning(painter: Painter, step: DrivenPair, at: complex, sense: float) -> tuple[Shape, ...]:

@@ -62,9 +62,9 @@ def draw(
     >>> draw(crank, at=0.5).title
     'Crank'
     """
-    wanted_vectors, asked = wanted(vectors), _labels(labels)
+    wanted_vectors, asked = wanted(vectors), asked_labels(labels)
     scene = scene_of(what, at, pose, design)
-    traced = _paths(scene, paths)
+    traced = asked_paths(scene, paths)
     others = _ghosts(scene, ghosts)
     wishes = centre_places(scene) if centres else []
     window, scales = _scaled(scene, window_on(scene, others, traced, wishes), wanted_vectors)
@@ -127,7 +127,7 @@ def _finished(
     return Picture((paper, *shapes, *texts), window.width, height, title, said, size, window)
 
 
-def _paths(scene: Scene, paths: Any) -> tuple[str, ...]:
+def asked_paths(scene: Scene, paths: Any) -> tuple[str, ...]:
     """The letters of points whose paths are asked for; raises UnknownName."""
     carriers = scene.mechanism.carriers
     if paths is True:
@@ -153,7 +153,8 @@ def _closes(scene: Scene) -> bool:
     return all(abs(last - first) < SAME_PLACE * scene.mechanism.geometry.size for first, last in ends)
 
 
-def _labels(labels: Any) -> tuple[str, ...]:
+def asked_labels(labels: Any) -> tuple[str, ...]:
+    """What is to be labelled; raises InvalidInput for what cannot be."""
     if isinstance(labels, bool):
         return LABELS if labels else ()
     names = (labels,) if isinstance(labels, str) else tuple(labels)

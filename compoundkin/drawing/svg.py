@@ -21,14 +21,27 @@ def svg(shapes: Sequence[Shape], width: float, height: float, size: float, title
     >>> print(svg((), 100, 50, 200, "Empty").splitlines()[1])
     <title>Empty</title>
     """
+    return document(elements(shapes), shapes, width, height, size, title, description)
+
+
+def document(
+    lines: Iterable[str],
+    styled: Sequence[Shape],
+    width: float,
+    height: float,
+    size: float,
+    title: str,
+    description: str = "",
+) -> str:
+    """The source of a picture whose elements are there already, with the style sheet of some shapes."""
     shown = size / max(width, height)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {number(width)} {number(height)}" '
         f'width="{number(width * shown)}" height="{number(height * shown)}" role="img" style="{FONT}">'
     )
     about = [f"<title>{escape(title)}</title>", *([f"<desc>{escape(description)}</desc>"] if description else [])]
-    sheet = f"<style>\n{css(shapes)}\n</style>"
-    return "\n".join([head, *about, sheet, *elements(shapes), "</svg>", ""])
+    sheet = f"<style>\n{css(styled)}\n</style>"
+    return "\n".join([head, *about, sheet, *lines, "</svg>", ""])
 
 
 def inline(shapes: Sequence[Shape], width: float, height: float, title: str, description: str = "") -> str:

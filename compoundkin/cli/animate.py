@@ -1,0 +1,92 @@
+"""`compoundkin animate`: a motion as an animation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from compoundkin.cli.driving import DESIGN, drive_options, names, solved_at
+from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.progress import counting
+from compoundkin.cli.shell import put, say
+from compoundkin.cli.solve import explained
+
+if TYPE_CHECKING:
+    from compoundkin.series import Number
+    from compoundkin.structure import Structure
+
+VECTORS = ("velocity", "acceleration")
+# What says where drivers go; without any of these they go through their own range.
+DRIVEN_BY = ("at", "start", "stop", "step", "drives", "time")
+# What `animate` of Python takes as it stands, by the names of the values of the options.
+PASSED_ON = ("paths", "vectors", "centres", "labels", "seconds", "fps", "back", "size", "design")
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin animate six-bar -o six-bar.gif
+  compoundkin animate jansen-leg --path foot -o leg.svg
+  compoundkin animate six-bar --vectors velocity --size 1280 -o six-bar.mp4
+  compoundkin animate geneva-wheel --seconds 6 --fps 50 -o geneva.gif
+  compoundkin animate crank-rocker --at 0 --speed 9 --time 0:2:0.01 -o a.mp4
+"""
+)
+@mechanism_argument
+@drive_options
+@DESIGN
+@click.option(
+    "--path",
+    "paths",
+    multiple=True,
+    metavar="POINT",
+    callback=lambda _c, _p, given: names(given),
+    help="Draw the path of a point: its coupler curve. Repeat it, or write commas.",
+)
+@click.option("--vectors", multiple=True, type=click.Choice(VECTORS), help="Draw the vectors of all points.")
+@click.option("--centres", is_flag=True, help="Draw the instant centres that are on the picture.")
+@click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")
+@click.option(
+    "--seconds", type=float, metavar="SECONDS", help="How long it takes; about 4, in time as long as it does."
+)
+@click.option("--fps", type=float, metavar="COUNT", help="Frames a second at most; 25 if left out.")
+@click.option("--back/--no-back", default=None, help="Go back the way it came; else where it does not end as it began.")
+@click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
+@click.option("-o", "--to-file", "path", metavar="PATH", help="Write a .gif, .mp4 or .svg file; else SVG to stdout.")
+def command(file: str, path: str | None, **asked: Any) -> int:
+    """Animate the motion of a mechanism.
+
+    GIF needs CairoSVG and Pillow, MP4 the program ffmpeg too; SVG needs nothing and moves by itself in a browser. Poses
+    that cannot be assembled are left out; stderr says why, and the exit code is 3.
+    """
+    from compoundkin.animation import animate
+    from compoundkin.animation.model import ready_for
+    from compoundkin.freedom import solvable
+
+    if path is not None:
+        ready_for(path)
+    structure = solvable(loaded(file))
+    order = 2 if asked["order"] is None else asked["order"]
+    motion = solved_at(structure, _driven(structure, asked), {**asked, "order": order})
+    animation = animate(motion, **{key: asked[key] for key in PASSED_ON})
+    if path is None:
+        put(animation.svg)
+    else:
+        with counting("drawing", "frames") as progress:
+            animation.save(path, progress)
+        say(f"Wrote {path}.")
+    return 0 if motion.assembled.all() else explained(motion)
+
+
+def _driven(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
+    """The values of the drivers that are asked for, else the mechanism's own range, finely enough to be shown."""
+    from compoundkin.animation.animating import finer_values
+    from compoundkin.cli import values
+    from compoundkin.drawing.posing import solved_over
+
+    if any(asked[key] not in (None, ()) for key in DRIVEN_BY):
+        return values.of_drivers(structure, asked)
+    own = solved_over(structure)
+    return (finer_values(own) if own is not None else None) or {}
