@@ -7,6 +7,7 @@
   const FAR = 1e5; // picture units: beyond, a place is a direction
   const DOT = 3.2;
   const LEGIBLE = 0.85, LARGEST = 2.2; // pixels for a picture unit below which names grow, and by how much at most
+  const WIDE = 4.4, TALL = 8, RIM = 9.5; // half a letter's width and height, and the circle around a number
   const TOGETHER = 3; // centres nearer to each other are named together
   const HEAD = 10, HALF = 3.6; // an arrow's head, as in every other picture
 
@@ -31,7 +32,7 @@
     return element;
   };
   const raised = (unit) => unit.replace("^2", "²").replace("^3", "³").replace(/^deg$/, "°").replace(/^deg\//, "°/");
-  const withUnit = (value, unit) => (unit === "deg" ? `${written(value)}°` : `${written(value)} ${raised(unit)}`.trim());
+  const withUnit = (value, unit) => !Number.isFinite(value) ? written(value) : (unit === "deg" ? `${written(value)}°` : `${written(value)} ${raised(unit)}`.trim());
 
   class Player {
     constructor(root, data) {
@@ -67,6 +68,7 @@
       const one = (selector) => this.root.querySelector(selector);
       this.svg = one("svg.sketch");
       this.parts = [...this.svg.querySelectorAll(".parts > g")];
+      this.names = this.parts.map((part) => (part.classList.contains("name") ? this.box(part) : null));
       this.layers = Object.fromEntries(["traces", "rays", "velocities", "accelerations", "dots"].map((k) => [k, one(`svg .${k}`)]));
       Object.assign(this, { slider: one(".slider"), play: one(".play"), where: one(".where"), said: one(".said") });
       this.reading = one(".reading tbody");
@@ -142,7 +144,7 @@
     // where the sketch really shows a point, read back from the picture
     drawn(letter) {
       const part = this.parts.find((one) => one.dataset.letter === letter), window = this.data.window;
-      const [x, y] = part.getAttribute("transform").match(/-?[\d.]+(e-?\d+)?/g).map(Number);
+      const [x, y] = part.getAttribute("transform").match(/-?[\d.]+(e[+-]?\d+)?/g).map(Number);
       return [x / window.scale + window.x, window.y - y / window.scale];
     }
 
@@ -178,13 +180,28 @@
     move(k) {
       this.parts.forEach((part, index) => {
         const [link, px, py, turns] = this.data.parts[index];
-        const [x, y] = this.paper(this.at(link, px, py, k));
+        const name = this.letters > 1 && this.names[index];
+        const [x, y] = name ? this.within(this.paper(this.at(link, px, py, k)), name) : this.paper(this.at(link, px, py, k));
         const angle = this.links[link].angle;
         // y points downward on paper: what turns counterclockwise has a negative angle there
         const turned = turns ? ` rotate(${-(angle[k] - angle[this.data.start]) * DEGREE})` : "";
-        const enlarged = this.letters > 1 && part.classList.contains("name") ? ` scale(${this.letters})` : "";
+        const enlarged = name ? ` scale(${this.letters})` : "";
         part.setAttribute("transform", `translate(${x} ${y})${turned}${enlarged}`);
       });
+    }
+
+    // the box of a name as seen from the point it belongs to: its middle, half its width and height
+    box(part) {
+      const text = part.querySelector("text");
+      const [x, y] = ["x", "y"].map((name) => Number(text.getAttribute(name)));
+      const round = part.querySelector("circle");
+      return { x, y, wide: round ? RIM : WIDE * text.textContent.length, tall: round ? RIM : TALL };
+    }
+    // where a name that has grown is put, so that it stays in the picture
+    within([x, y], name) {
+      const { width, height } = this.data.window, by = this.letters;
+      const held = (at, off, half, size) => Math.max(by * half, Math.min(size - by * half, at + by * off)) - by * off;
+      return [held(x, name.x, name.wide, width), held(y, name.y, name.tall, height)];
     }
 
     // --- what is switched on and off --------------------------------------------------------------------------------
@@ -244,7 +261,7 @@
         if (same) same.names.push(name);
         else named.push({ ...p, names: [name] });
       });
-      const taken = this.shown.has("names") ? this.names() : [];
+      const taken = this.shown.has("names") ? this.taken() : [];
       for (const { x, y, names } of named) {
         make("circle", { class: "ck-centre", cx: x, cy: y, r: DOT }, this.layers.dots);
         const text = names.join(" ");
@@ -258,12 +275,12 @@
       if (gone.length) this.text(`at infinity: ${gone.join(", ")}`, 12, 12, "ck-note", "start", this.layers.dots);
     }
     // where the letters and numbers are: boxes by their middle and half their size
-    names() {
-      return this.parts.filter((part) => part.classList.contains("name")).map((part) => {
-        const [x, y] = part.getAttribute("transform").match(/-?[\d.]+(e-?\d+)?/g).map(Number);
-        const text = part.querySelector("text");
-        const [dx, dy] = ["x", "y"].map((name) => Number(text.getAttribute(name)) * this.letters);
-        return { x: x + dx, y: y + dy, half: (4 * text.textContent.length + 2) * this.letters };
+    taken() {
+      return this.parts.flatMap((part, index) => {
+        const name = this.names[index];
+        if (!name) return [];
+        const [x, y] = part.getAttribute("transform").match(/-?[\d.]+(e[+-]?\d+)?/g).map(Number);
+        return { x: x + name.x * this.letters, y: y + name.y * this.letters, half: name.wide * this.letters };
       });
     }
     // a place for a name of that half width beside a point: the first that covers none, or the one that covers fewest

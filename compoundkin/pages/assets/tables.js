@@ -48,6 +48,7 @@
     const all = table.classList.toggle("all");
     button.textContent = all ? button.dataset.fewer : button.dataset.more;
     button.setAttribute("aria-expanded", String(all));
+    if (pose !== null) mark();
     page.say(`${visible(table).length} rows`);
   };
 
@@ -66,16 +67,24 @@
   });
 
   // --- the row of the pose that the sketch shows --------------------------------------------------------------------
-  document.addEventListener("compoundkin:pose", (event) => {
-    const pose = event.detail.pose;
-    for (const table of document.querySelectorAll("table:has([data-pose])")) {
-      let nearest = null;
-      for (const row of table.querySelectorAll("tr[data-pose]")) {
-        row.classList.remove("here");
-        const away = Math.abs(row.dataset.pose - pose);
-        if (row.getClientRects().length && (!nearest || away < Math.abs(nearest.dataset.pose - pose))) nearest = row;
+  // while the sketch plays this is done for every picture: nothing here asks where anything is on the page
+  const tables = [...document.querySelectorAll("table:has([data-pose])")].map((table) => ({
+    table, here: null, rows: [...table.querySelectorAll("tr[data-pose]")].map((row) => [row, Number(row.dataset.pose)]),
+  }));
+  let pose = null;
+  const mark = () => {
+    for (const one of tables) {
+      const all = one.table.classList.contains("all");
+      let nearest = null, least = Infinity;
+      for (const [row, own] of one.rows) {
+        const away = Math.abs(own - pose);
+        if (away < least && (all || !row.classList.contains("more"))) [nearest, least] = [row, away];
       }
+      if (nearest === one.here) continue;
+      if (one.here) one.here.classList.remove("here");
       if (nearest) nearest.classList.add("here");
+      one.here = nearest;
     }
-  });
+  };
+  document.addEventListener("compoundkin:pose", (event) => { pose = event.detail.pose; mark(); });
 })();
