@@ -13,7 +13,8 @@ import pytest
 import compoundkin as ck
 from compoundkin import showing
 from compoundkin.catalog import load_named
-from compoundkin.showing import MOST_LINKS, MOST_ROWS, html_of, unguarded
+from compoundkin.pages.plain import MOST_ROWS
+from compoundkin.showing import MOST_LINKS, html_of, unguarded
 
 VOID = {"br"}
 
