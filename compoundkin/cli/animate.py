@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import DESIGN, drive_options, names, solved_at
+from compoundkin.cli.driving import DESIGN, drive_options, solved_at
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
 from compoundkin.cli.progress import counting
 from compoundkin.cli.shell import put, say
+from compoundkin.cli.sketches import ARROWS, LABELS, PATHS
 from compoundkin.cli.solve import explained
 
 if TYPE_CHECKING:
     from compoundkin.series import Number
     from compoundkin.structure import Structure
 
-VECTORS = ("velocity", "acceleration")
 # What says where drivers go; without any of these they go through their own range.
 DRIVEN_BY = ("at", "start", "stop", "step", "drives", "time")
 # What `animate` of Python takes as it stands, by the names of the values of the options.
@@ -37,17 +37,10 @@ Examples:
 @mechanism_argument
 @drive_options
 @DESIGN
-@click.option(
-    "--path",
-    "paths",
-    multiple=True,
-    metavar="POINT",
-    callback=lambda _c, _p, given: names(given),
-    help="Draw the path of a point: its coupler curve. Repeat it, or write commas.",
-)
-@click.option("--vectors", multiple=True, type=click.Choice(VECTORS), help="Draw the vectors of all points.")
+@PATHS
+@ARROWS
 @click.option("--centres", is_flag=True, help="Draw the instant centres that are on the picture.")
-@click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")
+@LABELS
 @click.option(
     "--seconds", type=float, metavar="SECONDS", help="How long it takes; about 4, in time as long as it does."
 )

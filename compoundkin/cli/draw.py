@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import names, pose_options, solved_at
+from compoundkin.cli.driving import pose_options, solved_at
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
 from compoundkin.cli.shell import put, say
+from compoundkin.cli.sketches import ARROWS, LABELS, PATHS, VECTORS
 
 if TYPE_CHECKING:
     from compoundkin.drawing import Picture
     from compoundkin.motion import Motion
     from compoundkin.structure import Structure
 
-VECTORS = ("velocity", "acceleration")
 VIEWS = ("groups", "loops", "graph", "circle")
 # What belongs to the sketch only, by the names of the values of the options.
 OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels")
@@ -42,16 +42,9 @@ Examples:
     help="The pose: a driver's value, degrees or length; the one nearest to the drawing if left out.",
 )
 @click.option("--ghosts", type=int, default=0, metavar="COUNT", help="Draw so many other poses faintly.")
-@click.option(
-    "--path",
-    "paths",
-    multiple=True,
-    metavar="POINT",
-    callback=lambda _c, _p, given: names(given),
-    help="Draw the path of a point: its coupler curve. Repeat it, or write commas.",
-)
+@PATHS
 @click.option("--centres", is_flag=True, help="Draw the instant centres with the lines that give them.")
-@click.option("--vectors", multiple=True, type=click.Choice(VECTORS), help="Draw the vectors of all points.")
+@ARROWS
 @click.option("--polygon", type=click.Choice(VECTORS), help="Instead: the polygon of the vectors from one pole.")
 @click.option(
     "--structure",
@@ -61,7 +54,7 @@ Examples:
     "of centres.",
 )
 @pose_options
-@click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")
+@LABELS
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
 @click.option("-o", "--to-file", "path", metavar="PATH", help="Write an .svg, .png or .pdf file; else SVG to stdout.")
 def command(file: str, path: str | None, **asked: Any) -> None:
