@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.motion import Motion
+from compoundkin.notebooks import Shows
 from compoundkin.pairs import Pair
 from compoundkin.pairs.profiled import Profiled
 from compoundkin.poses import Pose
@@ -26,7 +27,7 @@ RESTS = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class CamAnalysis:
+class CamAnalysis(Shows):
     """A cam pair over a motion; arrays are of the motion's shape, not a number where it is not assembled.
 
     Angles in radians. `pressure_angle` is from the direction in which the follower can move (the velocity of its
@@ -127,12 +128,6 @@ class CamAnalysis:
         """Spans of the parameter as points of the profile."""
         points = [(complex(self.pair.curve.at(a).c[0]), complex(self.pair.curve.at(b).c[0])) for a, b in found]
         return ", ".join(f"{_point(a)} to {_point(b)}" for a, b in points)
-
-    def _repr_html_(self) -> str | None:
-        """The table of extremes and what to look at, for notebooks."""
-        from compoundkin.showing import html_of
-
-        return html_of(self)
 
     def __repr__(self) -> str:
         return f"CamAnalysis({self.pair.name!r}, follower {self.follower!r})"

@@ -11,6 +11,7 @@ import numpy as np
 
 from compoundkin.errors import InvalidMechanism, Problem, UnknownName, nearest
 from compoundkin.geometry import Geometry, fitted_pose, read_off
+from compoundkin.notebooks import ShowsPicture
 from compoundkin.pairs import Pair
 from compoundkin.poses import FIXED, Pose
 from compoundkin.series import Number
@@ -18,7 +19,7 @@ from compoundkin.validation import misfits_of, problems_of
 from compoundkin.words import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, real
 
 
-class Mechanism:
+class Mechanism(ShowsPicture):
     """Links, pairs and drivers, written with the words of this module; checked as a whole when it is made.
 
     Two links that have a point of the same name are pinned there; the link called "frame" is the frame.
@@ -176,23 +177,6 @@ class Mechanism:
         if name not in self.links:
             raise UnknownName(Problem(name, "there is no such link", nearest(name, list(self.links))))
         return self.links[name]
-
-    def _repr_svg_(self) -> str | None:
-        """Its picture, for notebooks; None where it has none, or is too large to be shown unasked."""
-        return self._picture
-
-    @cached_property
-    def _picture(self) -> str | None:
-        """The picture that a notebook shows, drawn once."""
-        from compoundkin.showing import svg_of
-
-        return svg_of(self)
-
-    def _repr_html_(self) -> str | None:
-        """Its picture with what it is, for notebooks; the table of its links where it has no picture."""
-        from compoundkin.showing import html_of
-
-        return html_of(self)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Mechanism) and same(_plain(self), _plain(other))

@@ -11,13 +11,14 @@ from compoundkin.cams import CamAnalysis
 from compoundkin.centres import Centres
 from compoundkin.checks import Check
 from compoundkin.drawing import draw, draw_structure
-from compoundkin.errors import CompoundkinError
+from compoundkin.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.freedom import MobilityAnalysis
 from compoundkin.mechanism import Mechanism
-from compoundkin.motion import solve
+from compoundkin.motion import Motion, solve
 from compoundkin.motion.configuration import Configuration
 from compoundkin.pages.markup import safe
 from compoundkin.pages.plain import block_html, sections_html, table_html
+from compoundkin.pages.playing import framed
 from compoundkin.quantities import degrees
 from compoundkin.reports.cams import cam_blocks
 from compoundkin.reports.configurations import circuits_report, configurations_section
@@ -50,15 +51,21 @@ def html_of(what: object) -> str | None:
         return None
 
 
-def svg_of(what: Mechanism | Structure) -> str | None:
+def svg_of(what: Mechanism | Structure | Motion) -> str | None:
     """The picture of a mechanism, or of one taken apart; None where there is none, or where it would take long."""
-    mechanism = what.mechanism if isinstance(what, Structure) else what
+    mechanism = what if isinstance(what, Mechanism) else what.mechanism
     if len(mechanism.links) > MOST_LINKS:
         return None
     try:
-        return _apart(what) if isinstance(what, Structure) else _drawn(what)
+        return _pictured(what)
     except CompoundkinError:
         return None
+
+
+def _pictured(what: Mechanism | Structure | Motion) -> str | None:
+    if isinstance(what, Motion):
+        return draw(what).svg
+    return _apart(what) if isinstance(what, Structure) else _drawn(what)
 
 
 def _drawn(mechanism: Mechanism) -> str | None:
@@ -121,6 +128,13 @@ def _groups(structure: Structure) -> Table:
     for k, group in enumerate(structure.groups, start=1):
         rows.append((k, group.name, roman(group.class_), group.order, ", ".join(group.links), ", ".join(group.uses)))
     return Table(columns, tuple(rows))
+
+
+@_parts.register
+def _(what: Motion) -> Iterator[str]:
+    if len(what.mechanism.links) > MOST_LINKS or what.inputs.poses < 2:
+        raise InvalidInput(Problem("motion", "it has one pose, or is too large to be shown unasked", "draw() it"))
+    yield framed(what)
 
 
 @_parts.register

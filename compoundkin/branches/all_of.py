@@ -19,6 +19,7 @@ from compoundkin.motion.inputs import Inputs, by_name, inputs
 from compoundkin.motion.model import Vectors
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.solving import plan_of
+from compoundkin.notebooks import Shows
 from compoundkin.poses import Pose
 from compoundkin.quantities import degrees
 from compoundkin.series import Number, constant
@@ -30,7 +31,7 @@ HALVINGS = 40
 
 
 @dataclass(frozen=True, eq=False)
-class AllConfigurations:
+class AllConfigurations(Shows):
     """All configurations of a mechanism: arrays (..., m) over driver values and, last, configurations.
 
     Only those that are real somewhere are kept; NaN where one is not. `names` tells them apart: a sign for each
@@ -139,12 +140,6 @@ class AllConfigurations:
 
     def _shaped(self, found: Number) -> Number:
         return np.moveaxis(found, 0, -1).reshape(*self.shape, len(found))
-
-    def _repr_html_(self) -> str | None:
-        """The table of the configurations at the first driver values, for notebooks."""
-        from compoundkin.showing import html_of
-
-        return html_of(self)
 
     def __repr__(self) -> str:
         return f"AllConfigurations({', '.join(map(repr, self.names))})"

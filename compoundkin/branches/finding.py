@@ -29,6 +29,7 @@ from compoundkin.motion.plan import Plan
 from compoundkin.motion.solving import plan_of
 from compoundkin.motion.steps import AffineStep, GeneralStep
 from compoundkin.motion.train import TrainStep
+from compoundkin.notebooks import Shows
 from compoundkin.series import Number
 from compoundkin.structure.model import Structure
 
@@ -44,7 +45,7 @@ FINENESS = (1, 3, 9)
 
 
 @dataclass(frozen=True, eq=False)
-class Circuits:
+class Circuits(Shows):
     """All circuits of a mechanism, moved by one driver while the others stand still.
 
     `fixed` are the values of the others. The real configurations were counted at `checked` fresh driver values, and
@@ -100,12 +101,6 @@ class Circuits:
         if not 1 <= what <= len(self.branches):
             raise InvalidInput(Problem("path", f"there is no branch {what}", f"they are 1 to {len(self.branches)}"))
         return self.at(self.branches[what - 1].configuration)
-
-    def _repr_html_(self) -> str | None:
-        """The tables of circuits, branches and limit positions, for notebooks."""
-        from compoundkin.showing import html_of
-
-        return html_of(self)
 
     def __repr__(self) -> str:
         return f"Circuits({len(self.circuits)} circuits, {len(self.branches)} branches of the driver {self.driver!r})"

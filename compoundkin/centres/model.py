@@ -17,6 +17,7 @@ from compoundkin.centres.steps import Step, crossing_text
 from compoundkin.centres.velocities import Velocities, VelocityCheck, collinearity_of, velocities_of, velocity_check
 from compoundkin.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.motion import Motion
+from compoundkin.notebooks import Shows
 from compoundkin.series import Number
 
 # A centre farther away than this many times the mechanism's size is at infinity: rounding hides anything farther.
@@ -96,7 +97,7 @@ class Centre:
 
 
 @dataclass(frozen=True, eq=False)
-class Centres:
+class Centres(Shows):
     """All n (n - 1) / 2 instant centres of a motion: ``centres["crank", "bar"]``, either link first.
 
     `units` are unit vectors in own coordinates and `spread` their magnification of errors, by the couples of bodies.
@@ -144,12 +145,6 @@ class Centres:
         if links[0] == links[1]:
             raise InvalidInput(Problem("centre", f"{links[0]!r} has no centre relative to itself", "name two links"))
         return names.index(links[0]), names.index(links[1])
-
-    def _repr_html_(self) -> str | None:
-        """The centres at the first pose and what gives them, for notebooks."""
-        from compoundkin.showing import html_of
-
-        return html_of(self)
 
     def __repr__(self) -> str:
         return f"Centres({len(self)} of {len(self.plan.diagram.links)} links)"

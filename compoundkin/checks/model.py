@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.motion import Motion
+from compoundkin.notebooks import Shows
 from compoundkin.series import Number
 
 
@@ -30,7 +31,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Check:
+class Check(Shows):
     """All findings about a motion; `poses` of them were checked, `singular` had no rates to check."""
 
     findings: tuple[Finding, ...]
@@ -41,12 +42,6 @@ class Check:
     def passed(self) -> bool:
         """Whether every finding passed, and there was something to check."""
         return self.poses > 0 and all(finding.passed for finding in self.findings)
-
-    def _repr_html_(self) -> str | None:
-        """The table of the findings, for notebooks."""
-        from compoundkin.showing import html_of
-
-        return html_of(self)
 
 
 def worst(motion: Motion, name: str, limit: float, parts: dict[str, Number], counted: Number) -> Finding:

@@ -19,15 +19,13 @@ from compoundkin.drawing.shapes import Polygon, Shape, corners
 from compoundkin.drawing.style import LINE
 from compoundkin.drawing.vectors import LONGEST, Scale, rates_of, scale_of, scale_shapes, vector_shapes, wanted
 from compoundkin.drawing.window import MARGIN, Window, fitted
-from compoundkin.errors import CompoundkinError, InvalidInput, Problem, UnknownName, nearest
+from compoundkin.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion import Motion
 from compoundkin.structure import Structure
 
 # More ghosts than this are one grey stain.
 MOST_GHOSTS = 60
-# A notebook shows no larger mechanism unasked.
-MOST_UNASKED = 100
 LABELS = ("points", "links")
 # Ends of a motion nearer to each other than this part of the size are one pose.
 SAME_PLACE = 1e-6
@@ -82,17 +80,6 @@ def draw(
     names = label_shapes(scene, placed(named, sketch, window.width, window.height))
     faint = [ghost(other, window) for other in others]
     return _finished(scene, window, [*faint, *sketch, *names], notes, scales, checked_size(size))
-
-
-def shown(what: Motion | Mechanism) -> str | None:
-    """The picture that a notebook shows unasked; None where there is none, or where it would take long."""
-    mechanism = what.mechanism if isinstance(what, Motion) else what
-    if len(mechanism.links) > MOST_UNASKED:
-        return None
-    try:
-        return draw(what).svg
-    except CompoundkinError:
-        return None
 
 
 def _scaled(scene: Scene, window: Window, kinds: Sequence[str]) -> tuple[Window, list[Scale]]:

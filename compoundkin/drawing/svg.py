@@ -48,7 +48,7 @@ def inline(shapes: Sequence[Shape], width: float, height: float, title: str, des
     """A picture as part of a page: as wide as there is room, its style that of the page, its links told.
 
     >>> inline((Group((), links=("bar", "block")),), 100, 50, "A").splitlines()[2]
-    '<g data-links="bar|block">'
+    '<g data-links="bar,block">'
     """
     name = escape(f"{title}. {description}" if description else title)
     head = (
@@ -59,12 +59,12 @@ def inline(shapes: Sequence[Shape], width: float, height: float, title: str, des
 
 
 def link_names(names: Iterable[str]) -> str:
-    """The names of links as one attribute of an element of a page.
+    """The names of links as one attribute of an element of a page; no name has a comma in it.
 
     >>> link_names(["bar", "block"])
-    'bar|block'
+    'bar,block'
     """
-    return escape("|".join(names))
+    return escape(",".join(names))
 
 
 def number(value: float) -> str:

@@ -13,6 +13,7 @@ from compoundkin.freedom.flexing import rank_of
 from compoundkin.freedom.passive import PassiveFreedom, passive_motions
 from compoundkin.freedom.redundancy import chosen, stressed_pairs
 from compoundkin.mechanism import Mechanism
+from compoundkin.notebooks import Shows
 from compoundkin.poses import Pose
 from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.model import Structure
@@ -30,7 +31,7 @@ class Gap:
 
 
 @dataclass(frozen=True)
-class MobilityAnalysis:
+class MobilityAnalysis(Shows):
     """The freedoms of a mechanism with its drivers free; passive freedoms of rollers are not counted.
 
     `gruebler` is the count, `generic` what pairs of these kinds between these links leave free at general dimensions,
@@ -128,12 +129,6 @@ class MobilityAnalysis:
             return []
         what = f"{_counted(self.redundant, 'coordinate')} held twice"
         return [f"{what}: {', '.join(self.freed)} could be freed" if self.freed else what]
-
-    def _repr_html_(self) -> str | None:
-        """The freedoms as a table, for notebooks."""
-        from compoundkin.showing import html_of
-
-        return html_of(self)
 
 
 def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose] | None = None) -> MobilityAnalysis:

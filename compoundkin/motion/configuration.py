@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import import_module
 
 from compoundkin.errors import InvalidInput, Problem, nearest
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.steps import Step
+from compoundkin.notebooks import Shows
 from compoundkin.poses import Pose
 from compoundkin.structure.model import Structure
 
@@ -21,7 +21,7 @@ SIGNS = {1: "+", -1: "-", 0: "±"}
 
 
 @dataclass(frozen=True, eq=False)
-class Configuration:
+class Configuration(Shows):
     """A mechanism assembled at one value of every driver (radians or lengths), in one way.
 
     `poses` are those of all links. `modes[k]` is, for groups with several configurations, "+", "-" ("±" at the limit
@@ -52,12 +52,6 @@ class Configuration:
     def angles(self) -> Mapping[str, float]:
         """The angle of every link, radians, between -pi and pi."""
         return {link: float(pose.u.angle().c[0]) for link, pose in self.poses.items()}
-
-    def _repr_html_(self) -> str | None:
-        """Its picture and the angles of its links, for notebooks."""
-        # found by its name: what is shown comes after motions, and only notebooks pay for it
-        made: str | None = import_module("compoundkin.showing").html_of(self)
-        return made
 
     def __repr__(self) -> str:
         return f"Configuration({self.name!r} at {', '.join(f'{k} = {v:.6g}' for k, v in self.values.items())})"

@@ -15,6 +15,7 @@ from compoundkin.mechanism import Mechanism
 from compoundkin.motion.inputs import Inputs, fit
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.tracking import Tracker
+from compoundkin.notebooks import ShowsPicture
 from compoundkin.poses import FIXED, Pose
 from compoundkin.series import Number, Series
 from compoundkin.structure.model import Structure
@@ -203,7 +204,7 @@ class _Table(Mapping[str, Any]):
 
 
 @dataclass(frozen=True)
-class Motion:
+class Motion(ShowsPicture):
     """A mechanism solved: every link's pose with all derivatives, over designs and poses.
 
     `shape` is the broadcast shape of dimensions and driver values, the last axis the motion. Poses that
@@ -306,16 +307,6 @@ class Motion:
         missing = int(np.count_nonzero(self.failed))
         told = f", {missing} of them not assembled" if missing else ""
         return f"Motion({self.mechanism.title!r} at {self.shape} poses to order {self.order}{told})"
-
-    def _repr_svg_(self) -> str | None:
-        """Its picture, for notebooks; None where it has none, or is too large to be shown unasked."""
-        made: str | None = import_module("compoundkin.drawing").shown(self)
-        return made
-
-    def _repr_html_(self) -> str | None:
-        """It plays in notebooks; None where it has but one pose, or is too large to be shown unasked."""
-        made: str | None = import_module("compoundkin.pages").framed(self)
-        return made
 
     def _point(self, name: str) -> PointMotion:
         link = self.mechanism.carriers[name][0]

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from compoundkin.drawing.sketching import MOST_UNASKED
 from compoundkin.drawing.style import page_css
-from compoundkin.errors import CompoundkinError
 from compoundkin.motion import Motion
 from compoundkin.pages.document import POLICY
 from compoundkin.pages.files import asset
@@ -54,15 +52,10 @@ def _document(moving: Moving) -> str:
     return f'<!DOCTYPE html>\n<html lang="en">\n<head>{lines(head)}</head>\n<body>{lines(body)}</body>\n</html>\n'
 
 
-def framed(motion: Motion) -> str | None:
-    """The player of a motion's first design in a frame, for notebooks; None where it cannot play."""
-    if len(motion.mechanism.links) > MOST_UNASKED or motion.inputs.poses < 2:
-        return None
+def framed(motion: Motion) -> str:
+    """The player of a motion's first design in a frame, for notebooks; raises what `player` does."""
     moving = Moving(Sample(motion), most=MOST_POSES, with_centres=False)
-    try:
-        document = _document(moving)
-    except CompoundkinError:
-        return None
+    document = _document(moving)
     window = moving.sketch.window
     height = min(HIGHEST, WIDTH * window.height / window.width, window.height * 1.1) + CONTROLS
     style = f"width:100%;max-width:{WIDTH:.0f}px;height:{height:.0f}px;border:1px solid #8886;border-radius:8px"

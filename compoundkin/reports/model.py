@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from compoundkin.notebooks import Shows
+
 Cell: TypeAlias = str | int | float | bool | tuple[float, ...] | None
 
 # How the cells of a column are written.
@@ -119,7 +121,7 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class Report:
+class Report(Shows):
     """What there is to say about a mechanism, in the order in which it is read."""
 
     title: str
@@ -129,12 +131,6 @@ class Report:
     def section(self, key: str) -> Section | None:
         """The section of a key, where the report has it."""
         return next((section for section in self.sections if section.key == key), None)
-
-    def _repr_html_(self) -> str | None:
-        """The report as a page, for notebooks."""
-        from compoundkin.showing import html_of
-
-        return html_of(self)
 
     def __repr__(self) -> str:
         return f"Report({self.title!r}: {', '.join(section.key for section in self.sections)})"

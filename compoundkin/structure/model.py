@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from compoundkin.mechanism import Mechanism
+from compoundkin.notebooks import ShowsPicture
 from compoundkin.pairs import Pair
 from compoundkin.poses import Pose
 from compoundkin.words import Drive
@@ -129,7 +130,7 @@ class Relaxation:
 
 
 @dataclass(frozen=True)
-class Structure:
+class Structure(ShowsPicture):
     """A mechanism taken apart: the frame with its driven links, then the Assur groups in solving order.
 
     `pairs` lists every pair, a multiple pin of k links as k - 1 of them. Where `faults` is not empty the
@@ -176,23 +177,6 @@ class Structure:
         from compoundkin.structure.loops import independent_loops
 
         return independent_loops(self)
-
-    def _repr_svg_(self) -> str | None:
-        """The mechanism taken apart, for notebooks; None where it has no picture, or is too large."""
-        return self._picture
-
-    @cached_property
-    def _picture(self) -> str | None:
-        """The picture that a notebook shows, drawn once."""
-        from compoundkin.showing import svg_of
-
-        return svg_of(self)
-
-    def _repr_html_(self) -> str | None:
-        """Its picture and the table of its groups, for notebooks."""
-        from compoundkin.showing import html_of
-
-        return html_of(self)
 
     def __repr__(self) -> str:
         groups = ", ".join(group.name for group in self.groups[:SHOWN_GROUPS])

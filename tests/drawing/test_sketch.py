@@ -16,8 +16,8 @@ import compoundkin as ck
 from compoundkin import catalog
 from compoundkin.drawing.labels import ROOM, text_half
 from compoundkin.drawing.shapes import Arc, Circle, Group, Polygon, Polyline, Text, leaves
-from compoundkin.drawing.sketching import MOST_UNASKED
 from compoundkin.drawing.style import LETTER, NUMBER, SMALL
+from compoundkin.showing import MOST_LINKS
 
 GOLDEN = Path(__file__).parent / "golden"
 every_mechanism = pytest.mark.parametrize("name", catalog.names())
@@ -290,7 +290,7 @@ def test_motions_and_mechanisms_show_themselves() -> None:
 def test_what_has_no_picture_shows_its_text_in_notebooks() -> None:
     loose = ck.Mechanism("Loose", ck.link("frame", A=0), ck.link("rod", A=0, B=1), ck.link("arm", B=0, C=1))
     assert loose._repr_svg_() is None
-    many = [ck.link(f"bar {k}", **{f"P{k}": 0, f"P{k + 1}": 1}) for k in range(MOST_UNASKED)]
+    many = [ck.link(f"bar {k}", **{f"P{k}": 0, f"P{k + 1}": 1}) for k in range(MOST_LINKS)]
     assert ck.Mechanism("Long chain", ck.link("frame", P0=0), *many)._repr_svg_() is None
 
 

@@ -16,8 +16,8 @@ import compoundkin as ck
 from compoundkin import catalog
 from compoundkin.pages import page, page_of
 from compoundkin.pages.files import ASSETS, asset
-from compoundkin.pages.names import names_of
 from compoundkin.pages.making import Page
+from compoundkin.pages.names import names_of
 from compoundkin.reports import Report, rendered, report
 from compoundkin.reports.atlas import atlas_report
 from compoundkin.reports.model import Column, Outcome, Section, Table

@@ -153,11 +153,10 @@ def test_names_are_text_wherever_they_stand() -> None:
 
 def test_a_frame_is_small_and_asks_for_nothing() -> None:
     html = framed(six_bar(361))
-    assert html is not None
     assert len(html) < 160_000
     assert "http" not in html.replace("http://www.w3.org/2000/svg", "").replace("http-equiv", "")
     assert framed(six_bar(361)) == html
-    assert framed(ck.solve(load_named("six-bar"), {"crank": ck.deg([30])})) is None
+    assert ck.solve(load_named("six-bar"), {"crank": ck.deg([30])})._repr_html_() is None
 
 
 def test_the_whole_catalog_can_be_viewed() -> None:
