@@ -72,7 +72,8 @@ def with_ghosts(motion: ck.Motion, *others: ck.Motion) -> ck.Picture:
     return ck.Picture(shapes, window.width, window.height, motion.mechanism.title, window=window)
 
 
-FIGURES: dict[str, Callable[[], ck.Picture]] = {
+FIGURES: dict[str, Callable[[], ck.Picture | ck.Animation]] = {
+    "moving": lambda: ck.animate(SIX_BAR, paths="G"),
     "crank-rocker": crank_rocker,
     "six-bar": six_bar,
     "apart": lambda: ck.draw_structure(posed()),
