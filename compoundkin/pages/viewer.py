@@ -61,7 +61,7 @@ def viewer(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> View
     """
     moving = Moving(Sample(motion, design), tuple(outputs))
     data = moving.data
-    return Viewer(player_html(moving, data), _plots(moving), data)
+    return Viewer(player_html(moving, data), _plots(moving) if len(moving.chosen) > 1 else "", data)
 
 
 def player_html(moving: Moving, data: dict[str, Any]) -> str:
@@ -146,7 +146,9 @@ def _transport(moving: Moving) -> str:
     play = element("button", "<span>Play</span>", type="button", class_="play", aria_pressed="false")
     back = element("button", "&lsaquo;", type="button", class_="back", aria_label="One pose back")
     forth = element("button", "&rsaquo;", type="button", class_="forth", aria_label="One pose forth")
-    row = element("div", lines([play, back, forth, element("output", "", class_="where"), speed]), class_="row")
+    row = element(
+        "div", lines([play, back, forth, element("output", "", class_="where", aria_live="off"), speed]), class_="row"
+    )
     return element("div", lines([slider, row]), class_="transport", role="group", aria_label="Motion")
 
 
@@ -174,7 +176,7 @@ def _notes(moving: Moving) -> Iterator[str]:
     """Where what is seen is not all there is, or not as quick."""
     shown, poses, slowness = len(moving.chosen), moving.sample.poses, moving.slowness
     if shown < poses:
-        text = f"The sketch moves through {shown:,} of the {poses:,} poses; tables and checks cover all."
+        text = f"The sketch moves through {shown:,} of the {poses:,} poses that were solved."
         yield element("p", text, class_="note")
     if slowness is not None and slowness != 1.0:
         text = f"{slowness:.3g} times slower" if slowness > 1 else f"{1 / slowness:.3g} times faster"

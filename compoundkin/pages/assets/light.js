@@ -1,12 +1,12 @@
 // Links and groups light up together wherever they are: in sketches, tables, steps and graphs.
-// An element says in data-links which links it shows or is about, "|" between their names.
+// An element says in data-links which links it shows or is about, commas between their names.
 (() => {
   "use strict";
   const page = window.compoundkin;
   const root = document.documentElement;
   const held = document.getElementById("ck-groups");
   const groups = held ? JSON.parse(held.textContent).groups : [];
-  const names = (element) => element.dataset.links.split("|");
+  const names = (element) => element.dataset.links.split(",");
 
   // A link in a picture stands for its group; the frame and driven links are no group, and a row is about what it names.
   const wanted = (element) => {

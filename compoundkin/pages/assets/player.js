@@ -9,6 +9,9 @@
   const LEGIBLE = 0.85, LARGEST = 2.2; // pixels for a picture unit below which names grow, and by how much at most
   const WIDE = 4.4, TALL = 8, RIM = 9.5; // half a letter's width and height, and the circle around a number
   const TOGETHER = 3; // centres nearer to each other are named together
+  const ROUNDING = 3e-7;
+  const SCALE = 18; // the height of the line that tells a scale of vectors
+  const VECTORS = [["velocity", 1, "velocities"], ["acceleration", 2, "accelerations"]];
   const HEAD = 10, HALF = 3.6; // an arrow's head, as in every other picture
 
   // --- numbers as packing.py writes them: one for all poses, or one for each ----------------------------------------
@@ -32,7 +35,16 @@
     return element;
   };
   const raised = (unit) => unit.replace("^2", "²").replace("^3", "³").replace(/^deg$/, "°").replace(/^deg\//, "°/");
-  const withUnit = (value, unit) => !Number.isFinite(value) ? written(value) : (unit === "deg" ? `${written(value)}°` : `${written(value)} ${raised(unit)}`.trim());
+  const withUnit = (value, unit) => {
+    if (!Number.isFinite(value)) return written(value);
+    return unit === "deg" ? `${written(value)}°` : `${written(value)} ${raised(unit)}`.trim();
+  };
+
+  // rates are packed with seven digits: a sum that is smaller beside its terms is rounding
+  const summed = (...terms) => {
+    const sum = terms.reduce((all, term) => all + term, 0);
+    return Math.abs(sum) < ROUNDING * Math.max(...terms.map(Math.abs)) ? 0 : sum;
+  };
 
   class Player {
     constructor(root, data) {
@@ -58,6 +70,7 @@
       this.points = Object.fromEntries(data.points.map((point) => [point.name, point]));
       this.shown = new Set(["names"]);
       this.letters = 1;
+      this.view = { left: 0, bottom: data.window.height };
       this.find();
       this.listen();
       this.show(data.start);
@@ -68,6 +81,7 @@
       const one = (selector) => this.root.querySelector(selector);
       this.svg = one("svg.sketch");
       this.parts = [...this.svg.querySelectorAll(".parts > g")];
+      this.placed = [];
       this.names = this.parts.map((part) => (part.classList.contains("name") ? this.box(part) : null));
       this.layers = Object.fromEntries(["traces", "rays", "velocities", "accelerations", "dots"].map((k) => [k, one(`svg .${k}`)]));
       Object.assign(this, { slider: one(".slider"), play: one(".play"), where: one(".where"), said: one(".said") });
@@ -98,21 +112,25 @@
       on(".forth", "click", () => { this.stop(); this.step(1); });
       this.play.addEventListener("click", () => (this.playing ? this.stop() : this.start()));
       if (this.poses < 2) for (const control of this.root.querySelectorAll(".transport :is(button, input, select)")) control.disabled = true;
-      for (const box of this.root.querySelectorAll("[data-show]")) {
-        // browsers remember what was switched on when a page is loaded again
-        const take = () => { this.shown[box.checked ? "add" : "delete"](box.dataset.show); this.switched(); };
-        box.addEventListener("change", take);
-        if (box.checked !== box.defaultChecked) queueMicrotask(take);
-      }
+      const boxes = [...this.root.querySelectorAll("[data-show]")];
+      const take = (box) => this.shown[box.checked ? "add" : "delete"](box.dataset.show);
+      for (const box of boxes) box.addEventListener("change", () => { take(box); this.switched(); });
+      // browsers remember where the slider was and what was switched on when one comes back to a page
+      addEventListener("pageshow", () => {
+        boxes.forEach(take);
+        this.switched();
+        this.show(Number(this.slider.value));
+      });
     }
 
     // on a small picture names are drawn larger, so that they stay legible
     fit() {
-      const { width, height } = this.data.window;
+      const { width, height } = this.svg.viewBox.baseVal;
       const pixels = Math.min(this.svg.clientWidth / width, this.svg.clientHeight / height);
       const letters = pixels > 0 ? Math.min(LARGEST, Math.max(1, LEGIBLE / pixels)) : 1;
       if (Math.abs(letters - this.letters) < 0.02) return;
       this.letters = letters;
+      this.makeRoom();
       if (this.assembled[this.pose] === 1) this.move(this.pose);
       this.overlay();
     }
@@ -133,9 +151,9 @@
       if (!link.v || (order === 2 && !link.a)) return [NaN, NaN];
       const [x, y] = this.place(letter, k), rx = x - link.x[k], ry = y - link.y[k];
       const turning = link.v[2][k];
-      if (order === 1) return [link.v[0][k] - turning * ry, link.v[1][k] + turning * rx];
+      if (order === 1) return [summed(link.v[0][k], -turning * ry), summed(link.v[1][k], turning * rx)];
       const alpha = link.a[2][k];
-      return [link.a[0][k] - alpha * ry - turning ** 2 * rx, link.a[1][k] + alpha * rx - turning ** 2 * ry];
+      return [summed(link.a[0][k], -alpha * ry, -(turning ** 2) * rx), summed(link.a[1][k], alpha * rx, -(turning ** 2) * ry)];
     }
     paper([x, y]) {
       const window = this.data.window;
@@ -158,7 +176,9 @@
       const where = this.told(k);
       this.where.textContent = where;
       this.slider.setAttribute("aria-valuetext", known ? where : `${where}, cannot be assembled`);
-      this.said.textContent = known ? "" : "The mechanism cannot be assembled here.";
+      // said once, not again at every pose of a gap
+      const said = known ? "" : "The mechanism cannot be assembled here.";
+      if (this.said.textContent !== said) this.said.textContent = said;
       if (known) this.move(k);
       this.overlay();
       for (const row of this.rows) {
@@ -186,7 +206,10 @@
         // y points downward on paper: what turns counterclockwise has a negative angle there
         const turned = turns ? ` rotate(${-(angle[k] - angle[this.data.start]) * DEGREE})` : "";
         const enlarged = name ? ` scale(${this.letters})` : "";
-        part.setAttribute("transform", `translate(${x} ${y})${turned}${enlarged}`);
+        const placed = `translate(${x} ${y})${turned}${enlarged}`;
+        // the frame's parts stay where they are
+        if (placed !== this.placed[index]) part.setAttribute("transform", placed);
+        this.placed[index] = placed;
       });
     }
 
@@ -195,7 +218,7 @@
       const text = part.querySelector("text");
       const [x, y] = ["x", "y"].map((name) => Number(text.getAttribute(name)));
       const round = part.querySelector("circle");
-      return { x, y, wide: round ? RIM : WIDE * text.textContent.length, tall: round ? RIM : TALL };
+      return { x, y, wide: round ? RIM : Math.max(WIDE * text.textContent.length, text.getComputedTextLength() / 2), tall: round ? RIM : TALL };
     }
     // where a name that has grown is put, so that it stays in the picture
     within([x, y], name) {
@@ -207,12 +230,35 @@
     // --- what is switched on and off --------------------------------------------------------------------------------
     switched() {
       this.svg.classList.toggle("nameless", !this.shown.has("names"));
+      this.makeRoom();
       this.trace();
       this.overlay();
     }
+    // vectors get the room that their tips take at any pose, and their scales a place below
+    makeRoom() {
+      const { width, height } = this.data.window;
+      let [left, top, right, bottom] = [0, 0, width, height];
+      const kinds = VECTORS.filter(([kind]) => this.shown.has(kind) && this.data.vectors[kind]);
+      for (const [kind, order] of kinds) {
+        for (const letter in this.points) {
+          for (let k = 0; k < this.poses; k++) {
+            const [x, y] = this.paper(this.place(letter, k));
+            const [dx, dy] = this.rate(letter, order, k).map((c) => c * this.data.vectors[kind].scale);
+            if (!Number.isFinite(x + y + dx + dy)) continue;
+            left = Math.min(left, x + dx - HALF);
+            right = Math.max(right, x + dx + HALF);
+            top = Math.min(top, y - dy - HALF);
+            bottom = Math.max(bottom, y - dy + HALF);
+          }
+        }
+      }
+      bottom += kinds.length * SCALE * this.letters;
+      this.view = { left, bottom };
+      this.svg.setAttribute("viewBox", `${left} ${top} ${right - left} ${bottom - top}`);
+    }
     overlay() {
       const known = this.assembled[this.pose] === 1;
-      for (const [kind, order, layer] of [["velocity", 1, "velocities"], ["acceleration", 2, "accelerations"]]) {
+      for (const [kind, order, layer] of VECTORS) {
         this.layers[layer].replaceChildren();
         if (known && this.shown.has(kind)) this.vectors(kind, order, this.layers[layer]);
       }
@@ -227,9 +273,9 @@
         if (Math.hypot(vx, vy) >= scale.shortest) this.arrow(this.paper(this.place(letter)), [vx, -vy], kind, layer);
       }
       const both = kind === "acceleration" && this.shown.has("velocity");
-      const y = this.data.window.height - (both ? 10 + 18 * this.letters : 10);
-      this.arrow([12, y], [scale.length, 0], kind, layer);
-      this.text(`${kind}, ${scale.text}`, 20 + scale.length, y, "ck-note", "start", layer);
+      const x = this.view.left + 12, y = this.view.bottom - (both ? 1.5 : 0.5) * SCALE * this.letters;
+      this.arrow([x, y], [scale.length, 0], kind, layer);
+      this.text(`${kind}, ${scale.text}`, x + 8 + scale.length, y, "ck-note", "start", layer);
     }
     text(words, x, y, style, anchor, layer) {
       const grown = this.letters > 1 ? ` scale(${this.letters})` : "";

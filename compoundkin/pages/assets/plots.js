@@ -99,19 +99,20 @@
     plot.over.addEventListener("pointerdown", (event) => { plot.over.setPointerCapture(event.pointerId); take(event); });
     plot.over.addEventListener("pointermove", (event) => { if (event.buttons) take(event); });
 
+    const labels = names.map((name) => {
+      const label = document.createElement("span");
+      label.className = "part";
+      label.style.setProperty("--own", `var(--${PARTS[name]})`);
+      value.append(label, " ");
+      const called = name === "length" ? `|${quantity.name.split(".").pop()}| ` : name ? `${name} ` : "";
+      return { label, called, own: parts[name] };
+    });
     const panel = {
       plot, figure, box,
       follow: (k) => {
         const x = plot.valToPos(known ? along.values[k] : k, "x");
         cursor.style.transform = `translateX(${x}px)`;
-        value.replaceChildren(...names.flatMap((name) => {
-          const label = document.createElement("span");
-          label.className = "part";
-          label.style.setProperty("--own", `var(--${PARTS[name]})`);
-          const called = name === "length" ? `|${quantity.name.split(".").pop()}| ` : name ? `${name} ` : "";
-          label.textContent = `${called}${page.withUnit(parts[name][k], quantity.unit)}`;
-          return [label, " "];
-        }));
+        for (const { label, called, own } of labels) label.textContent = `${called}${page.withUnit(own[k], quantity.unit)}`;
       },
     };
     box.setAttribute("role", "img");
