@@ -1,6 +1,7 @@
 """Failures that were found by trying to break things, each under its own name."""
 
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -254,3 +255,10 @@ def test_circuits_of_many_groups_are_refused_at_once() -> None:
     """Each of twenty dyads doubles the branches: the search went on for ten minutes and more."""
     with pytest.raises(ck.InvalidInput, match="the groups multiply them"):
         ck.circuits(ck.random_mechanism(20, seed=3, kinds=("RRR",)))
+
+
+def test_a_file_name_with_a_slash_at_its_end_is_no_file(tmp_path: Path) -> None:
+    """It was written to the file of that name without the slash."""
+    with pytest.raises(ck.InvalidInput, match="name of a folder"):
+        ck.draw(ck.catalog.load_named("six-bar")).save(f"{tmp_path}/six-bar.svg/")
+    assert not list(tmp_path.iterdir())

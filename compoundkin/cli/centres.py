@@ -57,12 +57,13 @@ def command(
     if structure.faults:
         put_report(report(structure), form, path, About(structure))
         return unsolvable(len(structure.faults))
-    made = Report(structure.mechanism.title, (), NOT_SOLVED)
+    made, about = Report(structure.mechanism.title, (), NOT_SOLVED), About(structure)
     if at or not derivation:
-        made = centres_report(solved_at_pose(structure, at, asked), design)
+        motion = solved_at_pose(structure, at, asked)
+        made, about = centres_report(motion, design), About(structure, motion, design=design)
     if derivation:
         made = replace(made, sections=(derivation_section(structure), *made.sections))
-    put_report(made, form, path, About(structure))
+    put_report(made, form, path, about)
     return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import click
 
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
@@ -33,11 +35,18 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
     from compoundkin.branches import configurations
     from compoundkin.cli import values
     from compoundkin.cli.progress import working
+    from compoundkin.errors import UnassembledPoses
+    from compoundkin.motion import solve
     from compoundkin.motion.solving import plan_of
     from compoundkin.reports.configurations import configurations_report
 
     structure = plan_of(loaded(file)).structure
+    driven = values.of_pose(structure, at)
     with working("finding all configurations"):
-        made = configurations_report(configurations(structure, values.of_pose(structure, at)))
-    put_report(made, form, path, About(structure))
+        made = configurations_report(configurations(structure, driven))
+    with warnings.catch_warnings():
+        # where there is no configuration, the report says so
+        warnings.simplefilter("ignore", UnassembledPoses)
+        motion = solve(structure, driven)
+    put_report(made, form, path, About(structure, motion))
     return 0

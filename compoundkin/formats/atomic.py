@@ -24,6 +24,8 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], A
     ...     Path(f"{folder}/a.txt").read_bytes()
     b'all'
     """
+    if str(path).endswith(os.sep):
+        raise InvalidInput(Problem(str(path), "this is the name of a folder", "name a file"))
     try:
         # a link is followed, so that it stays one
         target = Path(os.path.realpath(path))

@@ -30,9 +30,9 @@ def kind_of_link(pairs: int) -> str:
     """What a link with so many pairs is called.
 
     >>> kind_of_link(3), kind_of_link(9)
-    ('ternary', '9 pairs')
+    ('ternary', 'with 9 pairs')
     """
-    return _KINDS[pairs] if pairs < len(_KINDS) else f"{pairs} pairs"
+    return _KINDS[pairs] if pairs < len(_KINDS) else f"with {pairs} pairs"
 
 
 def ordinal(number: int) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import re
 from collections.abc import Callable
 from html.parser import HTMLParser
@@ -11,9 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 import compoundkin as ck
 from compoundkin import catalog
+from compoundkin.cli import cli
 from compoundkin.pages import page, page_of
 from compoundkin.pages.files import ASSETS, asset
 from compoundkin.pages.making import Page
@@ -339,3 +342,14 @@ def test_open_shows_a_page_or_says_where_it_is(run: Verb, tmp_path: Path, monkey
     (made,) = tmp_path.glob("compoundkin-*.html")
     assert f"No browser can be opened here; the page is in {made}." in none.stderr
     assert made.read_text(encoding="utf-8") == (tmp_path / "page.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("verb", ["centres", "configurations"])
+def test_pages_of_one_pose_show_that_pose(verb: str, tmp_path: Path) -> None:
+    """The numbers were those of 35 degrees, the sketch that of the drawing."""
+    path = tmp_path / "pose.html"
+    assert CliRunner().invoke(cli, [verb, "six-bar", "--at", "35", "-o", str(path)]).exit_code == 0
+    html = path.read_text(encoding="utf-8")
+    data = json.loads(re.findall(r'id="ck-motion">(.*?)</script>', html)[0])
+    assert data["poses"] == 1
+    assert data["drivers"][0]["parts"][""] == pytest.approx(35)
