@@ -20,8 +20,8 @@ CYCLE, MOST_CYCLES = 4.0, 3.0
 FPS = 25.0
 # No screen shows more frames a second, and more of them than this in a file are a mistake.
 MOST_FPS, MOST_FRAMES = 60.0, 10_000
-# Two poses are one if no link differs by more than this, in parts of the mechanism's size and in radians.
-SAME = 1e-6
+# Seconds times frames a second may miss a whole number by this rounding.
+ROUNDING = 1e-6
 # Frames are taken a little fewer where they then fall on poses, which are as many parts of a frame apart.
 EVEN = 0.05
 
@@ -166,21 +166,11 @@ def _pieces(scene: Scene, poses: int) -> tuple[list[Number], bool]:
     """
     known = np.asarray(scene.known)
     pieces = np.split(np.arange(len(known)), np.flatnonzero(np.diff(known) > 1) + 1)
-    if not (len(known) > 2 and known[0] == 0 and known[-1] == poses - 1 and _same_ends(scene)):
+    if not (len(known) > 2 and known[0] == 0 and known[-1] == poses - 1 and scene.closes):
         return pieces, False
     if len(pieces) == 1:
         return pieces, True
     return [np.concatenate([pieces[-1], pieces[0][1:]]), *pieces[1:-1]], False
-
-
-def _same_ends(scene: Scene) -> bool:
-    """Whether every link is at the last pose where it was at the first."""
-    size = scene.mechanism.geometry.size
-    for pose in scene.whole.values():
-        z, u = np.atleast_1d(pose.z.c[0]), np.atleast_1d(pose.u.c[0])
-        if abs(z[-1] - z[0]) > SAME * size or abs(u[-1] - u[0]) > SAME:
-            return False
-    return True
 
 
 def _legs(pieces: list[Number], clock: Number, back: bool) -> list[Leg]:
@@ -210,7 +200,7 @@ def _frames(legs: list[Leg], returns: bool, most: float) -> Number:
     count = len(np.unique(times[times < 1.0] if returns else times))
     if count < 2:
         return np.zeros(1, dtype=int)
-    most = int(max(2, min(most + SAME, count)))
+    most = int(max(2, min(most + ROUNDING, count)))
     tried = [_nearest(times, n, returns) for n in range(most, most // 2, -1)]
     return min(tried, key=lambda one: round(one[1] / EVEN))[0]
 

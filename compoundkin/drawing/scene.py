@@ -20,6 +20,9 @@ from compoundkin.series import Number, Series, constant
 from compoundkin.structure import DrivenPair, Structure
 from compoundkin.words import FRAME
 
+# Two poses are one if no link differs by more than this, in parts of the mechanism's size and in radians.
+SAME_PLACE = 1e-6
+
 
 @dataclass(frozen=True, eq=False)
 class Seen:
@@ -117,6 +120,13 @@ class Scene:
     def count(self) -> int:
         """How many assembled poses the motion has."""
         return 1 if self.known is None else max(1, len(self.known))
+
+    @property
+    def closes(self) -> bool:
+        """Whether every link is at the last assembled pose where it was at the first."""
+        size = self.mechanism.geometry.size
+        ends = [(np.atleast_1d(pose.z.c[0]), np.atleast_1d(pose.u.c[0])) for pose in self.whole.values()]
+        return all(abs(z[-1] - z[0]) <= SAME_PLACE * size and abs(u[-1] - u[0]) <= SAME_PLACE for z, u in ends)
 
     def rate(self, letter: str, k: int) -> complex:
         """The k-th derivative of where a point is, at the pose shown."""

@@ -27,8 +27,6 @@ from compoundkin.structure import Structure
 # More ghosts than this are one grey stain.
 MOST_GHOSTS = 60
 LABELS = ("points", "links")
-# Ends of a motion nearer to each other than this part of the size are one pose.
-SAME_PLACE = 1e-6
 
 
 def draw(
@@ -130,14 +128,8 @@ def _ghosts(scene: Scene, ghosts: Any) -> list[Scene]:
     """So many poses, evenly along the motion."""
     if isinstance(ghosts, bool) or not isinstance(ghosts, int) or not 0 <= ghosts <= MOST_GHOSTS:
         raise InvalidInput(Problem("ghosts", f"{ghosts!r} is not a number of poses", f"0 to {MOST_GHOSTS}"))
-    places = np.linspace(0, scene.count - 1, ghosts + 1 if _closes(scene) else max(ghosts, 1)).round().astype(int)
+    places = np.linspace(0, scene.count - 1, ghosts + 1 if scene.closes else max(ghosts, 1)).round().astype(int)
     return [scene.ghost(int(k)) for k in dict.fromkeys(places[:ghosts])] if scene.count > 1 else []
-
-
-def _closes(scene: Scene) -> bool:
-    """Whether the last pose of the motion is the first one again."""
-    ends = [scene.places(letter)[[0, -1]] for letter in scene.letters]
-    return all(abs(last - first) < SAME_PLACE * scene.mechanism.geometry.size for first, last in ends)
 
 
 def asked_labels(labels: Any) -> tuple[str, ...]:

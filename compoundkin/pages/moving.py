@@ -26,8 +26,6 @@ MOST_NUMBERS = 90_000
 OF_A_LINK = 9
 # Of more links than these the instant centres are left out.
 MOST_LINKS = 12
-# The last pose of a motion is its first again where no point is off by more than this part of the size.
-SAME_PLACE = 1e-6
 # How long a motion takes to play, in seconds: one that is not in time; one in time at least and at most.
 CYCLE, QUICKEST, SLOWEST = 4.0, 1.0, 30.0
 
@@ -75,10 +73,7 @@ class Moving:
     @cached_property
     def closes(self) -> bool:
         """Whether the last pose is the first one again, so that the motion can be played on and on."""
-        if not self.sample.assembled.all() or self.sample.poses < 2:
-            return False
-        ends = [self.sample.of(point.position)[[0, -1]] for point in self.motion.points.values()]
-        return all(abs(last - first) < SAME_PLACE * self.motion.size for first, last in ends)
+        return bool(self.sample.assembled.all()) and self.sample.poses > 1 and self.sketch.scene.closes
 
     @property
     def data(self) -> dict[str, Any]:
