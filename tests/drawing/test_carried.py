@@ -136,3 +136,13 @@ def test_the_whole_catalog_moves() -> None:
             continue
         sketch = moving_sketch(motion)
         assert np.isfinite(corners(sketch.shapes(sketch.scene.count // 2))).all(), name
+
+
+def test_a_motion_whose_points_return_but_not_its_wheels_does_not_close() -> None:
+    wheels = ck.Mechanism(
+        "Wheels", ck.link("frame", A=0, B=3), ck.link("first", A=0, P=1), ck.link("second", B=0),
+        ck.gear("first", "second", teeth=(20, 30)), ck.drive("first"))  # fmt: skip
+    once = ck.solve(wheels, {"first": ck.deg(range(0, 361, 10))})
+    assert not moving_sketch(once).scene.closes
+    thrice = ck.solve(wheels, {"first": ck.deg(range(0, 1081, 10))})
+    assert moving_sketch(thrice).scene.closes
