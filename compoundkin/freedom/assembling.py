@@ -15,6 +15,8 @@ from compoundkin.words import FRAME
 
 # Gauss and Newton's steps: at a pose where the equations are singular each halves the error only.
 STEPS = 60
+# So many steps must leave less than this part of a residual: else it is a place where none leads on.
+PATIENCE, GAIN = 10, 0.9
 # No step is longer than this (parts of the size, or radians): from far away it would lead anywhere.
 LONGEST = 0.3
 # A residual that is rounding: no step could make it less.
@@ -52,11 +54,12 @@ def corrected(equations: Equations, state: Array, goal: Array | None = None, ste
     """The nearest assembled pose, by so many least steps at most; with the drivers' coordinates at `goal` if given."""
     closed, rank = equations.tolerance
     least = UNDETERMINED if equations.tolerance is STRICT else rank
-    best = Assembly(state, np.inf, False)
+    best, before = Assembly(state, np.inf, False), list[float]()
     for _ in range(steps):
         residual, rows = _system(equations, state, goal)
         worst = float(np.max(np.abs(residual), initial=0.0))
-        if not np.isfinite(worst):
+        before.append(worst)
+        if not np.isfinite(worst) or (len(before) > PATIENCE and worst > GAIN * before[-1 - PATIENCE]):
             return best
         stalls = worst > best.residual / 2.0
         if worst < best.residual:

@@ -16,6 +16,8 @@ from compoundkin.structure.composites import composites
 
 # Wider equations than those of some hundred links take a dense decomposition many seconds.
 WIDEST = 1500
+# What opens by so many times the rounding of printed dimensions is not closed by taking them to be rounded.
+FAR = 100.0
 # At a pose that is found by iteration where the equations are singular, residuals of 1e-15 leave the pose, and so what
 # ought to be zero, uncertain by their root.
 ITERATED = 1e-6
@@ -73,6 +75,9 @@ def examined(mechanism: Mechanism, poses: Mapping[str, Pose] | None = None) -> E
     """A mechanism examined at its own dimensions; taken to be rounded where exact ones leave no motion."""
     exact = _examined(mechanism, STRICT, poses)
     if exact.assembly.is_closed and (exact.rank == len(exact.rows) or exact.flex.along.shape[1]):
+        return exact
+    if not exact.assembly.is_closed and exact.assembly.residual > FAR * ROUNDED.closed:
+        # so far open is nothing by rounding
         return exact
     rounded = _examined(mechanism, ROUNDED, poses)
     return rounded if rounded.assembly.is_closed and rounded.flex.along.shape[1] else exact
