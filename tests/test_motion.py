@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import compoundkin as ck
 from compoundkin.motion import Motion, Vectors, solving
-from compoundkin.motion.model import unwrapped
+from compoundkin.motion.views import unwrapped
 from tests.support import KINDS_OF_DYAD, differences, home, random_sketch, well_conditioned
 
 

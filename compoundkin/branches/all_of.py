@@ -16,9 +16,9 @@ from compoundkin.errors import NotAssembled, Problem, UnknownName, nearest
 from compoundkin.mechanism import Mechanism
 from compoundkin.motion.configuration import Configuration, named
 from compoundkin.motion.inputs import Inputs, by_name, inputs
-from compoundkin.motion.model import Vectors
 from compoundkin.motion.plan import Plan
 from compoundkin.motion.solving import plan_of
+from compoundkin.motion.views import Vectors
 from compoundkin.notebooks import Shows
 from compoundkin.poses import Pose
 from compoundkin.quantities import degrees

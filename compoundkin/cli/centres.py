@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import pose_options, solved_at
+from compoundkin.cli.driving import AT, pose_options, solved_at
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
 from compoundkin.cli.output import About, put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED
@@ -28,13 +28,7 @@ Examples:
 """
 )
 @mechanism_argument
-@click.option(
-    "--at",
-    "at",
-    multiple=True,
-    metavar="[NAME=]VALUE",
-    help="The pose: a driver's value, degrees or length; the first of its range if left out.",
-)
+@AT
 @pose_options
 @click.option("--derivation", is_flag=True, help="The steps in order, for any pose; without --at nothing else.")
 @report_options

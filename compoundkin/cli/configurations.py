@@ -6,6 +6,7 @@ import warnings
 
 import click
 
+from compoundkin.cli.driving import AT
 from compoundkin.cli.mechanisms import loaded, mechanism_argument
 from compoundkin.cli.output import About, put_report, report_options
 
@@ -19,13 +20,7 @@ Examples:
 """
 )
 @mechanism_argument
-@click.option(
-    "--at",
-    "at",
-    multiple=True,
-    metavar="[NAME=]VALUE",
-    help="The pose: a driver's value, degrees or length; the first of its range if left out.",
-)
+@AT
 @report_options
 def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) -> int:
     """List all configurations of a mechanism at one pose: how many of how many possible, their names and angles.

@@ -22,6 +22,9 @@ MODE = click.option("--mode", "modes", multiple=True, metavar="LINK=SIGN",
                     help="Assembly mode, +1 or -1, of the group with this link.")  # fmt: skip
 DESIGN = click.option("--design", default=0, show_default=True, metavar="INDEX",
                       help="Which one, where dimensions are arrays.")  # fmt: skip
+AT = click.option("--at", "at", multiple=True, metavar="[NAME=]VALUE",
+                  help="The pose: a driver's value, degrees or length; the first of its range "
+                  "if left out.")  # fmt: skip
 # How the options are called on the command line, by the names of their values.
 OPTIONS: tuple[Any, ...] = (
     click.option("--at", "at", metavar="VALUES", help="Solve at these values of the only driver: 35 or 0,35,60."),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from compoundkin.motion.model import LinkMotion, Motion, PairMotion, PointMotion, Vectors
+from compoundkin.motion.model import Motion
 from compoundkin.motion.solving import solve
+from compoundkin.motion.views import LinkMotion, PairMotion, PointMotion, Vectors
 
 __all__ = ["LinkMotion", "Motion", "PairMotion", "PointMotion", "Vectors", "solve"]

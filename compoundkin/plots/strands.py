@@ -15,7 +15,8 @@ from compoundkin.branches.ranging import TURN as FULL
 from compoundkin.branches.strands import CHANGE, NONE
 from compoundkin.errors import InvalidInput, Problem, UnknownName
 from compoundkin.mechanism import Mechanism
-from compoundkin.motion.model import Motion, unwrapped
+from compoundkin.motion.model import Motion
+from compoundkin.motion.views import unwrapped
 from compoundkin.pairs.contract import Ends, Poses
 from compoundkin.plots.reading import TURN, Shown, vector_of
 from compoundkin.poses import Pose
