@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from compoundkin.animation.course import times_of
+from compoundkin.drawing.brush import sheet
 from compoundkin.drawing.carried import MovingSketch
 from compoundkin.drawing.naming import BELOW, below, lines_of_text
 from compoundkin.drawing.posing import pose_notes
@@ -142,4 +143,4 @@ class Caption:
     def paper(self, height: float) -> Polygon:
         """The paper of a picture so high."""
         wide = self.window.width
-        return Polygon((0j, complex(wide), complex(wide, height), complex(0.0, height)), "paper")
+        return sheet(wide, height)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from compoundkin.drawing.brush import sheet
 from compoundkin.drawing.labels import WIDE, Label, placed
 from compoundkin.drawing.layout import by_links, in_layers, window_on
 from compoundkin.drawing.moving import moved
@@ -12,7 +13,7 @@ from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.picture import Picture, checked_size
 from compoundkin.drawing.rows import Part, in_rows
 from compoundkin.drawing.scene import Scene
-from compoundkin.drawing.shapes import Group, Polygon, Text, corners
+from compoundkin.drawing.shapes import Group, Text, corners
 from compoundkin.drawing.style import LETTER, LINE
 from compoundkin.drawing.window import MARGIN, Window
 from compoundkin.structure import Group as AssurGroup
@@ -36,7 +37,7 @@ def apart(scene: Scene, size: float | None) -> Picture:
     notes = [f"{number} {name}" for name, number in scene.numbers.items()]
     notes += ["dashed circles: outer pairs"] if scene.structure.groups else []
     texts, height = below(lines_of_text(notes, width - 32.0), height + LINE)
-    paper = Polygon((0j, complex(width), complex(width, height), complex(0.0, height)), "paper")
+    paper = sheet(width, height)
     title = f"{scene.mechanism.title}, taken apart"
     described = "; ".join(heading(group) for group in scene.structure.groups)
     return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))

@@ -26,6 +26,11 @@ def box(middle: complex, along: complex, length: float, width: float) -> tuple[c
     return middle - a - b, middle + a - b, middle + a + b, middle - a + b
 
 
+def sheet(width: float, height: float) -> Polygon:
+    """The paper of a picture."""
+    return Polygon((0j, complex(width), complex(width, height), complex(0.0, height)), "paper")
+
+
 def hatching(start: complex, stop: complex, side: float) -> Strokes:
     """A hatching along a line on one of its sides: that of ``1j * side`` as seen along it."""
     length, e = abs(stop - start), direction(stop - start)

@@ -9,14 +9,15 @@ from itertools import groupby
 
 import numpy as np
 
+from compoundkin.drawing.brush import sheet
 from compoundkin.drawing.labels import ROOM, placed, text_half
 from compoundkin.drawing.layout import in_layers, path, window_on
 from compoundkin.drawing.moving import moved
 from compoundkin.drawing.naming import badge, letters, numbered
-from compoundkin.drawing.painter import Painter
+from compoundkin.drawing.painter import Laid, Painter
 from compoundkin.drawing.posing import scene_in
 from compoundkin.drawing.scene import Scene
-from compoundkin.drawing.shapes import Group, Polygon, Shape, Text, corners, leaves
+from compoundkin.drawing.shapes import Group, Shape, Text, corners, leaves
 from compoundkin.drawing.style import LETTER
 from compoundkin.drawing.vectors import KINDS_OF_VECTOR, LONGEST, Scale, scale_of
 from compoundkin.drawing.window import Window
@@ -125,7 +126,7 @@ class MovingSketch:
         size = high - low
         corner = old.corner + low.conjugate() / old.scale
         window = Window(old.scale, corner, round(size.real, 1), round(size.imag, 1))
-        return replace(self, window=window, still=(_paper(window), *moved(self.still[1:], -low)))
+        return replace(self, window=window, still=(sheet(window.width, window.height), *moved(self.still[1:], -low)))
 
 
 def moving_sketch(
@@ -141,15 +142,10 @@ def moving_sketch(
     window = window_on(scene, _sample(scene), tuple(scene.letters))
     painter = Painter(scene, window)
     lines = [line for letter in paths for line in path(scene, window, letter)]
-    parts = [*_carried(painter), *_labelled(painter, labels)]
-    sketch = MovingSketch(motion, design, scene, window, (_paper(window), *lines), tuple(parts))
+    laid = in_layers(painter)
+    parts = [*_carried(painter, laid), *_labelled(painter, laid, labels)]
+    sketch = MovingSketch(motion, design, scene, window, (sheet(window.width, window.height), *lines), tuple(parts))
     return sketch.holding(_reach_of_labels(sketch), ROOM)
-
-
-def _paper(window: Window) -> Polygon:
-    """The paper of a picture."""
-    corners = 0j, complex(window.width), complex(window.width, window.height), complex(0.0, window.height)
-    return Polygon(corners, "paper")
 
 
 def _reach_of_labels(sketch: MovingSketch) -> Number:
@@ -181,20 +177,20 @@ def _sample(scene: Scene) -> list[Scene]:
     return [scene.ghost(int(k)) for k in dict.fromkeys(places)]
 
 
-def _carried(painter: Painter) -> Iterator[Part]:
+def _carried(painter: Painter, laid: Sequence[Laid]) -> Iterator[Part]:
     """The shapes of the mechanism; those that one link carries and that follow each other are one part."""
     scene = painter.scene
-    for (link, letter), run in groupby(in_layers(painter), key=lambda one: (one.link, one.letter)):
+    for (link, letter), run in groupby(laid, key=lambda one: (one.link, one.letter)):
         at = scene.points[link][letter] if letter else 0j
         shapes = moved((one.shape for one in run), -painter.place(link, at))
         yield Part(link, complex(at), tuple(shapes), not letter, letter)
 
 
-def _labelled(painter: Painter, labels: Sequence[str]) -> Iterator[Part]:
+def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> Iterator[Part]:
     """Numbers and letters, where they are in nobody's way at the pose shown."""
     scene, window = painter.scene, painter.window
     wanted = [*(numbered(painter) if "links" in labels else []), *(letters(painter) if "points" in labels else [])]
-    drawn = [one.shape for one in in_layers(painter)]
+    drawn = [one.shape for one in laid]
     for key, place in placed(wanted, drawn, window.width, window.height).items():
         kind, _, name = key.partition(" ")
         if kind == "link":

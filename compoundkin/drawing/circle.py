@@ -9,8 +9,9 @@ import numpy as np
 from compoundkin.centres import Step
 from compoundkin.centres.derivation import derive
 from compoundkin.centres.diagram import diagram_of
+from compoundkin.drawing.brush import sheet
 from compoundkin.drawing.picture import Picture, checked_size
-from compoundkin.drawing.shapes import Circle, Group, Polygon, Polyline, Shape, Text
+from compoundkin.drawing.shapes import Circle, Group, Polyline, Shape, Text
 from compoundkin.drawing.style import LINE, NUMBER, SMALL
 from compoundkin.structure import Structure
 
@@ -34,7 +35,7 @@ def circle_diagram(structure: Structure, numbers: Mapping[str, int], size: float
     nodes = [_node(name, places[name], number) for name, number in numbers.items()]
     texts, width = _list(steps, numbers)
     height = 2.0 * MIDDLE.imag
-    paper = Polygon((0j, complex(width), complex(width, height), complex(0.0, height)), "paper")
+    paper = sheet(width, height)
     title = f"{structure.mechanism.title}: circle diagram of the instant centres"
     return Picture((paper, *chords, *nodes, *texts), width, height, title, _counted(steps), checked_size(size))
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from compoundkin.drawing.brush import sheet
 from compoundkin.drawing.labels import Label, placed, text_half
 from compoundkin.drawing.naming import below, lines_of_text
 from compoundkin.drawing.picture import Picture, checked_size
@@ -39,7 +40,7 @@ def graph(structure: Structure, numbers: Mapping[str, int], groups: Mapping[str,
     notes = [f"{number} {name}" for name, number in numbers.items()]
     notes += ["thick lines: driven pairs"] if driven else []
     said, height = below(lines_of_text(notes, window.width - 32.0), window.height)
-    paper = Polygon((0j, complex(window.width), complex(window.width, height), complex(0.0, height)), "paper")
+    paper = sheet(window.width, height)
     title = f"{structure.mechanism.title}: kinematic graph"
     described = f"{len(names)} links, {len(structure.pairs)} pairs"
     shapes = (paper, *lines, *nodes, *texts, *said)

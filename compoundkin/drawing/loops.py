@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from compoundkin.drawing.bodies import edges, skeleton
+from compoundkin.drawing.brush import sheet
 from compoundkin.drawing.graph import APART, NODE, node, spread
 from compoundkin.drawing.layout import ghost, layered, window_on
 from compoundkin.drawing.loop_panels import Corner, Panel, chain, panel_of, parts_of
@@ -16,7 +17,7 @@ from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.picture import Picture, checked_size
 from compoundkin.drawing.rows import in_rows
 from compoundkin.drawing.scene import Scene, groups_of, numbers_of
-from compoundkin.drawing.shapes import Group, Polygon, Shape, Strokes
+from compoundkin.drawing.shapes import Group, Shape, Strokes
 from compoundkin.drawing.window import Window, fitted
 from compoundkin.errors import InvalidInput, Problem
 from compoundkin.series import Series
@@ -125,7 +126,7 @@ def _picture(structure: Structure, panels: Sequence[Panel], notes: Sequence[str]
     shapes, width, height = in_rows(parts_of(panels))
     notes = [*notes, *([f"and {len(found) - MOST} more loops"] if len(found) > MOST else [])]
     texts, height = below(lines_of_text(notes, width - 32.0), height)
-    paper = Polygon((0j, complex(width), complex(width, height), complex(0.0, height)), "paper")
+    paper = sheet(width, height)
     title = f"{structure.mechanism.title}: independent loops"
     described = "; ".join(chain(loop) for loop in found)
     return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.drawing.bodies import outline
-from compoundkin.drawing.brush import arrow
+from compoundkin.drawing.brush import arrow, sheet
 from compoundkin.drawing.labels import around, placed, text_half
 from compoundkin.drawing.naming import SEPARATOR, below
 from compoundkin.drawing.picture import Picture, checked_size
@@ -107,6 +107,6 @@ def _framed(scene: Scene, window: Window, shapes: list[Shape], scale: Scale, siz
     texts, height = below([SEPARATOR.join(pose_notes(scene))], window.height)
     texts += scale_shapes(scale, height)
     height += LINE
-    paper = Polygon((0j, complex(window.width), complex(window.width, height), complex(0.0, height)), "paper")
+    paper = sheet(window.width, height)
     title = f"{scene.mechanism.title}: {scale.kind} polygon"
     return Picture((paper, *shapes, *texts), window.width, height, title, "", checked_size(size), window)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.drawing.brush import sheet
 from compoundkin.drawing.centres import centre_labels, centre_places, centre_shapes, shown_centres
 from compoundkin.drawing.labels import placed
 from compoundkin.drawing.layout import ghost, layered, path, window_on
@@ -15,7 +16,7 @@ from compoundkin.drawing.painter import Painter
 from compoundkin.drawing.picture import Picture, checked_size
 from compoundkin.drawing.posing import pose_notes, scene_of
 from compoundkin.drawing.scene import Scene
-from compoundkin.drawing.shapes import Polygon, Shape, corners
+from compoundkin.drawing.shapes import Shape, corners
 from compoundkin.drawing.style import LINE
 from compoundkin.drawing.vectors import LONGEST, Scale, rates_of, scale_of, scale_shapes, vector_shapes, wanted
 from compoundkin.drawing.window import MARGIN, Window, fitted
@@ -105,7 +106,7 @@ def _finished(
     for scale in scales:
         texts += scale_shapes(scale, height)
         height += LINE
-    paper = Polygon((0j, complex(window.width), complex(window.width, height), complex(0.0, height)), "paper")
+    paper = sheet(window.width, height)
     title = scene.mechanism.title
     described = f"Kinematic sketch of {title}: {len(scene.mechanism.links)} links"
     said = "; ".join([described, *pose_notes(scene)])

@@ -106,14 +106,9 @@ def _parts(sketch: MovingSketch) -> Iterator[str]:
     k = int(np.searchsorted(sketch.scene.known, sketch.pose)) if sketch.scene.known is not None else 0
     for part in sketch.parts:
         at = complex(sketch.places(part)[k])
-        yield (
-            (
-                f'<g data-links="{link_names([part.link])}"{_kind(part)} '
-                f'transform="translate({number(at.real)} {number(at.imag)})">'
-            )
-            + "".join(elements(part.shapes))
-            + "</g>"
-        )
+        place = f"translate({number(at.real)} {number(at.imag)})"
+        shapes = "".join(elements(part.shapes))
+        yield f'<g data-links="{link_names([part.link])}"{_kind(part)} transform="{place}">{shapes}</g>'
 
 
 def _kind(part: Part) -> str:

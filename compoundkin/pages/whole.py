@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from compoundkin.motion import Motion
-from compoundkin.quantities import order_of
 from compoundkin.reports.model import Report, Section, Table
 from compoundkin.reports.sampling import Sample
-from compoundkin.reports.tables import default_outputs, outputs_section
+from compoundkin.reports.tables import chosen_outputs, outputs_section
 
 OUTPUTS = "outputs"
 # More cells than these make a page slow and large: the table then has the poses of the report.
@@ -32,14 +31,13 @@ def all_poses(report: Report, motion: Motion, outputs: Sequence[str], design: in
     `outputs` are those that the report was made with.
     """
     sample = Sample(motion, design)
-    named = outputs or [name for name in default_outputs(motion.mechanism) if order_of(name) <= motion.order]
     section = report.section(OUTPUTS)
     table = _table(section)
     if section is None or table is None:
         return report, ()
     if len(sample.rows) == sample.poses or sample.poses * len(table.columns) > MOST_CELLS:
         return report, sample.rows
-    whole = _table(outputs_section(Whole(motion, design), named))
+    whole = _table(outputs_section(Whole(motion, design), chosen_outputs(motion, outputs)))
     if whole is None or [c.name for c in whole.columns] != [c.name for c in table.columns]:
         # the report is about other outputs
         return report, sample.rows
