@@ -13,7 +13,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from compoundkin.errors import (
+from compoundkin.base.errors import (
     CompoundkinError,
     InvalidInput,
     InvalidMechanism,
@@ -22,33 +22,33 @@ from compoundkin.errors import (
     UnassembledPoses,
     UnknownName,
 )
-from compoundkin.freedom import MobilityAnalysis, mobility_analysis
-from compoundkin.gaps import Gap, gaps
-from compoundkin.laws import constant_acceleration, constant_speed, dwell, fall, program, rise, time_table
-from compoundkin.mechanism import Mechanism
-from compoundkin.motion import Motion, solve
-from compoundkin.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
-from compoundkin.profiles import disc, formula, profile, synthesise
-from compoundkin.quantities import quantity
+from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.gaps import Gap, gaps
+from compoundkin.kinematics.quantities import quantity
+from compoundkin.model.elements import deg, drawn, drive, expect, link, mode, polar
+from compoundkin.model.laws import constant_acceleration, constant_speed, dwell, fall, program, rise, time_table
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
+from compoundkin.model.profiles import disc, formula, profile, synthesise
 from compoundkin.structure import Structure, decompose
-from compoundkin.words import deg, drawn, drive, expect, link, mode, polar
+from compoundkin.structure.redundancy import MobilityAnalysis, mobility_analysis
 
 if TYPE_CHECKING:
-    from compoundkin.animation import Animation, animate
-    from compoundkin.branches import circuits, configurations
-    from compoundkin.cams import CamAnalysis, cam_analysis
-    from compoundkin.centres import instant_centres
-    from compoundkin.checks import Check, Finding, verify
-    from compoundkin.choices import alternatives
-    from compoundkin.composing import Composer, random_mechanism
-    from compoundkin.drawing import Picture, draw, draw_structure, vector_polygon
-    from compoundkin.equations import loop_equations
-    from compoundkin.equivalents import equivalent_linkage
-    from compoundkin.formats import load, save, save_table, to_pandas
-    from compoundkin.inverting import with_driver, with_frame
-    from compoundkin.pages import Page, page
-    from compoundkin.plots import plot
-    from compoundkin.reports import rendered, report
+    from compoundkin.analysis.cam_analysis import CamAnalysis, cam_analysis
+    from compoundkin.analysis.centres import instant_centres
+    from compoundkin.analysis.checks import Check, Finding, verify
+    from compoundkin.analysis.equations import loop_equations
+    from compoundkin.analysis.equivalents import equivalent_linkage
+    from compoundkin.configurations import circuits, configurations
+    from compoundkin.files import load, save, save_table, to_pandas
+    from compoundkin.synthesis.alternatives import alternatives
+    from compoundkin.synthesis.composer import Composer, random_mechanism
+    from compoundkin.synthesis.inversion import with_driver, with_frame
+    from compoundkin.view.animation import Animation, animate
+    from compoundkin.view.page import Page, page
+    from compoundkin.view.plot import plot
+    from compoundkin.view.report import rendered, report
+    from compoundkin.view.sketch import Picture, draw, draw_structure, vector_polygon
 
 __version__ = "0.1.0"
 
@@ -132,44 +132,47 @@ __all__ = [
 
 # What only some programs need is imported when they ask for it: the module of each such word.
 _LATE = {
-    "Animation": "animation",
-    "animate": "animation",
-    "circuits": "branches",
-    "configurations": "branches",
-    "CamAnalysis": "cams",
-    "cam_analysis": "cams",
-    "instant_centres": "centres",
-    "Check": "checks",
-    "Finding": "checks",
-    "verify": "checks",
-    "alternatives": "choices",
-    "Composer": "composing",
-    "random_mechanism": "composing",
-    "Picture": "drawing",
-    "draw": "drawing",
-    "draw_structure": "drawing",
-    "vector_polygon": "drawing",
-    "loop_equations": "equations",
-    "equivalent_linkage": "equivalents",
-    "load": "formats",
-    "save": "formats",
-    "save_table": "formats",
-    "to_pandas": "formats",
-    "with_driver": "inverting",
-    "with_frame": "inverting",
-    "Page": "pages",
-    "page": "pages",
-    "plot": "plots",
-    "rendered": "reports",
-    "report": "reports",
+    "Animation": "view.animation",
+    "animate": "view.animation",
+    "circuits": "configurations",
+    "configurations": "configurations",
+    "CamAnalysis": "analysis.cam_analysis",
+    "cam_analysis": "analysis.cam_analysis",
+    "instant_centres": "analysis.centres",
+    "Check": "analysis.checks",
+    "Finding": "analysis.checks",
+    "verify": "analysis.checks",
+    "alternatives": "synthesis.alternatives",
+    "Composer": "synthesis.composer",
+    "random_mechanism": "synthesis.composer",
+    "Picture": "view.sketch",
+    "draw": "view.sketch",
+    "draw_structure": "view.sketch",
+    "vector_polygon": "view.sketch",
+    "loop_equations": "analysis.equations",
+    "equivalent_linkage": "analysis.equivalents",
+    "load": "files",
+    "save": "files",
+    "save_table": "files",
+    "to_pandas": "files",
+    "with_driver": "synthesis.inversion",
+    "with_frame": "synthesis.inversion",
+    "Page": "view.page",
+    "page": "view.page",
+    "plot": "view.plot",
+    "rendered": "view.report",
+    "report": "view.report",
 }
+
+
+_MODULES = {"catalog": "files.shipped_mechanisms", "plots": "view.plot"}
 
 
 def __getattr__(name: str) -> Any:
     if name in _LATE:
         return getattr(import_module(f"compoundkin.{_LATE[name]}"), name)
-    if name in ("catalog", "plots"):
-        return import_module(f"compoundkin.{name}")
+    if name in _MODULES:
+        return import_module(f"compoundkin.{_MODULES[name]}")
     raise AttributeError(f"module 'compoundkin' has no attribute {name!r}")
 
 

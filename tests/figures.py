@@ -11,13 +11,13 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import compoundkin as ck
-from compoundkin.catalog import load_named
-from compoundkin.drawing.labels import placed
-from compoundkin.drawing.layout import ghost, layered, window_on
-from compoundkin.drawing.naming import label_shapes, letters
-from compoundkin.drawing.painter import Painter
-from compoundkin.drawing.posing import scene_of
-from compoundkin.drawing.shapes import Polygon
+from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.view.sketch.label_places import placed
+from compoundkin.view.sketch.painter import Painter
+from compoundkin.view.sketch.shapes import Polygon
+from compoundkin.view.sketch.shown_pose import scene_of
+from compoundkin.view.sketch.sketch_labels import label_shapes, letters
+from compoundkin.view.sketch.sketch_layers import ghost, layered, window_on
 
 FOLDER = Path(__file__).parents[1] / "docs" / "figures"
 FIRST = Path(__file__).parents[1] / "docs" / "index.md"

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from html import escape
 from pathlib import Path
 
-from compoundkin.catalog import load_named, names
-from compoundkin.drawing import Picture, draw
-from compoundkin.drawing.style import css
-from compoundkin.drawing.svg import FONT
+from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.view.sketch import Picture, draw
+from compoundkin.view.sketch.sketch_style import css
+from compoundkin.view.sketch.svg import FONT
 
 GALLERY = Path(__file__).parents[1] / "docs" / "gallery.svg"
 ACROSS, CELL, CAPTION = 6, 240, 18

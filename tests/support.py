@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.pairs import Pair
-from compoundkin.poses import End, Pose
-from compoundkin.series import Series
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Series
+from compoundkin.model.pairs import Pair
 
 REFERENCE = Path(__file__).parent / "reference"
 

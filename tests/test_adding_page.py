@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from compoundkin.groups.contract import Dyad
-from compoundkin.pairs import Pair
+from compoundkin.kinematics.groups.contract import Dyad
+from compoundkin.model.pairs import Pair
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "adding.md").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The order of the modules, what a plain import loads, and where names of kinds may occur."""
+"""The house: its rooms, which import only from those above them, and what else of its order tools can tell."""
 
 from __future__ import annotations
 
@@ -6,86 +6,68 @@ import ast
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
-import pytest
-
-from compoundkin.groups import DYADS
-from compoundkin.pairs import KINDS
+from compoundkin.kinematics.groups import DYADS
+from compoundkin.model.pairs import KINDS
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "compoundkin"
 FILES = sorted(PACKAGE.rglob("*.py"))
 
-
-def tables() -> dict[str, dict[str, int]]:
-    """The rank of every module by the tables of `docs/architecture.md`: of the package ("") and inside folders.
-
-    Modules of one row have one rank and may import each other.
-    """
-    found: dict[str, dict[str, int]] = {"": {}}
-    folder, row = "", 0
-    for line in (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8").splitlines():
-        heading = re.match(r"Inside `(\w+/)`", line)
-        if heading:
-            folder = heading[1]
-            found[folder] = {}
-        elif line.startswith("| `"):
-            for name in re.findall(r"`([\w/.]+)`", line.split("|")[1]):
-                found[folder][name.removesuffix(".py")] = row
-            row += 1
-    return found
+# From the ground up: each room imports only from those before it. Rooms of one line are sisters, without arrows
+# between them but those that ALLOWED_BETWEEN_SISTERS lists.
+ROOMS = (
+    ("base",),
+    ("model",),
+    ("structure",),
+    ("kinematics",),
+    ("configurations", "analysis", "synthesis", "files"),
+    ("view",),
+    ("cli",),
+)
+FLOOR = {room: floor for floor, rooms in enumerate(ROOMS) for room in rooms}
+ALLOWED_BETWEEN_SISTERS: set[tuple[str, str]] = set()
 
 
-def part_of(path: Path) -> str:
-    """The first name under the package: a module or a folder with a slash."""
-    first = path.relative_to(PACKAGE).parts[0]
-    return first.removesuffix(".py") if first.endswith(".py") else f"{first}/"
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
 
 
-def imports(path: Path) -> list[str]:
-    """The modules of the package that a file imports at its top: not in a function, not for types only."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    inside: set[ast.AST] = set()
-    for node in ast.walk(tree):
-        for_types = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
-        if isinstance(node, ast.FunctionDef) or for_types:
-            inside.update(ast.walk(node))
-    found = []
-    for node in ast.walk(tree):
-        if node not in inside and isinstance(node, ast.ImportFrom) and node.module:
-            found += [f"{node.module}.{alias.name}" for alias in node.names]
-        elif node not in inside and isinstance(node, ast.Import):
-            found += [alias.name for alias in node.names]
-    return [name.removeprefix("compoundkin.") for name in found if name.startswith("compoundkin.")]
+def where(path: Path) -> str:
+    return str(path.relative_to(PACKAGE))
 
 
-def as_part(name: str) -> str:
-    first = name.split(".")[0]
-    return f"{first}/" if (PACKAGE / first).is_dir() else first
+def room(path: Path) -> str:
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
-def test_every_module_has_its_place_in_the_description() -> None:
-    missing = {part_of(path) for path in FILES} - {"__init__", "__main__"} - set(tables()[""])
-    assert not missing, f"docs/architecture.md does not mention {sorted(missing)}"
-    for folder in set(tables()) - {""}:
-        inside = {path.stem for path in (PACKAGE / folder).glob("*.py")} - {"__init__"}
-        assert inside == set(tables()[folder]), f"docs/architecture.md and {folder} differ"
+def imports(path: Path) -> Iterator[str]:
+    """The modules of the package that a file imports: also in functions, also for types only."""
+    for node in ast.walk(tree(path)):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_imports_point_up_the_list(path: Path) -> None:
-    """Each module imports only from those above it; only `__init__` and `__main__` see everything."""
-    own, ranks = part_of(path), tables()
-    if own in ranks[""]:
-        parts = {as_part(name) for name in imports(path)} & set(ranks[""])
-        below = [name for name in parts if ranks[""][name] > ranks[""][own]]
-        assert not below, f"{path.name} imports {below}, which stand below it in docs/architecture.md"
-    if own in ranks and path.stem in ranks[own]:
-        own_folder = own.removesuffix("/") + "."
-        inner = {name.removeprefix(own_folder).split(".")[0] for name in imports(path) if name.startswith(own_folder)}
-        below = [name for name in inner & set(ranks[own]) if ranks[own][name] > ranks[own][path.stem]]
-        assert not below, f"{path.name} imports {below}, which stand below it inside {own}"
+def rooms_used(path: Path) -> set[str]:
+    return {name.split(".")[1] for name in imports(path) if name.startswith("compoundkin.")}
+
+
+def test_rooms_import_downward_only() -> None:
+    """Lazy imports and those for types count too; `__init__` and `__main__` of the package see everything."""
+    offenders = []
+    for path in FILES:
+        own = room(path)
+        for used in rooms_used(path) - {own}:
+            sisters = FLOOR.get(used) == FLOOR.get(own) and (own, used) not in ALLOWED_BETWEEN_SISTERS
+            if own in FLOOR and (used not in FLOOR or FLOOR[used] > FLOOR[own] or sisters):
+                offenders.append(f"{where(path)} imports from {used}")
+    assert not offenders
 
 
 def loaded_by(statement: str) -> set[str]:
@@ -112,17 +94,16 @@ def test_solving_loads_nothing_heavy_either() -> None:
 
 def code_without_text(path: Path) -> str:
     """The names and string constants of a file's code, its docstrings and comments left out."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
     docs = {
         node.body[0].value
-        for node in ast.walk(tree)
+        for node in ast.walk(tree(path))
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
         and node.body
         and isinstance(node.body[0], ast.Expr)
         and isinstance(node.body[0].value, ast.Constant)
     }
     words = []
-    for node in ast.walk(tree):
+    for node in ast.walk(tree(path)):
         if isinstance(node, ast.Name):
             words.append(node.id)
         elif isinstance(node, ast.Attribute):
@@ -136,23 +117,29 @@ def code_without_text(path: Path) -> str:
 
 # Pins follow from shared letters, so the structure makes revolute pairs itself; __init__ gives users the words.
 ALLOWED = {("structure/pins.py", "Revolute"), ("structure/__init__.py", "Revolute")}
+OF_KINDS = ("model/pairs/", "kinematics/groups/")
 
 
-@pytest.mark.parametrize(
-    "path", [p for p in FILES if part_of(p) not in ("pairs/", "groups/")], ids=lambda p: str(p.relative_to(PACKAGE))
-)
-def test_kinds_are_named_in_their_own_folders_only(path: Path) -> None:
+def test_kinds_are_named_in_their_own_folders_only() -> None:
     kinds = {kind.__name__ for kind in KINDS} | set(DYADS)
-    code = code_without_text(path)
-    where = str(path.relative_to(PACKAGE))
-    named = {kind for kind in kinds if re.search(rf"\b{kind}\b", code)}
-    assert not {kind for kind in named if (where, kind) not in ALLOWED}
+    offenders = [
+        f"{where(path)}: {kind}"
+        for path in FILES
+        if not where(path).startswith(OF_KINDS)
+        for kind in sorted(kinds)
+        if re.search(rf"\b{kind}\b", code_without_text(path)) and (where(path), kind) not in ALLOWED
+    ]
+    assert not offenders
 
 
 def test_no_import_in_a_function_of_the_numeric_core() -> None:
     """Imports inside functions are for start-up speed and optional extras: never in what runs for every block."""
-    core = [PACKAGE / "series.py", PACKAGE / "poses.py", *(PACKAGE / "groups").glob("*.py")]
-    for path in [*core, *(PACKAGE / "motion").glob("*.py")]:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        functions = [n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)]
-        assert not [n for f in functions for n in ast.walk(f) if isinstance(n, ast.Import | ast.ImportFrom)]
+    core = [PACKAGE / "base" / "series.py", PACKAGE / "base" / "poses.py", *(PACKAGE / "kinematics").rglob("*.py")]
+    offenders = [
+        f"{where(path)}: {function.name}"
+        for path in core
+        for function in ast.walk(tree(path))
+        if isinstance(function, ast.FunctionDef)
+        if any(isinstance(node, ast.Import | ast.ImportFrom) for node in ast.walk(function))
+    ]
+    assert not offenders

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from compoundkin.pairs import KINDS
+from compoundkin.model.pairs import KINDS
 
 PAGE = (Path(__file__).parents[1] / "docs" / "pairs.md").read_text("utf-8")
 

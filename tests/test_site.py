@@ -19,7 +19,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 import compoundkin as ck
-from compoundkin import catalog
+from compoundkin.files import shipped_mechanisms
 from tests.figures import FIGURES, FOLDER
 
 ROOT = Path(__file__).parents[1]
@@ -113,7 +113,7 @@ def every_page_is_there(site: Site) -> None:
     start = site.root / "index.html"
     sidebar = {site.root / href.split("#")[0] for href in site.pages[start].links}
     assert not listed - sidebar - {start}, "pages that docs/_ext/navigation.py does not name"
-    assert not {site.root / "gallery" / f"{name}.html" for name in catalog.names()} - set(site.pages)
+    assert not {site.root / "gallery" / f"{name}.html" for name in shipped_mechanisms.names()} - set(site.pages)
 
 
 def every_public_name_is_described(site: Site) -> None:
@@ -138,15 +138,15 @@ def public_names() -> Iterator[str]:
 
 def the_gallery_is_whole(site: Site) -> None:
     index = site.pages[site.root / "gallery" / "index.html"]
-    assert {f"{name}.html" for name in catalog.names()} <= set(index.links)
+    assert {f"{name}.html" for name in shipped_mechanisms.names()} <= set(index.links)
     for suffix in ("", "-small"):
-        pictures = [site.root / "_images" / f"{name}{suffix}.svg" for name in catalog.names()]
+        pictures = [site.root / "_images" / f"{name}{suffix}.svg" for name in shipped_mechanisms.names()]
         sources = [path.read_text(encoding="utf-8") for path in pictures]
         # what follows the title differs: links at other places
         drawn = {source[source.index("</style>") :] for source in sources}
         assert len(drawn) == len(sources)
         assert all(source.count("<path") + source.count("<circle") > 4 for source in sources)
-    for name in catalog.names():
+    for name in shipped_mechanisms.names():
         text = site.pages[site.root / "gallery" / f"{name}.html"].text
         assert all(words in text for words in ("Structure:", "Source:", f"compoundkin report {name}", "Assur group"))
 

@@ -45,7 +45,9 @@ def test_it_holds_what_pages_are_made_with(unpacked):
 
 
 def test_it_holds_the_list_of_kinematic_chains(unpacked):
-    code = "import compoundkin.chains as c; print(c.__file__, len(c.chains(10)), c.number_of(c.chains(10)[136]))"
+    code = (
+        "import compoundkin.synthesis.chains as c; print(c.__file__, len(c.chains(10)), c.number_of(c.chains(10)[136]))"
+    )
     where, *numbers = run(unpacked, "-c", code).stdout.split()
     assert Path(where).is_relative_to(unpacked)
     assert numbers == ["230", "137"]

@@ -65,7 +65,7 @@ class Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """The command that the arguments name; an unknown one is told the nearest."""
         if args and args[0] not in VERBS and not args[0].startswith("-"):
-            from compoundkin.errors import nearest
+            from compoundkin.base.errors import nearest
 
             raise click.UsageError(f"there is no command {args[0]!r}; {nearest(args[0], list(VERBS))}", ctx)
         return super().resolve_command(ctx, args)

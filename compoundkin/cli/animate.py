@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import DESIGN, drive_options, solved_at
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.drive_options import DESIGN, drive_options, solved_at
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.progress import counting
 from compoundkin.cli.shell import put, say
-from compoundkin.cli.sketches import ARROWS, LABELS, PATHS
+from compoundkin.cli.sketch_options import ARROWS, LABELS, PATHS
 from compoundkin.cli.solve import explained
 
 if TYPE_CHECKING:
-    from compoundkin.series import Number
+    from compoundkin.base.series import Number
     from compoundkin.structure import Structure
 
 # What says where drivers go; without any of these they go through their own range.
@@ -54,9 +54,9 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     GIF needs CairoSVG and Pillow, MP4 the program ffmpeg too; SVG needs nothing and moves by itself in a browser. Poses
     that cannot be assembled are left out; stderr says why, and the exit code is 3.
     """
-    from compoundkin.animation import animate
-    from compoundkin.animation.model import ready_for
-    from compoundkin.freedom import solvable
+    from compoundkin.structure.redundancy import solvable
+    from compoundkin.view.animation import animate
+    from compoundkin.view.animation.animation import ready_for
 
     if path is not None:
         ready_for(path)
@@ -75,11 +75,11 @@ def command(file: str, path: str | None, **asked: Any) -> int:
 
 def _driven(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
     """The values of the drivers that are asked for, else the mechanism's own range, finely enough to be shown."""
-    from compoundkin.animation.animating import finer_values
-    from compoundkin.cli import values
-    from compoundkin.drawing.posing import solved_over
+    from compoundkin.cli import typed_values
+    from compoundkin.view.animation.motion_animation import finer_values
+    from compoundkin.view.sketch.shown_pose import solved_over
 
     if any(asked[key] not in (None, ()) for key in DRIVEN_BY):
-        return values.of_drivers(structure, asked)
+        return typed_values.of_drivers(structure, asked)
     own = solved_over(structure)
     return (finer_values(own) if own is not None else None) or {}

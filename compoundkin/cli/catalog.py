@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from compoundkin.cli.mechanisms import complete_name
+from compoundkin.cli.mechanism_argument import complete_name
 from compoundkin.cli.shell import put, say
 
 
@@ -36,7 +36,7 @@ def list_() -> int:
 @click.argument("name", shell_complete=complete_name)
 def show(name: str) -> int:
     """Print the file of a mechanism."""
-    from compoundkin.catalog import path
+    from compoundkin.files.shipped_mechanisms import path
 
     put(path(name).read_text(encoding="utf-8"))
     return 0
@@ -48,8 +48,8 @@ def show(name: str) -> int:
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 def copy(name: str, destination: str | None, force: bool) -> int:
     """Copy the file of a mechanism to DESTINATION (a file or a folder; here if left out), to change it."""
-    from compoundkin.catalog import path
-    from compoundkin.cli.files import write_new
+    from compoundkin.cli.new_files import write_new
+    from compoundkin.files.shipped_mechanisms import path
 
     source = path(name)
     target = Path(destination or ".")
@@ -61,7 +61,7 @@ def copy(name: str, destination: str | None, force: bool) -> int:
 
 def listed() -> int:
     """Print the names and titles."""
-    from compoundkin.catalog import names, path
+    from compoundkin.files.shipped_mechanisms import names, path
 
     titles = {name: tomllib.loads(path(name).read_text(encoding="utf-8"))["title"] for name in names()}
     wide = max(map(len, titles), default=0)

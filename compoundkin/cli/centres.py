@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import AT, pose_options, solved_at
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import About, put_report, report_options
+from compoundkin.cli.drive_options import AT, pose_options, solved_at
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
+from compoundkin.cli.output_options import About, put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED
 from compoundkin.cli.structure import unsolvable
 
 if TYPE_CHECKING:
-    from compoundkin.motion import Motion
+    from compoundkin.kinematics import Motion
     from compoundkin.structure import Structure
 
 
@@ -42,10 +42,10 @@ def command(
     """
     from dataclasses import replace
 
-    from compoundkin.freedom import solvable
-    from compoundkin.reports import Report, report
-    from compoundkin.reports.instant_centres import derivation_section
-    from compoundkin.reports.partial import NOT_SOLVED, centres_report
+    from compoundkin.structure.redundancy import solvable
+    from compoundkin.view.report import Report, report
+    from compoundkin.view.report.centres_section import derivation_section
+    from compoundkin.view.report.partial_reports import NOT_SOLVED, centres_report
 
     structure = solvable(loaded(file))
     if structure.faults:
@@ -63,7 +63,7 @@ def command(
 
 def solved_at_pose(structure: Structure, at: Sequence[str], asked: Mapping[str, Any], option: str = "--at") -> Motion:
     """The motion at one pose, with velocities; raises InvalidInput for values that do not fit the drivers."""
-    from compoundkin.cli import values
+    from compoundkin.cli import typed_values
 
-    driven = values.of_pose(structure, at, option)
+    driven = typed_values.of_pose(structure, at, option)
     return solved_at(structure, driven, {"accelerations": (), "outputs": (), "order": 1, **asked})

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import drive_options, solved
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import About, put_report, report_options
+from compoundkin.cli.drive_options import drive_options, solved
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
+from compoundkin.cli.output_options import About, put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
 from compoundkin.cli.structure import unsolvable
 
 if TYPE_CHECKING:
-    from compoundkin.reports import Report
+    from compoundkin.view.report import Report
 
 
 @click.command(
@@ -34,9 +34,9 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     where it is worst are named.
     """
     from compoundkin.cli.progress import working
-    from compoundkin.freedom import solvable
-    from compoundkin.reports import report
-    from compoundkin.reports.partial import check_report
+    from compoundkin.structure.redundancy import solvable
+    from compoundkin.view.report import report
+    from compoundkin.view.report.partial_reports import check_report
 
     structure = solvable(loaded(file))
     if structure.faults:

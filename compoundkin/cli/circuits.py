@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import About, put_report, report_options
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
+from compoundkin.cli.output_options import About, put_report, report_options
 
 if TYPE_CHECKING:
     from compoundkin.structure import Structure
@@ -49,10 +49,10 @@ def command(
     On a circuit the mechanism gets from any configuration to any other without being taken apart. Limit positions are
     told with the group that comes to the end of its reach there. Exit code 3: the mechanism cannot be assembled.
     """
-    from compoundkin.branches import circuits
     from compoundkin.cli.progress import working
-    from compoundkin.motion.solving import plan_of
-    from compoundkin.reports.configurations import circuits_report
+    from compoundkin.configurations import circuits
+    from compoundkin.kinematics.solution import plan_of
+    from compoundkin.view.report.configurations_section import circuits_report
 
     structure = plan_of(loaded(file)).structure
     fixed = _fixed(structure, at)
@@ -64,10 +64,10 @@ def command(
 
 def _fixed(structure: Structure, at: Sequence[str]) -> dict[str, float]:
     """The values given for other drivers."""
-    from compoundkin.cli import values
+    from compoundkin.cli import typed_values
 
     named = {text.rpartition("=")[0] for text in at}
-    return {name: value for name, value in values.of_pose(structure, at).items() if name in named} if at else {}
+    return {name: value for name, value in typed_values.of_pose(structure, at).items() if name in named} if at else {}
 
 
 def range_of(
@@ -76,8 +76,8 @@ def range_of(
     """The range of the driver, in radians or lengths."""
     import numpy as np
 
-    from compoundkin.errors import InvalidInput, Problem
-    from compoundkin.reports.configurations import is_angle
+    from compoundkin.base.errors import InvalidInput, Problem
+    from compoundkin.view.report.configurations_section import is_angle
 
     if start is None and stop is None:
         return None

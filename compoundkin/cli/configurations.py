@@ -6,9 +6,9 @@ import warnings
 
 import click
 
-from compoundkin.cli.driving import AT
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import About, put_report, report_options
+from compoundkin.cli.drive_options import AT
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
+from compoundkin.cli.output_options import About, put_report, report_options
 
 
 @click.command(
@@ -27,16 +27,16 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
 
     A name of the list chooses a configuration in Python: solve(..., modes="..."). Exit code 3: there is none.
     """
-    from compoundkin.branches import configurations
-    from compoundkin.cli import values
+    from compoundkin.base.errors import UnassembledPoses
+    from compoundkin.cli import typed_values
     from compoundkin.cli.progress import working
-    from compoundkin.errors import UnassembledPoses
-    from compoundkin.motion import solve
-    from compoundkin.motion.solving import plan_of
-    from compoundkin.reports.configurations import configurations_report
+    from compoundkin.configurations import configurations
+    from compoundkin.kinematics import solve
+    from compoundkin.kinematics.solution import plan_of
+    from compoundkin.view.report.configurations_section import configurations_report
 
     structure = plan_of(loaded(file)).structure
-    driven = values.of_pose(structure, at)
+    driven = typed_values.of_pose(structure, at)
     with working("finding all configurations"):
         made = configurations_report(configurations(structure, driven))
     with warnings.catch_warnings():

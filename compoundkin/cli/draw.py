@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import pose_options, solved_at
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.drive_options import pose_options, solved_at
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.shell import put, say
-from compoundkin.cli.sketches import ARROWS, LABELS, PATHS, VECTORS
+from compoundkin.cli.sketch_options import ARROWS, LABELS, PATHS, VECTORS
 
 if TYPE_CHECKING:
-    from compoundkin.drawing import Picture
-    from compoundkin.motion import Motion
+    from compoundkin.kinematics import Motion
     from compoundkin.structure import Structure
+    from compoundkin.view.sketch import Picture
 
 VIEWS = ("groups", "loops", "graph", "circle")
 # What belongs to the sketch only, by the names of the values of the options.
@@ -74,7 +74,7 @@ def command(file: str, path: str | None, **asked: Any) -> None:
 
 def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
     """The picture asked for; raises InvalidInput for options that do not go together."""
-    from compoundkin.drawing import draw, draw_structure, vector_polygon
+    from compoundkin.view.sketch import draw, draw_structure, vector_polygon
 
     _fitting(asked)
     if asked["view"]:
@@ -87,7 +87,7 @@ def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
 
 
 def _fitting(asked: Mapping[str, Any]) -> None:
-    from compoundkin.errors import InvalidInput, Problem
+    from compoundkin.base.errors import InvalidInput, Problem
 
     other = next((f"--{key}" for key, name in (("structure", "view"), ("polygon", "polygon")) if asked[name]), None)
     unfit = [key for key in OF_SKETCH if key != "labels" and asked[key]]
@@ -100,10 +100,10 @@ def _fitting(asked: Mapping[str, Any]) -> None:
 
 def _motion(structure: Structure, asked: Mapping[str, Any]) -> tuple[Motion | Structure, dict[str, float] | None]:
     """The motion over the drivers' own ranges, and the pose in it; the structure where it cannot be solved."""
-    from compoundkin.cli import values
-    from compoundkin.drawing.posing import solved_over
+    from compoundkin.cli import typed_values
+    from compoundkin.view.sketch.shown_pose import solved_over
 
-    at = values.of_pose(structure, asked["at"]) if asked["at"] else None
+    at = typed_values.of_pose(structure, asked["at"]) if asked["at"] else None
     own = solved_over(structure.mechanism)
     if own is None or not (asked["speeds"] or asked["modes"]):
         return (structure if own is None else own), at

@@ -77,8 +77,8 @@ Examples:
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 def command(path: str, force: bool) -> int:
     """Write a commented mechanism file (a four-bar linkage) to PATH, to be changed into your own."""
-    from compoundkin.cli.files import write_new
-    from compoundkin.errors import InvalidInput, Problem
+    from compoundkin.base.errors import InvalidInput, Problem
+    from compoundkin.cli.new_files import write_new
 
     target = Path(path)
     target = target / "mechanism.toml" if target.is_dir() else target

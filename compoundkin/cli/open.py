@@ -7,8 +7,8 @@ from typing import Any
 
 import click
 
-from compoundkin.cli.mechanisms import mechanism_argument
-from compoundkin.cli.output import made_page
+from compoundkin.cli.mechanism_argument import mechanism_argument
+from compoundkin.cli.output_options import made_page
 from compoundkin.cli.report import asking_options, reported, verdict
 from compoundkin.cli.shell import say
 
@@ -29,7 +29,7 @@ def command(file: str, path: str | None, **asked: Any) -> int:
 
     The page is a file that needs no network and no server. Exit codes are those of `report`.
     """
-    from compoundkin.pages.making import shown_in_browser, temporary
+    from compoundkin.view.page.report_page import shown_in_browser, temporary
 
     made, about = reported(file, asked)
     page = made_page(made, about)

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import drive_options, solved
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.drive_options import drive_options, solved
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.shell import put, say
 from compoundkin.cli.solve import explained
 
 if TYPE_CHECKING:
-    from compoundkin.motion import Motion
-    from compoundkin.plots import Plot
+    from compoundkin.kinematics import Motion
     from compoundkin.structure import Structure
+    from compoundkin.view.plot import Plot
 
 
 # What says how a motion is solved, which circuits are not: options by the names of their values.
@@ -70,9 +70,9 @@ def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: A
     QUANTITY is such as G.velocity, G.velocity.x, bar.angle, slot.rate; with --path a point. Without any, the file's own
     outputs. What cannot be assembled is shaded; stderr says why, and the exit code is 3.
     """
-    from compoundkin.plots.picture import form_of
-    from compoundkin.plots.style import require_matplotlib
     from compoundkin.structure import decompose
+    from compoundkin.view.plot.plot_picture import form_of
+    from compoundkin.view.plot.plot_style import require_matplotlib
 
     if path is not None:
         form_of(path)
@@ -98,7 +98,7 @@ def _put(picture: Plot, path: str | None) -> None:
 
 def _fitting(asked: Mapping[str, Any]) -> None:
     """Raise InvalidInput for options that do not go together."""
-    from compoundkin.errors import InvalidInput, Problem
+    from compoundkin.base.errors import InvalidInput, Problem
 
     called = {"paths": "path"}
     kinds = [f"--{called.get(kind, kind)}" for kind in asked["kinds"]] + ["--centrodes"] * bool(asked["centrodes"])
@@ -119,8 +119,8 @@ def _fitting(asked: Mapping[str, Any]) -> None:
 
 def _order(asked: Mapping[str, Any], names: tuple[str, ...]) -> int:
     """The order asked for, or what the quantities need: one more for the rates of phase plots, 2 at least."""
-    from compoundkin.plots.reading import vector_of
-    from compoundkin.quantities import HIGHEST_ORDER, order_of
+    from compoundkin.kinematics.quantities import HIGHEST_ORDER, order_of
+    from compoundkin.view.plot.plotted_rows import vector_of
 
     if asked["order"] is not None:
         return int(asked["order"])
@@ -130,44 +130,44 @@ def _order(asked: Mapping[str, Any], names: tuple[str, ...]) -> int:
 
 
 def _drawn(motion: Motion, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
-    from compoundkin import plots
-    from compoundkin.errors import InvalidInput, Problem
+    from compoundkin.base.errors import InvalidInput, Problem
+    from compoundkin.view import plot
 
     title, every = asked["title"], asked["every"]
     if asked["centrodes"]:
         if names:
             raise InvalidInput(Problem(names[0], "centrodes take no quantities", "leave it out"))
-        return plots.centrodes(motion, *asked["centrodes"], every=every, title=title)
+        return plot.centrodes(motion, *asked["centrodes"], every=every, title=title)
     if not asked["kinds"]:
-        return plots.plot(motion, *names, against=asked["against"], stacked=not asked["together"], title=title)
+        return plot.plot(motion, *names, against=asked["against"], stacked=not asked["together"], title=title)
     kind = asked["kinds"][0]
     if kind == "phase":
         if not 1 <= len(names) <= 2:
             told = f"there are {len(names)} quantities"
             raise InvalidInput(Problem("--phase", told, "name one, or two to be drawn against each other"))
-        return plots.phase(motion, *names, every=every, title=title)
+        return plot.phase(motion, *names, every=every, title=title)
     if kind == "polar":
-        return plots.polar(motion, *names, title=title)
-    draw: Any = getattr(plots, kind)
+        return plot.polar(motion, *names, title=title)
+    draw: Any = getattr(plot, kind)
     picture: Plot = draw(motion, *names, every=every, title=title)
     return picture
 
 
 def _of_circuits(structure: Structure, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
-    from compoundkin import plots
-    from compoundkin.cli import values
+    from compoundkin.base.errors import InvalidInput, Problem
+    from compoundkin.cli import typed_values
     from compoundkin.cli.circuits import range_of
     from compoundkin.cli.progress import working
-    from compoundkin.errors import InvalidInput, Problem
+    from compoundkin.view import plot
 
     given = {text.rpartition("=")[0] for text in asked["drives"]}
     drivers = [drive.name for drive in structure.mechanism.drives]
     if given & {"", asked["driver"] or "", *(drivers if len(drivers) == 1 else [])}:
         told = "the driver that moves takes all its values"
         raise InvalidInput(Problem("--drive", told, "for a part of them: --from and --to"))
-    fixed = {k: v for k, v in values.of_pose(structure, asked["drives"], "--drive").items() if k in given}
+    fixed = {k: v for k, v in typed_values.of_pose(structure, asked["drives"], "--drive").items() if k in given}
     between = range_of(structure, asked["driver"], asked["start"], asked["stop"])
     with working("following all circuits"):
-        return plots.circuits(
+        return plot.circuits(
             structure, *names, driver=asked["driver"], values=fixed, between=between, title=asked["title"]
         )

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from compoundkin.cli.driving import drive_options, solved
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import About, put_report, report_options
+from compoundkin.cli.drive_options import drive_options, solved
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
+from compoundkin.cli.output_options import About, put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
 from compoundkin.cli.structure import unsolvable
 
 if TYPE_CHECKING:
-    from compoundkin.reports import Report
     from compoundkin.structure import Structure
+    from compoundkin.view.report import Report
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -59,8 +59,8 @@ def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, About]:
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
-    from compoundkin.freedom import solvable
-    from compoundkin.reports import report
+    from compoundkin.structure.redundancy import solvable
+    from compoundkin.view.report import report
 
     structure, design = solvable(loaded(file)), asked["design"]
     if structure.faults:
@@ -88,7 +88,7 @@ def verdict(made: Report, about: About) -> int:
 def _of_centres(structure: Structure, at: Sequence[str], design: int, asked: Mapping[str, Any]) -> Report:
     """The instant centres at a pose, with the rates and modes of the motion."""
     from compoundkin.cli.centres import solved_at_pose
-    from compoundkin.reports.partial import centres_report
+    from compoundkin.view.report.partial_reports import centres_report
 
     rates = {key: asked[key] for key in ("speeds", "modes")}
     return centres_report(solved_at_pose(structure, at, rates, "--centres"), design)

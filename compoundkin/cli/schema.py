@@ -17,7 +17,7 @@ def command() -> int:
     """Print the JSON Schema of mechanism files; editors check and complete TOML and JSON with it."""
     import json
 
-    from compoundkin.formats import schema
+    from compoundkin.files import schema
 
     put(json.dumps(schema(), indent=2, ensure_ascii=False) + "\n")
     return 0

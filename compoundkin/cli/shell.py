@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 import click
 
-from compoundkin.errors import CompoundkinError, Problem
+from compoundkin.base.errors import CompoundkinError, Problem
 
 BAD_INPUT, NOT_ASSEMBLED, FAILED = 2, 3, 4
 # As if ended by the signal: what shells expect of a filter whose reader has gone, and of Ctrl-C.

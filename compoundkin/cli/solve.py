@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.driving import drive_options, solved
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
+from compoundkin.cli.drive_options import drive_options, solved
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.shell import NOT_ASSEMBLED, put, say
 
 if TYPE_CHECKING:
-    from compoundkin.motion import Motion
+    from compoundkin.kinematics import Motion
 
 
 @click.command(
@@ -33,15 +33,15 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     Without --output, everything there is. Angles are in degrees in CSV and JSON, in radians in NPZ and Parquet.
     Where a pose cannot be assembled its numbers are nan (null in JSON); stderr says why, and the exit code is 3.
     """
-    from compoundkin.cli import table
-    from compoundkin.freedom import solvable
+    from compoundkin.cli import output_table
+    from compoundkin.structure.redundancy import solvable
 
-    write = table.writer(path) if path else None
+    write = output_table.writer(path) if path else None
     structure = solvable(loaded(file))
     motion = solved(structure, asked)
-    found = table.columns(motion, asked["outputs"])
+    found = output_table.columns(motion, asked["outputs"])
     if write is None:
-        put(table.csv_bytes(found))
+        put(output_table.csv_bytes(found))
     else:
         write(found)
         rows = len(found[0].values)
@@ -51,9 +51,9 @@ def command(file: str, path: str | None, **asked: Any) -> int:
 
 def explained(motion: Motion) -> int:
     """Say which poses cannot be assembled, and why; the exit code for that."""
-    from compoundkin.gaps import gaps
-    from compoundkin.reports.findings import MOST_GAPS, gap_sentence
-    from compoundkin.reports.sampling import Sample
+    from compoundkin.kinematics.gaps import gaps
+    from compoundkin.view.report.checks_section import MOST_GAPS, gap_sentence
+    from compoundkin.view.report.shown_poses import Sample
 
     found = gaps(motion)
     sample = Sample(motion)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import click
 
-from compoundkin.cli.mechanisms import loaded, mechanism_argument
-from compoundkin.cli.output import About, put_report, report_options
+from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
+from compoundkin.cli.output_options import About, put_report, report_options
 from compoundkin.cli.shell import say
 
 
@@ -30,18 +30,18 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
-    from compoundkin.freedom import solvable
-    from compoundkin.reports import report
+    from compoundkin.structure.redundancy import solvable
+    from compoundkin.view.report import report
 
     with working("taking the mechanism apart"):
         structure = solvable(loaded(file))
         made = report(structure)
     if equations:
-        from compoundkin.reports.equations import equations_section
+        from compoundkin.view.report.equations_section import equations_section
 
         made = replace(made, sections=(*made.sections, equations_section(structure)))
     if alternatives:
-        from compoundkin.reports.alternatives import alternatives_section
+        from compoundkin.view.report.alternatives_section import alternatives_section
 
         made = replace(made, sections=(*made.sections, alternatives_section(structure)))
     put_report(made, form, path, About(structure))
@@ -50,8 +50,8 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
 
 def unsolvable(faults: int) -> int:
     """Say on stderr that a structure cannot be solved; the exit code for that."""
-    from compoundkin.errors import NotDetermined
-    from compoundkin.reports.wording import counted
+    from compoundkin.base.errors import NotDetermined
+    from compoundkin.view.report.wording import counted
 
     say(f"The mechanism cannot be solved: {counted(faults, 'fault')}, explained in the report.")
     return NotDetermined.exit_code

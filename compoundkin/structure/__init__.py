@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.graph import kinematic_graph, links_by_pairs, pair_counts
+from compoundkin.structure.group_names import roman
 from compoundkin.structure.loops import Loop, independent_loops, loop_count, loops_through, simple_loops
 from compoundkin.structure.mobility import Mobility, PairCount
-from compoundkin.structure.model import Body, DrivenPair, Fault, Group, Passive, Structure
-from compoundkin.structure.naming import roman
+from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Passive, Structure
 
 __all__ = [
     "Body",

@@ -6,13 +6,13 @@ from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from compoundkin.mechanism import Mechanism
-from compoundkin.pairs import Pair
-from compoundkin.structure.model import Body, DrivenPair, Passive
-from compoundkin.structure.passive import passive_freedoms
+from compoundkin.model.elements import FRAME, Drive
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.model.validation import drivable
+from compoundkin.structure.parts import Body, DrivenPair, Passive
+from compoundkin.structure.passive_links import passive_freedoms
 from compoundkin.structure.pins import Pins
-from compoundkin.validation import drivable
-from compoundkin.words import FRAME, Drive
 
 GROUND = -1
 

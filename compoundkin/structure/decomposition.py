@@ -17,14 +17,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from compoundkin.mechanism import Mechanism
-from compoundkin.structure.binding import Binder, all_pairs
+from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.composites import composites
 from compoundkin.structure.faults import closed_drives, counted_faults, rank_faults
+from compoundkin.structure.group_pairs import Binder, all_pairs
 from compoundkin.structure.matching import Matching, maximum_matching, overdetermined, underdetermined
 from compoundkin.structure.mobility import mobility_of
-from compoundkin.structure.model import Fault, Group, Relaxation, Structure
-from compoundkin.structure.ordering import solving_order, strong_components
+from compoundkin.structure.order import solving_order, strong_components
+from compoundkin.structure.parts import Fault, Group, Relaxation, Structure
 from compoundkin.structure.rank import Part, RankTest
 from compoundkin.structure.system import System, system_of
 
@@ -35,7 +35,7 @@ def decompose(mechanism: Mechanism) -> Structure:
     Nothing is raised for a mechanism that is over- or under-constrained: `faults` name the links, by how
     much, and a remedy. The work grows about linearly with the number of links.
 
-    >>> from compoundkin.words import drive, link
+    >>> from compoundkin.model.elements import drive, link
     >>> four_bar = Mechanism(
     ...     "Four-bar",
     ...     link("frame", A=(0, 0), D=(4, 0)),

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from compoundkin.pairs import Pair
+from compoundkin.model.elements import FRAME, Drive
+from compoundkin.model.pairs import Pair
 from compoundkin.structure.composites import GROUND, find, spanned
 from compoundkin.structure.matching import Matching
-from compoundkin.structure.model import Body, DrivenPair, Fault
+from compoundkin.structure.parts import Body, DrivenPair, Fault
 from compoundkin.structure.rank import Deficiency, Part, RankTest
 from compoundkin.structure.system import POINT_FREEDOMS, Constraint, System, held_pairs
-from compoundkin.words import FRAME, Drive
 
 # How many alternatives a remedy lists.
 _LISTED = 6

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from compoundkin.structure.model import Structure
+from compoundkin.structure.parts import Structure
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -15,8 +15,8 @@ def kinematic_graph(structure: Structure) -> nx.MultiGraph:
 
     Edges have the attributes `pair` and `code`. A multiple pin of k links is k - 1 edges.
 
-    >>> from compoundkin.mechanism import Mechanism
-    >>> from compoundkin.words import link
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import link
     >>> from compoundkin.structure import decompose
     >>> structure = decompose(Mechanism("m", link("frame", A=0), link("crank", A=0, B=1)))
     >>> list(kinematic_graph(structure).edges(keys=True, data="code"))
@@ -36,8 +36,8 @@ def kinematic_graph(structure: Structure) -> nx.MultiGraph:
 def pair_counts(structure: Structure) -> dict[str, int]:
     """How many pairs each link has; at a pin of several links each of them counts one.
 
-    >>> from compoundkin.mechanism import Mechanism
-    >>> from compoundkin.words import link
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import link
     >>> from compoundkin.structure import decompose
     >>> links = [link(name, J=0) for name in ("frame", "crank", "rod")]
     >>> pair_counts(decompose(Mechanism("m", *links)))
@@ -57,8 +57,8 @@ def pair_counts(structure: Structure) -> dict[str, int]:
 def links_by_pairs(structure: Structure) -> dict[int, tuple[str, ...]]:
     """The links with one pair, the binary links, the ternary ones and so on, by their number of pairs.
 
-    >>> from compoundkin.mechanism import Mechanism
-    >>> from compoundkin.words import link
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import link
     >>> from compoundkin.structure import decompose
     >>> bars = link("frame", A=0, B=1), link("crank", A=0, C=1), link("rod", C=0)
     >>> links_by_pairs(decompose(Mechanism("m", *bars)))

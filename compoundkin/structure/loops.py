@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from compoundkin.pairs import Pair
+from compoundkin.model.elements import FRAME
+from compoundkin.model.pairs import Pair
 from compoundkin.structure.composites import find
 from compoundkin.structure.cycles import cycle_basis
-from compoundkin.structure.model import Structure
-from compoundkin.words import FRAME
+from compoundkin.structure.parts import Structure
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ def independent_loops(structure: Structure) -> tuple[Loop, ...]:
 
     Of least total length for up to 60 links; beyond, those that pairs outside a spanning tree close.
 
-    >>> from compoundkin.mechanism import Mechanism
-    >>> from compoundkin.words import link
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import link
     >>> from compoundkin.structure import decompose
     >>> bars = link("frame", A=0, D=4), link("crank", A=0, B=1), link("rod", B=0, C=3), link("arm", C=0, D=3)
     >>> print(*independent_loops(decompose(Mechanism("m", *bars))))
@@ -49,7 +49,7 @@ def independent_loops(structure: Structure) -> tuple[Loop, ...]:
 def loops_through(structure: Structure, pairs: Sequence[Pair]) -> tuple[Loop, ...]:
     """A basis of the independent loops that some of the pairs close.
 
-    >>> from compoundkin.catalog import load_named
+    >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.structure import decompose
     >>> structure = decompose(load_named("geared-five-bar"))
     >>> len(loops_through(structure, [pair for pair in structure.pairs if pair.held == 2]))
@@ -67,7 +67,7 @@ def simple_loops(structure: Structure, limit: int | None = None, longest: int | 
     `longest` leaves out loops of more links. A multiple pin of k links is k - 1 pairs, as everywhere.
     Source: D. B. Johnson, Finding all the elementary circuits of a directed graph, SIAM J. Comput. 4 (1975) 77.
 
-    >>> from compoundkin.catalog import load_named
+    >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.structure import decompose
     >>> [len(loop) for loop in simple_loops(decompose(load_named("stephenson-iii")))]
     [4, 5, 5]
@@ -107,8 +107,8 @@ def _numbered(structure: Structure) -> list[str]:
 def loop_count(structure: Structure) -> int:
     """The number of independent loops by Euler's formula: L = p - n + 1, one more for each further piece.
 
-    >>> from compoundkin.mechanism import Mechanism
-    >>> from compoundkin.words import link
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import link
     >>> from compoundkin.structure import decompose
     >>> loop_count(decompose(Mechanism("m", link("frame", A=0, B=1), link("bar", A=0, B=1))))
     1

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from compoundkin.mechanism import Mechanism
-from compoundkin.pairs import Pair
-from compoundkin.structure.model import Passive
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.structure.parts import Passive
 from compoundkin.structure.system import LINK_FREEDOMS
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from compoundkin.mechanism import Mechanism
-from compoundkin.pairs import Pair, Revolute
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair, Revolute
 
 # The first that occurs in no name of the pin's links joins two of them, so that pair names are unique.
 _SEPARATORS = ("-", "/", ":", " to ", " - ")
@@ -21,7 +21,7 @@ class Pins:
     def pair(self, letter: str, first: str, second: str) -> Pair:
         """The revolute pair of two links at a letter, named by it; of a multiple pin, as ``J(crank-rod)``.
 
-        >>> from compoundkin.words import link
+        >>> from compoundkin.model.elements import link
         >>> links = [link(name, J=0) for name in ("frame", "crank", "rod")]
         >>> Pins(Mechanism("m", *links)).pair("J", "crank", "rod").name
         'J(crank-rod)'

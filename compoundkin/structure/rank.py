@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.pairs.contract import Ends
-from compoundkin.poses import FIXED
+from compoundkin.base.poses import FIXED
+from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.composites import GROUND
 from compoundkin.structure.system import LINK_FREEDOMS, Constraint, System
 

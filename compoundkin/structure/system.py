@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from compoundkin.mechanism import Mechanism
-from compoundkin.pairs import Pair
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
 from compoundkin.structure.composites import GROUND, Composites
-from compoundkin.structure.model import Dropped
+from compoundkin.structure.parts import Dropped
 from compoundkin.structure.pins import pin_at
 
 LINK_FREEDOMS = 3

@@ -10,11 +10,11 @@ from typing import Any
 from sphinx.application import Sphinx
 
 import compoundkin as ck
-from compoundkin import catalog
-from compoundkin.chains import structure_name
-from compoundkin.drawing.posing import solved_over
-from compoundkin.freedom import solvable
+from compoundkin.files import shipped_mechanisms
 from compoundkin.structure import roman
+from compoundkin.structure.redundancy import solvable
+from compoundkin.synthesis.chains import structure_name
+from compoundkin.view.sketch.shown_pose import solved_over
 
 FOLDER = "gallery"
 
@@ -69,7 +69,7 @@ APART = """
 
 def files() -> dict[str, str]:
     """All files of the gallery by name."""
-    mechanisms = {name: catalog.load_named(name) for name in catalog.names()}
+    mechanisms = {name: shipped_mechanisms.load_named(name) for name in shipped_mechanisms.names()}
     found: dict[str, str] = {}
     for name, mechanism in mechanisms.items():
         found |= files_of(name, mechanism)

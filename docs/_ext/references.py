@@ -10,7 +10,7 @@ from sphinx.application import Sphinx
 from sphinx.domains.python import PyXRefRole
 
 import compoundkin as ck
-from compoundkin import errors
+from compoundkin.base import errors
 
 # `Motion`, `Pair.glyph`: never parameters or words of files, which are written in lower case.
 NAME_OF_CLASS = re.compile(r"[A-Z]\w*[a-z]\w*(\.\w+)*")

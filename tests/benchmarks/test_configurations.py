@@ -7,9 +7,9 @@ from time import perf_counter
 import numpy as np
 import pytest
 
-from compoundkin.assembly import Assembly, Configurations, Connection, all_configurations
-from tests.assembly.cases import triad
-from tests.assembly.trusses import baranov_trusses, random_truss
+from compoundkin.kinematics.assembly import Assembly, Configurations, Connection, all_configurations
+from tests.kinematics.assembly.cases import triad
+from tests.kinematics.assembly.trusses import baranov_trusses, random_truss
 
 POSES = 361
 

@@ -8,9 +8,9 @@ import time
 import numpy as np
 import pytest
 
-from compoundkin.mechanism import Mechanism
+from compoundkin.model.elements import drive, link
+from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
-from compoundkin.words import drive, link
 
 # Of the exponent, on a machine with other work.
 NOISE = 0.05

@@ -12,8 +12,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 import compoundkin as ck
-from compoundkin.catalog import load_named
 from compoundkin.cli import cli, progress
+from compoundkin.files.shipped_mechanisms import load_named
 
 PAGE = (Path(__file__).parents[2] / "docs" / "animation.md").read_text("utf-8")
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from compoundkin import catalog
 from compoundkin.cli import cli
+from compoundkin.files import shipped_mechanisms
 
 Run = Callable[..., Result]
 CRANK, ROD = 0.12, 0.26
@@ -123,7 +123,7 @@ def test_bad_input_is_told(run: Run, args: tuple[str, ...], told: str) -> None:
 
 
 def test_a_mechanism_that_cannot_be_solved(run: Run, tmp_path: Path) -> None:
-    text = catalog.path("crank-rocker").read_text(encoding="utf-8")
+    text = shipped_mechanisms.path("crank-rocker").read_text(encoding="utf-8")
     (tmp_path / "undriven.toml").write_text(text.partition("[[drives]]")[0], encoding="utf-8")
     result = run("centres", "undriven.toml")
     assert result.exit_code == 2
@@ -138,7 +138,7 @@ def test_a_file_takes_its_form_from_its_name(run: Run, tmp_path: Path) -> None:
     assert r"(frame input)(input block) x (frame output)(output block)" in text
 
 
-@pytest.mark.parametrize("name", catalog.names())
+@pytest.mark.parametrize("name", shipped_mechanisms.names())
 def test_every_mechanism_fits_80_columns_and_agrees(run: Run, name: str) -> None:
     result = run("centres", name)
     assert result.exit_code == 0

@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-import compoundkin.motion
-from compoundkin import catalog
+import compoundkin.kinematics
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Series
 from compoundkin.cli import cli
-from compoundkin.motion import Motion
-from compoundkin.poses import Pose
-from compoundkin.series import Series
+from compoundkin.files import shipped_mechanisms
+from compoundkin.kinematics import Motion
 
 Run = Callable[..., Result]
 
@@ -50,9 +50,9 @@ def test_every_finding_has_value_limit_and_place(run: Run) -> None:
 
 
 def test_a_wrong_velocity_is_named_with_its_group_and_pose(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    solve = compoundkin.motion.solve
+    solve = compoundkin.kinematics.solve
     wrong: Any = lambda *given, **more: corrupted(solve(*given, **more), "rod")  # noqa: E731
-    monkeypatch.setattr(compoundkin.motion, "solve", wrong)
+    monkeypatch.setattr(compoundkin.kinematics, "solve", wrong)
     result = run("check", "slider-crank", "--at", "0,65")
     assert result.exit_code == 4
     assert "checks FAILED" in result.stdout
@@ -77,7 +77,7 @@ def test_bad_input_is_told(run: Run, args: tuple[str, ...]) -> None:
 
 
 def test_a_mechanism_that_cannot_be_solved(run: Run, tmp_path: Path) -> None:
-    text = catalog.path("crank-rocker").read_text(encoding="utf-8")
+    text = shipped_mechanisms.path("crank-rocker").read_text(encoding="utf-8")
     (tmp_path / "undriven.toml").write_text(text.partition("[[drives]]")[0], encoding="utf-8")
     result = run("check", "undriven.toml")
     assert result.exit_code == 2

@@ -12,11 +12,10 @@ import pytest
 from click.testing import CliRunner, Result
 
 import compoundkin as ck
-from compoundkin import catalog
-from compoundkin.catalog import path
+from compoundkin.base.errors import Problem
 from compoundkin.cli import VERBS, cli, shell
-from compoundkin.errors import Problem
-from compoundkin.formats import load
+from compoundkin.files import load, shipped_mechanisms
+from compoundkin.files.shipped_mechanisms import path
 
 FOUR_BAR = """
 format = 1
@@ -104,7 +103,7 @@ def test_completion_scripts(run: Run, name: str) -> None:
 
 
 def test_names_of_the_catalog_are_completed() -> None:
-    from compoundkin.cli.mechanisms import complete_name
+    from compoundkin.cli.mechanism_argument import complete_name
 
     found = complete_name(None, None, "six")  # type: ignore[arg-type]
     assert [item.value for item in found] == ["six-bar"]
@@ -203,7 +202,7 @@ def test_report_of_a_design(run: Run, tmp_path: Path) -> None:
 def test_solve_prints_the_motion_as_csv(run: Run) -> None:
     result = run("solve", "six-bar")
     found = rows(result.stdout)
-    motion = ck.solve(catalog.load_named("six-bar"))
+    motion = ck.solve(shipped_mechanisms.load_named("six-bar"))
     assert (result.exit_code, result.stderr, len(found)) == (0, "", 73)
     np.testing.assert_allclose(numbers(found, "bar.angle [deg]"), np.rad2deg(motion.links["bar"].angle), rtol=1e-15)
     np.testing.assert_array_equal(numbers(found, "G.velocity.x [mm/s]"), motion.points["G"].velocity.real)
@@ -213,7 +212,7 @@ def test_solve_prints_the_motion_as_csv(run: Run) -> None:
 
 def test_solve_chosen_outputs_in_order(run: Run) -> None:
     found = rows(run("solve", "six-bar", "--at", "35", "--output", "bar,G.velocity", "--output", "A.speed").stdout)
-    motion = ck.solve(catalog.load_named("six-bar"), {"crank": ck.deg(35)})
+    motion = ck.solve(shipped_mechanisms.load_named("six-bar"), {"crank": ck.deg(35)})
     assert list(found[0]) == ["crank.value [deg]", "bar [deg]", "G.velocity.x [mm/s]", "G.velocity.y [mm/s]",
                               "A.speed [mm/s]", "assembled"]  # fmt: skip
     assert float(found[0]["A.speed [mm/s]"]) == pytest.approx(float(motion.points["A"].speed), rel=1e-15)
@@ -288,7 +287,7 @@ def test_tables_in_every_format_say_the_same(run: Run, tmp_path: Path) -> None:
         result = run("solve", "six-bar", "--output", "G.velocity,bar", "-o", f"out.{suffix}")
         assert (result.exit_code, result.stdout) == (0, "")
         assert result.stderr == f"Wrote 73 rows of 5 columns to out.{suffix}.\n"
-    motion = ck.solve(catalog.load_named("six-bar"))
+    motion = ck.solve(shipped_mechanisms.load_named("six-bar"))
     angle = motion.links["bar"].angle
     shown = rows((tmp_path / "out.csv").read_text())
     np.testing.assert_allclose(np.deg2rad(numbers(shown, "bar [deg]")), angle, rtol=1e-15)
@@ -322,18 +321,18 @@ def test_json_tables_have_null_where_nothing_is_assembled(run: Run, broken: str,
 
 def test_the_catalog_lists_every_name_and_title(run: Run) -> None:
     lines = run("catalog").stdout.splitlines()
-    assert [line.split()[0] for line in lines] == list(catalog.names())
+    assert [line.split()[0] for line in lines] == list(shipped_mechanisms.names())
     assert any(line.endswith("Six-bar of Example 3-4") for line in lines)
     assert run("catalog", "list").stdout.splitlines() == lines
 
 
 def test_the_catalog_shows_a_file_as_it_is(run: Run) -> None:
-    assert run("catalog", "show", "six-bar").stdout == catalog.path("six-bar").read_text()
+    assert run("catalog", "show", "six-bar").stdout == shipped_mechanisms.path("six-bar").read_text()
 
 
 def test_copies_go_here_to_a_folder_or_to_a_name(run: Run, tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
-    content = catalog.path("six-bar").read_bytes()
+    content = shipped_mechanisms.path("six-bar").read_bytes()
     for args, target in (((), "six-bar.toml"), (("folder",), "folder/six-bar.toml"), (("a.toml",), "a.toml")):
         assert run("catalog", "copy", "six-bar", *args).exit_code == 0
         assert (tmp_path / target).read_bytes() == content

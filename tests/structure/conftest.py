@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from compoundkin.mechanism import Mechanism
-from compoundkin.pairs import slide
-from compoundkin.words import drive, link
+from compoundkin.model.elements import drive, link
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import slide
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 

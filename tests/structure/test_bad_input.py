@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from compoundkin.errors import InvalidMechanism
-from compoundkin.mechanism import Mechanism
+from compoundkin.base.errors import InvalidMechanism
+from compoundkin.model.elements import drive
+from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
-from compoundkin.words import drive
 
 FOUR = {"frame": "AD", "crank": "AB", "coupler": "BC", "rocker": "CD"}
 

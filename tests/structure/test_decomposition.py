@@ -9,10 +9,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from compoundkin.mechanism import Mechanism
-from compoundkin.pairs import slide
+from compoundkin.model.elements import drive, link
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import slide
 from compoundkin.structure import Structure, decompose
-from compoundkin.words import drive, link
 
 
 def numbered(structure: Structure) -> list[frozenset[int]]:
@@ -158,8 +158,8 @@ def test_importing_does_not_load_networkx_or_scipy():
 
 def test_deterministic_across_hash_seeds():
     code = (
-        "from compoundkin.mechanism import *\n"
-        "from compoundkin.words import *\nfrom compoundkin.structure import decompose\n"
+        "from compoundkin.model.mechanism import *\n"
+        "from compoundkin.model.elements import *\nfrom compoundkin.structure import decompose\n"
         "L = [link('frame', A=0, D=4), link('a', A=0, B=1), link('b', B=0, C=3, E=1j), link('c', C=0, D=3)]\n"
         "s = decompose(Mechanism('m', *L, link('d', E=0, F=1), link('e', F=0, B=2)))\n"
         "print(s.faults, [g.links for g in s.groups], [str(l) for l in s.loops])"

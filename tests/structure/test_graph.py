@@ -5,11 +5,11 @@ import random
 import networkx as nx
 import pytest
 
-from compoundkin.mechanism import Mechanism
+from compoundkin.model.elements import drive
+from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose, links_by_pairs, loop_count, pair_counts
 from compoundkin.structure.cycles import cycle_basis
 from compoundkin.structure.mobility import Mobility, PairCount
-from compoundkin.words import drive
 
 
 def six_bar(bars):

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from compoundkin.mechanism import Mechanism
-from compoundkin.pairs import slide
+from compoundkin.model.elements import drive, link
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import slide
 from compoundkin.structure import decompose
-from compoundkin.words import drive, link
 
 
 def slider_cranks(count: int) -> list[Any]:

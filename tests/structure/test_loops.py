@@ -7,9 +7,9 @@ from itertools import combinations
 import networkx as nx
 import pytest
 
-from compoundkin.catalog import load_named, names
-from compoundkin.composing import random_mechanism
+from compoundkin.files.shipped_mechanisms import load_named, names
 from compoundkin.structure import decompose, independent_loops, loop_count, simple_loops
+from compoundkin.synthesis.composer import random_mechanism
 
 
 @pytest.mark.parametrize("name", names())

@@ -7,7 +7,7 @@ import networkx as nx
 import pytest
 
 from compoundkin.structure.matching import FREE, maximum_matching, overdetermined, underdetermined
-from compoundkin.structure.ordering import solving_order, strong_components
+from compoundkin.structure.order import solving_order, strong_components
 
 
 def random_system(seed):

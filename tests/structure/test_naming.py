@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import pytest
 
-from compoundkin.mechanism import Mechanism
-from compoundkin.pairs import slide
+from compoundkin.model.elements import drive, link
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import slide
 from compoundkin.structure import decompose, roman
-from compoundkin.words import drive, link
 
 
 def only_group(*items):

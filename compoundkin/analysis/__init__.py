@@ -1,0 +1,1 @@
+"""Findings about a solved motion: instant centres, coupler curves, loop equations, checks, cams, equivalents."""

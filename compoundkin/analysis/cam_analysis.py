@@ -1,0 +1,261 @@
+"""What is asked of a cam: pressure angle, radii of curvature, sliding, and what is wrong with its profile."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.display import Shows
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, as_series, dot
+from compoundkin.kinematics import Motion
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.profiled import Profiled
+from compoundkin.model.profiles import Synthesised
+
+# Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and
+# Manufacturing Handbook, 2nd ed., Industrial Press 2009, section 7.1.
+TRANSLATING, OSCILLATING = 30.0, 35.0
+# An open profile is nearly run off where less than this part of it is left.
+LEFT = 0.02
+# Slower than this part of the fastest, a velocity has no direction but that of rounding.
+RESTS = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class CamAnalysis(Shows):
+    """A cam pair over a motion; arrays are of the motion's shape, not a number where it is not assembled.
+
+    Angles in radians. `pressure_angle` is from the direction in which the follower can move (the velocity of its
+    contact point, or of the roller's middle) to the common normal, counterclockwise; a radius of curvature is negative
+    in a hollow, infinite where the profile is straight. `sliding` is the velocity of the follower past the profile at
+    the contact, along the tangent that lies a right angle counterclockwise from the normal towards the follower, as if
+    the roller did not turn in its pin. `profile` and `pitch_curve` (None for a flat face) are points in the cam's
+    frame.
+    """
+
+    motion: Motion
+    pair: Profiled
+    follower: str
+    oscillates: bool | None  # None where the follower is not guided by a single pin or slide
+    contact: Number
+    contact_on_cam: Number
+    parameter: Number
+    pressure_angle: Number
+    radius_of_curvature: Number
+    pitch_radius: Number | None
+    sliding: Number
+
+    @property
+    def profile(self) -> Number:
+        """Points of the profile in the cam's frame, in order."""
+        return self.pair.curve.samples.points
+
+    @cached_property
+    def pitch_curve(self) -> Number | None:
+        """The way of the roller's middle, or the knife edge, in the cam's frame; None for a flat face."""
+        if self.pair.is_flat:
+            return None
+        curve = self.pair.curve
+        return (
+            curve.at(curve.samples.s).c[0] + curve.normal(curve.samples.s).c[0] * self.pair.outward * self.pair.roller
+        )
+
+    @property
+    def roller_rate(self) -> Number | None:
+        """The angular velocity of the roller in its pin if it rolls without sliding; None without a roller."""
+        return self.sliding / self.pair.roller if self.pair.roller else None
+
+    @property
+    def undercut(self) -> tuple[tuple[float, float], ...]:
+        """The spans of the parameter where a hollow is narrower than the roller, or under a flat face."""
+        return self.pair.hollows
+
+    @property
+    def untouched(self) -> tuple[tuple[float, float], ...]:
+        """The spans of the parameter that the follower bridges, for it touches before and behind them."""
+        return self.pair.bridged
+
+    @property
+    def greatest_pressure_angle(self) -> float:
+        """The greatest size of the pressure angle; not a number where there is none."""
+        sizes = np.abs(self.pressure_angle)
+        return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else float("nan")
+
+    @property
+    def allowed_pressure_angle(self) -> float:
+        """The customary limit of the pressure angle: 30 degrees for a follower that translates, 35 for another one."""
+        return float(np.deg2rad(TRANSLATING if self.oscillates is False else OSCILLATING))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a designer should look at, a sentence each."""
+        return tuple(self._warnings())
+
+    def _warnings(self) -> Iterator[str]:
+        found, allowed = np.rad2deg(self.greatest_pressure_angle), np.rad2deg(self.allowed_pressure_angle)
+        if found > allowed:
+            yield f"The pressure angle reaches {found:.4g} degrees, more than the customary {allowed:.4g}."
+        if self.undercut and not self.pair.is_flat:
+            what = f"that the roller of radius {self.pair.roller:.6g} cannot enter"
+            yield f"The profile has a hollow {what}, at {self._places(self.undercut)}."
+        if self.untouched:
+            yield f"The follower bridges a part of the profile, at {self._places(self.untouched)}."
+        yield from self._running_off()
+        yield from self._made_for_another()
+
+    def _made_for_another(self) -> Iterator[str]:
+        made = self.pair.profile
+        if isinstance(made, Synthesised) and not self.pair.is_flat and self.pair.roller != made.roller:
+            yield (
+                f"The profile is made for a roller of radius {made.roller:.6g}, not {self.pair.roller:.6g}: "
+                "the follower does not follow its program."
+            )
+
+    def _running_off(self) -> Iterator[str]:
+        curve = self.pair.curve
+        if curve.closed or not np.isfinite(self.parameter).any():
+            return
+        room = LEFT * (curve.high - curve.low)
+        if np.nanmin(self.parameter) < curve.low + room or np.nanmax(self.parameter) > curve.high - room:
+            yield "The contact comes close to an end of the open profile."
+
+    def _places(self, found: tuple[tuple[float, float], ...]) -> str:
+        """Spans of the parameter as points of the profile."""
+        points = [(complex(self.pair.curve.at(a).c[0]), complex(self.pair.curve.at(b).c[0])) for a, b in found]
+        return ", ".join(f"{_point(a)} to {_point(b)}" for a, b in points)
+
+    def __repr__(self) -> str:
+        return f"CamAnalysis({self.pair.name!r}, follower {self.follower!r})"
+
+
+def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
+    """The analysis of a cam or flat-faced cam pair over a motion.
+
+    Raises UnknownName for a pair that the mechanism does not have, InvalidInput for one that has no profile or a motion
+    without velocities.
+
+    Source: R. L. Norton, Cam Design and Manufacturing Handbook, 2nd ed., chapter 7.
+
+    >>> import compoundkin as ck
+    >>> eccentric = ck.Mechanism(
+    ...     "Eccentric", ck.link("frame", A=0), ck.link("cam", A=0), ck.link("follower", P=0),
+    ...     ck.slide("follower", on="frame", through="A", angle=ck.deg(90)),
+    ...     ck.cam("follower", on="cam", profile=ck.disc(20, (10, 0)), radius=5), ck.drive("cam"))
+    >>> found = cam_analysis(ck.solve(eccentric, {"cam": ck.deg([0, 90])}), "follower/cam")
+    >>> np.rad2deg(found.pressure_angle).round(6).tolist()  # arcsin(10 / 25)
+    [23.578178, 0.0]
+    >>> found.radius_of_curvature.round(9).tolist()
+    [20.0, 20.0]
+    """
+    if not isinstance(motion, Motion):
+        raise InvalidInput(Problem("motion", f"{motion!r} is not a motion", "solve() the mechanism first"))
+    pair = _pair_of(motion, name)
+    ends, poses = motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members)
+    touch = pair.touch(ends, poses)
+    place, normal = touch.place.c[0], touch.normal.c[0]
+    cam = motion.poses[pair.on]
+    s = pair.parameter(ends, poses)
+    radius = _radius(pair, s)
+    follower, oscillates, along = _direction(motion, pair, place)
+    return CamAnalysis(
+        motion,
+        pair,
+        follower,
+        oscillates,
+        contact=motion._known(place),
+        contact_on_cam=motion._known(np.conjugate(cam.u.c[0]) * (place - cam.z.c[0])),
+        parameter=motion._known(s),
+        pressure_angle=motion._known(_between(along, normal)),
+        radius_of_curvature=motion._known(radius),
+        pitch_radius=motion._known(radius + ends[1].measure) if not pair.is_flat else None,
+        sliding=motion._known(_sliding(motion, pair, place, normal)),
+    )
+
+
+def cam_pairs(motion: Motion) -> tuple[str, ...]:
+    """The names of the pairs that can be analysed, in order."""
+    return tuple(pair.name for pair in motion.mechanism.written_pairs if isinstance(pair, Profiled))
+
+
+def _pair_of(motion: Motion, name: str) -> Profiled:
+    known = {pair.name: pair for pair in motion.structure.pairs}
+    if name not in known:
+        raise UnknownName(Problem(str(name), "there is no such pair", nearest(str(name), list(cam_pairs(motion)))))
+    pair = known[name]
+    if not isinstance(pair, Profiled):
+        raise InvalidInput(Problem(name, f"a {pair.title} has no profile", nearest("", list(cam_pairs(motion)))))
+    if motion.order < 1:
+        raise InvalidInput(Problem(name, "the motion has no velocities", "solve(..., order=1) or more"))
+    return pair
+
+
+def _radius(pair: Profiled, s: Number) -> Number:
+    """The radius of curvature, positive where the profile is convex toward the follower."""
+    with np.errstate(divide="ignore"):
+        return 1.0 / (pair.outward * pair.curve.curvature(s))
+
+
+def _sliding(motion: Motion, pair: Profiled, place: Number, normal: Number) -> Number:
+    first, second = (_velocity(motion.poses[name], place) for name in pair.members)
+    return dot(second - first, 1j * normal)
+
+
+def _direction(motion: Motion, pair: Profiled, contact: Number) -> tuple[str, bool | None, Number]:
+    """The follower, whether it oscillates, and the direction in which its contact point can move.
+
+    Where it has no single guide, the direction of its velocity.
+    """
+    name = _led(motion, pair)
+    carried = {passive.link: passive.on for passive in motion.structure.passive}
+    name = carried.get(name, name)
+    poses = tuple(motion.poses[member] for member in pair.members)
+    point = contact if name == pair.on else pair.led(motion.inputs.ends[pair.name], poses)
+    guides = [guide for guide in motion.structure.pairs if _guides(guide, name, {pair.link, pair.on, *carried})]
+    if len(guides) == 1 and guides[0].is_simple:
+        oscillates = guides[0].free_is_angle
+        return name, oscillates, _guided(motion, guides[0], point)
+    velocity = _velocity(motion.poses[name], point)
+    speed = np.abs(velocity)
+    fastest = float(np.max(speed, initial=0.0, where=np.isfinite(speed)))
+    return name, None, np.where(speed > RESTS * fastest, velocity, np.nan)
+
+
+def _led(motion: Motion, pair: Profiled) -> str:
+    """The link that the contact moves: that of the profile where it is in the group which the contact closes."""
+    for group in motion.structure.groups:
+        if pair in group.outer or pair in group.inner:
+            return pair.link if pair.link in group.links else pair.on
+    return pair.link
+
+
+def _guides(guide: Pair, name: str, apart: set[str]) -> bool:
+    """Whether a pair guides a link: joins it to another one than those of the contact and its roller."""
+    return name in guide.members and not (set(guide.members) - {name}) & (apart - {name})
+
+
+def _guided(motion: Motion, guide: Pair, point: Number) -> Number:
+    """The direction in which a point of a link can move on its guide."""
+    reference = motion.poses[guide.members[0]].carry(motion.inputs.ends[guide.name][0])
+    return 1j * (point - as_series(reference.point).c[0]) if guide.free_is_angle else reference.along.c[0]
+
+
+def _velocity(pose: Pose, point: Number) -> Number:
+    """The velocity of the point of a link that is at a place of the world."""
+    z, u = pose.z, pose.u
+    origin, rate = (z.c[1] if len(z.c) > 1 else 0j), (u.turning().c[0] if len(u.c) > 1 else 0.0)
+    return origin + 1j * rate * (point - z.c[0])
+
+
+def _between(along: Number, normal: Number) -> Number:
+    """The angle from a line to a normal, between a right angle clockwise and one counterclockwise."""
+    turned = np.conjugate(along) * normal
+    return np.angle(np.where(turned.real < 0.0, -turned, turned))
+
+
+def _point(place: complex) -> str:
+    return f"({place.real:.6g}, {place.imag:.6g})"

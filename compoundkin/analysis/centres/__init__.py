@@ -1,0 +1,9 @@
+"""Instant centres by the theorem of Aronhold and Kennedy, and the independent routes that confirm them."""
+
+from __future__ import annotations
+
+from compoundkin.analysis.centres.centres_of_motion import instant_centres
+from compoundkin.analysis.centres.derivation_steps import Step
+from compoundkin.analysis.centres.instant_centres import Centre, Centres, Status
+
+__all__ = ["Centre", "Centres", "Status", "Step", "instant_centres"]

@@ -1,0 +1,63 @@
+"""Two other routes to the same centres: the null vector of the loop equations, and the solved velocities."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from compoundkin.analysis.centres.circle_diagram import couple
+from compoundkin.analysis.centres.homogeneous import cross, norm
+from compoundkin.analysis.centres.instant_centres import Centres
+from compoundkin.analysis.centres.primary_centres import Scale
+from compoundkin.analysis.centres.twist_loops import null_twists
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+from compoundkin.model.elements import FRAME
+
+
+def solved_twists(motion: Motion, scale: Scale) -> Number:
+    """Every link's twist as solved, (links, 3, poses), in own coordinates.
+
+    Raises InvalidInput for a motion of order 0.
+    """
+    motion._has(1)
+    count = motion.inputs.designs * motion.inputs.poses
+    shape = (motion.inputs.designs, motion.inputs.poses)
+    found = np.zeros((len(motion.mechanism.links), 3, count))
+    for k, name in enumerate(motion.mechanism.links):
+        pose = motion.poses[name]
+        u, du = pose.u.derivative(0), pose.u.derivative(1)
+        omega = np.imag(np.conjugate(u) * du)
+        # i v0 is omega times the centre; v0 is the velocity of the link's point at the world's origin
+        about = 1j * (pose.z.derivative(1) - 1j * omega * pose.z.derivative(0))
+        parts = [np.broadcast_to(v, shape).ravel() for v in (np.real(about), np.imag(about), omega)]
+        found[k] = scale.own(*parts)
+    return found
+
+
+def loop_twists(centres: Centres) -> tuple[Number, Number]:
+    """Every link's twist by the null vector of the loop equations, (links, 3, poses), but for a factor; and the gap.
+
+    Where the gap, the second smallest singular value over the largest, is near zero the pose is singular.
+    """
+    units = [np.where(np.isfinite(u), u, np.nan) for u in centres.places.units]
+    with np.errstate(all="ignore"):
+        return null_twists(centres.plan.diagram, units, centres.places.rates)
+
+
+def disagreement(centres: Centres, twists: Number) -> dict[tuple[str, str], Number]:
+    """By two links, their relative velocity at their centre, relative to the mechanism's fastest link.
+
+    `twists` as `solved_twists` and `loop_twists` give them; arrays of the motion's shape, NaN where either is
+    not known or the centre's conditioning is below POOR.
+    """
+    numbers = {name: k for k, name in enumerate(centres.plan.diagram.links)}
+    found = {}
+    with np.errstate(all="ignore"):
+        fastest = np.fmax.reduce(norm(np.moveaxis(twists - twists[numbers[FRAME]], 0, 1)), axis=0)
+        for one, other in centres:
+            i, j = numbers[one], numbers[other]
+            c = couple(centres.plan.body[i], centres.plan.body[j])
+            if c[0] != c[1]:
+                apart = norm(cross(centres.trusted(c), twists[j] - twists[i])) / np.where(fastest > 0.0, fastest, 1.0)
+                found[one, other] = apart.reshape(centres.motion.shape)
+    return found

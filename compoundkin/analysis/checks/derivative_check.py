@@ -1,0 +1,136 @@
+"""The derivatives of a motion against differences of its positions, solved again at neighbouring driver values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from math import factorial
+
+import numpy as np
+
+from compoundkin.analysis.checks.finding import Finding, worst
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.block import places
+
+# Central differences on eight neighbours: their error is of eighth, eighth and sixth order in the step.
+OFFSETS = np.arange(-4, 5)
+# The step, as a part of the time scale of the series: truncation is then below 1e-10, and rounding, 1e-16, is
+# divided by this to the power of the derivative.
+STEP = 0.008
+NAMES = ("", "velocity", "acceleration", "jerk")
+LIMITS = (0.0, 1e-9, 1e-7, 1e-5)
+
+
+def difference_findings(motion: Motion) -> Iterator[Finding]:
+    """Velocity, acceleration and jerk of every link against differences, outside change points, limits and jumps."""
+    counted = motion.regular & _away_from_change_points(motion)
+    if motion.order < 1 or not counted.any():
+        return
+    step = STEP * _own_time(motion)
+    counted = counted & np.isfinite(step) & _before_change_points(motion, step * len(OFFSETS))
+    stencils = [_positions(motion, step * j) for j in OFFSETS]
+    counted = counted & _smooth(motion, stencils)
+    if not counted.any():
+        return
+    for k in range(1, motion.order + 1):
+        weights = _weights(k)
+        parts: dict[str, Number] = {}
+        for link, pose in motion.poses.items():
+            for what, size in (("z", motion.size), ("u", 1.0)):
+                series = getattr(pose, what)
+                found = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights, stencils, strict=True))
+                own = series.derivative(k) * step**k
+                # relative to the largest derivative the series' own time allows
+                parts[link] = np.maximum(parts.get(link, 0.0), np.abs(found - own) / (STEP**k * size))
+        yield worst(motion, f"{NAMES[k]}, differences", LIMITS[k], parts, counted)
+
+
+def _weights(k: int) -> Number:
+    """Central-difference weights of the k-th derivative at unit step."""
+    powers = np.vander(OFFSETS.astype(float), increasing=True).T
+    right = np.zeros(len(OFFSETS))
+    right[k] = factorial(k)
+    return np.linalg.solve(powers, right)
+
+
+def _own_time(motion: Motion) -> Number:
+    """The time scale of the motion at each pose, which no step may exceed.
+
+    The least over derivatives of (1 / c[k])^(1/k), and of c[k] / c[k + 1], which near a limit position is the time
+    to it; c[k] being the largest k-th coefficient of any link.
+    """
+    largest = [_largest(motion, k) for k in range(1, motion.order + 1)]
+    fastest: Number = np.zeros(motion.failed.shape)
+    for k, c in enumerate(largest, start=1):
+        fastest = np.maximum(fastest, c ** (1.0 / k))
+    for c, after in pairwise(largest):
+        fastest = np.maximum(fastest, after / c)
+    return 1.0 / fastest
+
+
+def _largest(motion: Motion, k: int) -> Number:
+    """The largest k-th coefficient of any link's pose, lengths in parts of the mechanism's size."""
+    found: Number = np.zeros(motion.failed.shape)
+    for pose in motion.poses.values():
+        for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
+            if series.order >= k:
+                found = np.maximum(found, np.abs(series.c[k]) / size)
+    for pair in motion.structure.pairs:
+        # in a sharp hollow the contact is faster than any link
+        if pair.leads:
+            poses = tuple(motion.poses[name] for name in pair.members)
+            series = pair.coordinate(motion.inputs.ends[pair.name], poses)
+            found = np.maximum(found, np.abs(series.c[k]) / pair.spread) if series.order >= k else found
+    return found
+
+
+def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
+    """The poses at a time (designs x poses) from those of the motion, the drivers following their rates.
+
+    Rates beyond the motion's order are left out: they do not belong to the series that tells its time scale.
+    """
+    given = motion.inputs
+    drives = {}
+    for name, values in given.drives.items():
+        moved: Number = values[0]
+        for k, rate in enumerate(values[1 : motion.order + 1], start=1):
+            moved = moved + rate * time**k / factorial(k)
+        drives[name] = (moved,)
+    everywhere = places(slice(0, given.designs), slice(0, given.poses))
+    return dict(motion.tracker.run(given.driven(drives), 0, *everywhere).world)
+
+
+def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
+    """Poses between whose neighbours no contact passes a place where its profile's derivatives jump."""
+    good: Number = np.ones(motion.failed.shape, dtype=bool)
+    for pair in motion.structure.pairs:
+        ends = motion.inputs.ends[pair.name]
+        found = [pair.stretch(ends, tuple(poses[name] for name in pair.members)) for poses in stencils]
+        for stretch in found[1:]:
+            good = good & (stretch == found[0])
+    return good
+
+
+def _away_from_change_points(motion: Motion) -> Number:
+    """Poses whose neighbours lie on the same side of every change point."""
+    good: Number = np.ones(motion.failed.shape, dtype=bool)
+    index = np.arange(motion.inputs.poses, dtype=float)
+    for flips in motion.tracker.flips.values():
+        good = good & (np.abs(flips[:, :, None] - index).min(axis=1) > 1.0)
+    return good
+
+
+def _before_change_points(motion: Motion, reach: Number) -> Number:
+    """Poses from which the drivers do not come to a change point within a time."""
+    good: Number = np.ones(motion.failed.shape, dtype=bool)
+    for flips in motion.tracker.flips.values():
+        designs, which = np.nonzero(np.isfinite(flips))
+        there = motion.inputs.pick(designs, flips[designs, which])
+        away: Number = np.zeros((len(designs), motion.inputs.poses))
+        for name, (value, speed, *_) in motion.inputs.drives.items():
+            here, rate = (np.broadcast_to(v, motion.failed.shape)[designs] for v in (value, speed))
+            away = np.fmax(away, np.abs((there.drives[name][0] - here) / rate))
+        np.logical_and.at(good, designs, away > reach[designs])
+    return good

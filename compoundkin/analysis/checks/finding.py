@@ -1,0 +1,60 @@
+"""What a check finds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.display import Shows
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One check: its worst value relative to the mechanism's size and speed, the limit, and where it is worst.
+
+    `pose` is the index into the motion's shape; a value that is not a number does not pass.
+    """
+
+    name: str
+    value: float
+    limit: float
+    pair: str
+    pose: tuple[int, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is within its limit."""
+        return self.value <= self.limit
+
+
+@dataclass(frozen=True)
+class Check(Shows):
+    """All findings about a motion; `poses` of them were checked, `singular` had no rates to check."""
+
+    findings: tuple[Finding, ...]
+    poses: int
+    singular: int
+
+    @property
+    def passed(self) -> bool:
+        """Whether every finding passed, and there was something to check."""
+        return self.poses > 0 and all(finding.passed for finding in self.findings)
+
+
+def worst(motion: Motion, name: str, limit: float, parts: dict[str, Number], counted: Number) -> Finding:
+    """The worst value over all parts (each designs x poses, or broadcast to it) at the poses that count.
+
+    A value that is not a number is worse than any other.
+    """
+    found = Finding(name, 0.0, limit, "", ())
+    for label, part in parts.items():
+        values = np.where(counted, part, 0.0)
+        at = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
+        value = float(values.flat[at])
+        if not value <= found.value:
+            pose = tuple(int(i) for i in np.unravel_index(at, motion.shape)) if motion.shape else ()
+            found = Finding(name, value, limit, label, pose)
+    return found

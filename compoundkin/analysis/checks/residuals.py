@@ -1,0 +1,120 @@
+"""Residuals of a motion in the pairs' own equations.
+
+Positions: what a pair holds must be zero. Velocities: the pair's Jacobian times the links' velocities must
+be zero. Accelerations: so must the second derivative of what it holds. Links: orientations must stay unit
+vectors in every derivative. Drivers: the driven coordinate must be the one asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import factorial
+
+import numpy as np
+
+from compoundkin.analysis.checks.finding import Finding, worst
+from compoundkin.base.series import Number, Series
+from compoundkin.kinematics import Motion
+from compoundkin.model.pairs import Pair
+
+# Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
+# over the groups of the solving order, and near a limit position by the inverse of the distance from it.
+TOLERANCE = 1e-9
+# Dimensions that must fit although nothing holds them are given to some five digits.
+FITS = 1e-5
+ORDERS = ("closure", "velocity", "acceleration", "jerk")
+# A pose slower than this part of the motion's fastest is judged by that: a mechanism at rest has no own scale.
+SLOWEST = 1e-6
+
+
+def residuals(motion: Motion) -> Iterator[Finding]:
+    """The worst residual of pairs, links and drivers in each order, relative to size and speed."""
+    for k in range(motion.order + 1):
+        counted = motion.failed == 0 if k == 0 else motion.regular
+        scale = _scale(motion, k, counted)
+        for name, parts in _parts(motion, k):
+            relative = {label: residual / scale for label, residual in parts.items()}
+            yield worst(motion, name, TOLERANCE, relative, counted)
+        if motion.structure.redundant:
+            relative = {pair.name: _pair(motion, pair, k) / scale for pair in motion.structure.redundant}
+            yield worst(motion, f"redundant pairs, {ORDERS[k]}", FITS, relative, counted)
+    fits = dict(_misfits(motion))
+    if fits:
+        scale = _scale(motion, 0, motion.failed == 0)
+        relative = {_off(name, gap, FITS * scale): gap / scale for name, gap in fits.items()}
+        yield worst(motion, "fit of racks and wheels", FITS, relative, motion.failed == 0)
+
+
+def _misfits(motion: Motion) -> Iterator[tuple[str, Number]]:
+    """By pair, how far a length is off that no pair holds, such as a pinion's distance from its rack."""
+    for name, pair in motion.tracker.plan.pairs.items():
+        misfit = pair.misfit(motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members))
+        if misfit is not None:
+            yield name, np.abs(misfit.c[0])
+
+
+def _off(name: str, gap: Number, limit: Number) -> str:
+    """A pair's name, with the length by which it is off where that is too much."""
+    return f"{name}, off by {float(np.nanmax(gap)):.6g}" if np.any(gap > limit) else name
+
+
+def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
+    """The residuals of one order, by what is checked and by pair, link or driver."""
+    redundant = {pair.name for pair in motion.structure.redundant}
+    pairs = {name: pair for name, pair in motion.tracker.plan.pairs.items() if name not in redundant}
+    yield ORDERS[k], {name: _pair(motion, pair, k) for name, pair in pairs.items()}
+    yield f"rigid links, {ORDERS[k]}", {name: _rigid(motion, name, k) for name in motion.poses}
+    if motion.inputs.drives:
+        yield f"drivers, {ORDERS[k]}", {name: _driver(motion, name, k) for name in motion.inputs.drives}
+
+
+def _pair(motion: Motion, pair: Pair, k: int) -> Number:
+    ends = motion.inputs.ends[pair.name]
+    poses = tuple(motion.poses[member] for member in pair.members)
+    if k == 1:
+        rates = [v for pose in poses for v in _twist(pose.z.derivative(1), pose.u)]
+        rows = pair.jacobian(ends, poses)[..., : pair.held, :]
+        return _largest([sum(rows[..., j, i] * rates[i] for i in range(len(rates))) for j in range(pair.held)])
+    return _largest([series.derivative(k) for series in pair.closure(ends, poses)])
+
+
+def _twist(velocity: Number, u: Series) -> tuple[Number, Number, Number]:
+    c0, c1 = u.derivative(0), u.derivative(1)
+    return velocity.real, velocity.imag, c0.real * c1.imag - c0.imag * c1.real
+
+
+def _rigid(motion: Motion, link: str, k: int) -> Number:
+    length = motion.poses[link].u.abs2().derivative(k)
+    return np.abs(length - (1.0 if k == 0 else 0.0)) * motion.size
+
+
+def _driver(motion: Motion, name: str, k: int) -> Number:
+    driven = motion.tracker.plan.driven[name]
+    asked = motion.inputs.series(motion.order)[name].derivative(k) * driven.pair.driven_by(driven.drive.link)
+    gap = motion.pairs[driven.pair.name].coordinate.derivative(k) - asked
+    if not driven.pair.free_is_angle:
+        return np.abs(gap)
+    return np.abs(np.angle(np.exp(1j * gap)) if k == 0 else gap) * motion.size
+
+
+def _largest(values: list[Number]) -> Number:
+    out = np.abs(values[0])
+    for value in values[1:]:
+        out = np.maximum(out, np.abs(value))
+    return out
+
+
+def _scale(motion: Motion, k: int, counted: Number) -> Number:
+    """The size of the mechanism, or of its fastest link's k-th derivative, at each pose."""
+    size = motion.size
+    if k == 0:
+        return size + max((float(np.nanmax(np.abs(p.z.c[0]), initial=0.0)) for p in motion.poses.values()), default=0.0)
+    largest: Number = np.zeros(counted.shape)
+    for pose in motion.poses.values():
+        for j in range(1, k + 1):
+            # products of lower derivatives enter the k-th one: a speed cubed is as large a term as a jerk
+            weight = factorial(k) * (np.abs(pose.u.derivative(j)) * size / factorial(j))
+            largest = np.maximum(largest, np.maximum(weight, np.abs(pose.z.derivative(j)) if j == k else 0.0))
+            largest = np.maximum(largest, size * np.abs(pose.u.derivative(1)) ** k)
+    fastest = float(np.max(largest, where=counted, initial=0.0))
+    return np.maximum(largest, SLOWEST * fastest) if fastest > 0 else np.ones(counted.shape)

@@ -1,0 +1,37 @@
+"""Relative motion of any two links as geometry: pole, centrodes, inflection circle, curvature of paths."""
+
+from compoundkin.analysis.coupler.bresse_circles import (
+    CanonicalFrame,
+    Circle,
+    acceleration_pole,
+    canonical_frame,
+    inflection_circle,
+    tangential_circle,
+)
+from compoundkin.analysis.coupler.centrodes import Centrodes, Pole, centrode_curvature, centrodes, pole, pole_velocity
+from compoundkin.analysis.coupler.path_curvature import PathCurvature, curvature_rate, euler_savary, path_curvature
+from compoundkin.analysis.coupler.relative_motion import relative_link, relative_point
+from compoundkin.analysis.coupler.stationary_curvature import StationaryCurvature, stationary_curvature
+
+__all__ = [
+    "CanonicalFrame",
+    "Centrodes",
+    "Circle",
+    "PathCurvature",
+    "Pole",
+    "StationaryCurvature",
+    "acceleration_pole",
+    "canonical_frame",
+    "centrode_curvature",
+    "centrodes",
+    "curvature_rate",
+    "euler_savary",
+    "inflection_circle",
+    "path_curvature",
+    "pole",
+    "pole_velocity",
+    "relative_link",
+    "relative_point",
+    "stationary_curvature",
+    "tangential_circle",
+]

@@ -1,0 +1,195 @@
+"""The motion of any link seen from any other, and the motion of the link's points in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import factorial
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, nearest
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.kinematics import LinkMotion, Motion, PointMotion
+from compoundkin.model.elements import FRAME, vector
+
+# Rates come from sums of terms as large as the fastest of the two links and the drivers, each rounded to 1e-16 and
+# carried over the groups of the solving order. What is smaller than this part of that scale is rounding, not motion:
+# a pole farther away than 1e12 times the mechanism is at infinity.
+SMALL = 1e-12
+UNKNOWN = complex(np.nan, np.nan)
+INFINITE = complex(np.inf, np.inf)
+
+
+def relative_link(motion: Motion, link: str, on: str = FRAME) -> LinkMotion:
+    """The motion of one link as an observer on another one sees it, in the frame of the latter.
+
+    Angles in radians, their rates in rad/s; arrays of the motion's shape. Raises UnknownName for a link that is not
+    there, InvalidInput for a link seen from itself. Source: O. Bottema and B. Roth, Theoretical Kinematics (1979),
+    chapter VIII, the pose being ``pose(on)^-1 pose(link)``.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> crank = relative_link(solve(load_named("crank-rocker"), {"crank": [0.0]}, speed=2.0), "frame", on="crank")
+    >>> crank.angular_velocity.tolist()
+    [-2.0]
+    """
+    return LinkMotion(motion, _pose(motion, link, on))
+
+
+def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> PointMotion:
+    """The motion of any point of one link as an observer on another one sees it, in the frame of the latter.
+
+    `point` is a letter of the link, or a place in the link's own frame, complex or (x, y), a number or an array.
+    Lengths in the user's unit, per second, s^2, s^3; complex arrays of the motion's shape. Turn them by
+    ``motion.poses[on].u`` for world axes. Raises UnknownName for a link or letter that is not there, InvalidInput for a
+    link seen from itself and for what is not a point. Source: as `relative_link`.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> motion = solve(load_named("elliptic-trammel"), {"rod": [np.pi / 2]}, speed=1.0)
+    >>> relative_point(motion, "frame", "O", on="rod").speed.round(9).tolist()     # on a circle of radius 1.5
+    [3.0]
+    """
+    return relative_link(motion, link, on).at(place(motion, link, point))
+
+
+def place(motion: Motion, link: str, point: Any) -> Number:
+    """Where a point is in its link's frame: of a letter as the mechanism has it, of coordinates as they are."""
+    if isinstance(point, str):
+        known = motion.mechanism.geometry.points[link]
+        if point not in known:
+            raise UnknownName(Problem(point, f"link {link!r} has no such point", nearest(point, list(known))))
+        return known[point]
+    try:
+        return vector("point", point)
+    except InvalidMechanism as error:
+        raise InvalidInput(error.problems) from None
+
+
+def direction(vector: Number) -> Number:
+    """The unit vector of a planar vector; 0 for the vector 0."""
+    length = np.abs(vector)
+    return np.where(length > 0, vector / np.where(length > 0, length, 1.0), 0j)
+
+
+def rate(series: Series) -> Series:
+    """The time derivative of a series, one order lower."""
+    return Series(tuple(k * c for k, c in enumerate(series.c[1:], 1)))
+
+
+@dataclass(frozen=True, eq=False)
+class Relative:
+    """A relative motion as series of the motion's shape, and what is large and small in it.
+
+    `z`, `u` are the pose of `link` in the frame of `on`. Everything is geometry if it is divided by powers of the
+    relative angular velocity: the angle then is the parameter (instantaneous invariants).
+    """
+
+    motion: Motion
+    link: str
+    on: str
+    z: Series
+    u: Series
+
+    @cached_property
+    def omega(self) -> Series:
+        """The relative angular velocity; exactly 0 where it is nothing but rounding."""
+        omega = self.u.turning()
+        return Series((np.where(np.abs(omega.c[0]) > SMALL * self.scale(1), omega.c[0], 0.0), *omega.c[1:]))
+
+    @cached_property
+    def numerator(self) -> Series:
+        """The numerator of the pole: the pole is at ``(omega z + i z') / omega``."""
+        return self.omega * Series(self.z.c[:-1]) + 1j * rate(self.z)
+
+    @cached_property
+    def pole(self) -> Series:
+        """The pole in the frame of `on`."""
+        return self.numerator / self.omega
+
+    @cached_property
+    def pole_by_angle(self) -> Series:
+        """The derivative of the pole by the relative angle, still a series in time."""
+        return rate(self.pole) / Series(self.omega.c[:-1])
+
+    @cached_property
+    def turning(self) -> Number:
+        """Where the links turn relative to each other: the pole is finite and rates by the angle exist."""
+        return self.regular & (self.omega.c[0] != 0)
+
+    @cached_property
+    def resting(self) -> Number:
+        """Where the links stand still relative to each other for an instant, or always."""
+        still = np.abs(self.numerator.c[0]) <= SMALL * self.scale(1) * self.reach
+        return self.regular & (self.omega.c[0] == 0) & still
+
+    @cached_property
+    def regular(self) -> Number:
+        """Where the pose is assembled and all its rates are finite."""
+        return self.motion.regular.reshape(self.motion.shape)
+
+    @cached_property
+    def reach(self) -> Number:
+        """The lengths that rounding is relative to."""
+        return self.motion.size + np.abs(self.z.c[0])
+
+    @cached_property
+    def noise(self) -> Number:
+        """The rounding of lengths that come from accelerations by the relative angle."""
+        return SMALL * self.reach * np.maximum(1.0, self.scale(2) / self.omega.c[0] ** 2)
+
+    def scale(self, k: int) -> Number:
+        """How fast the two links and the drivers are at a pose, in rad/s^k: what rounding is relative to."""
+        size, links, drives = self.motion.size, self.motion.links, self.motion.drives.values()
+        rates = [np.abs(d.derivative(k)) / (1.0 if d.is_angle else size) for d in drives]
+        for name in (self.link, self.on):
+            rates += [np.abs(np.asarray(links[name].at(p).derivative(k))) / size for p in (0.0, size)]
+        largest = np.maximum.reduce(np.broadcast_arrays(*rates))
+        return largest if k == 1 else np.maximum(largest, self.scale(1) ** k)
+
+    def masked(self, values: Number, where: Number) -> Number:
+        """Values where they are defined, and NaN elsewhere."""
+        return np.where(where, values, UNKNOWN if np.iscomplexobj(values) else np.nan)
+
+
+def relative(motion: Motion, link: str, on: str, order: int, what: str) -> Relative:
+    """The relative motion of two links for geometry that takes derivatives up to `order`.
+
+    Raises InvalidInput where the motion was not solved to that order, or where no driver moves at some pose.
+    """
+    pose = _pose(motion, link, on)
+    if motion.order < order:
+        text = f"it takes derivatives to order {order}; the motion was solved to order {motion.order}"
+        raise InvalidInput(Problem(what, text, f"solve(..., order={order})"))
+    moving(motion, what)
+    return Relative(motion, link, on, _shaped(motion, pose.z.derivative), _shaped(motion, pose.u.derivative))
+
+
+def moving(motion: Motion, what: str) -> None:
+    """Raise InvalidInput if no driver moves at some pose: what is read off velocities is then not there."""
+    speeds = [np.broadcast_to(np.abs(drive.rate), motion.shape) for drive in motion.drives.values()]
+    still = np.asarray(motion.assembled & (np.max([*speeds, np.zeros(motion.shape)], axis=0) == 0))
+    if still.any():
+        pose = tuple(int(i) for i in np.argwhere(still)[0])
+        text = f"no driver moves at pose {pose}: every driver's speed is zero"
+        raise InvalidInput(Problem(what, text, "solve(..., speed=1): it does not depend on the driver's speed"))
+
+
+def _pose(motion: Motion, link: str, on: str) -> Pose:
+    for name in (link, on):
+        motion.mechanism.link(name)
+    if link == on:
+        known = ", ".join(name for name in motion.mechanism.links if name != link)
+        raise InvalidInput(Problem("on", f"{link!r} does not move relative to itself", f"another link: {known}"))
+    if on == FRAME:
+        return motion.poses[link]
+    return motion.poses[on].inverse().compose(motion.poses[link])
+
+
+def _shaped(motion: Motion, derivative: Callable[[int], Number]) -> Series:
+    point = PointMotion(motion, derivative)
+    return Series(tuple(np.asarray(point.derivative(k)) / factorial(k) for k in range(motion.order + 1)))

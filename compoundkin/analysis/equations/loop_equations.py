@@ -1,0 +1,234 @@
+"""The vector-loop equations of a mechanism: loops, auxiliary equations, drivers, and the count of unknowns.
+
+Sources: R. L. Norton, Design of Machinery, chapter 4; E. Soylemez, Mechanisms, chapter 3 (loop closure equations).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from compoundkin.analysis.equations.pair_terms import Auxiliary, Crossing, angle_of, crossing, difference, relation
+from compoundkin.analysis.equations.terms import Sum, Term, Unknown, Values, Vector
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.model.elements import FRAME
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.structure import Loop, Structure, decompose
+from compoundkin.structure.loops import loops_through
+
+# A vector shorter than this part of the mechanism is the rounding of none.
+NO_LENGTH = 1e-12
+# An angle nearer than this to 0 or a half turn is one.
+STRAIGHT = 1e-9
+# More loops than this would be read by nobody, and take long to write.
+MOST_LOOPS = 200
+
+
+@dataclass(frozen=True, eq=False)
+class VectorLoop:
+    """A closed loop of links: the sum of its vectors is zero, in x and in y."""
+
+    loop: Loop
+    terms: tuple[Term, ...]
+
+    def at(self, values: Values) -> Number:
+        """What is to be zero, complex."""
+        return sum((term.at(values) for term in self.terms), 0j)
+
+
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """A driver's equation: a sum of unknowns has the value that the driver is given."""
+
+    driver: str
+    sum: Sum
+    is_angle: bool
+
+    def at(self, values: Values, given: Number) -> Number:
+        """What is to be zero; angles but for whole turns."""
+        gap = self.sum.at(values) - given
+        return np.angle(np.exp(1j * gap)) if self.is_angle else gap
+
+
+@dataclass(frozen=True, eq=False)
+class LoopEquations:
+    """All equations of a mechanism, the unknowns they are for, and the lengths that are known, by their symbols."""
+
+    structure: Structure
+    loops: tuple[VectorLoop, ...]
+    auxiliary: tuple[Auxiliary, ...]
+    drivers: tuple[Driven, ...]
+    unknowns: tuple[Unknown, ...]
+    lengths: Mapping[str, Number]
+
+    @property
+    def equations(self) -> int:
+        """How many scalar equations there are: two for a loop."""
+        return 2 * len(self.loops) + len(self.auxiliary) + len(self.drivers)
+
+    @property
+    def is_solvable(self) -> bool:
+        """Whether there are as many equations as unknowns."""
+        return self.equations == len(self.unknowns)
+
+
+def loop_equations(mechanism: Mechanism | Structure) -> LoopEquations:
+    """The vector-loop equations of a mechanism.
+
+    Each link has a vector from pair to pair, at the link's angle; a slide adds its displacement along its guide, and
+    ties the angles of block and guide. A pin in a slot, a disc cam and the like are crossed by the block or bar that
+    stands for them; a profile by its parameter. Gears, belts and racks close no loop: they add one equation each.
+
+    Raises InvalidInput for more than `MOST_LOOPS` loops.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> found = loop_equations(load_named("slider-crank"))
+    >>> len(found.loops), len(found.auxiliary), [unknown.key for unknown in found.unknowns]
+    (1, 1, ['crank', 'rod', 'piston', 's(stroke)'])
+    """
+    structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
+    geometry = structure.mechanism.geometry
+    ends = {pair.name: pair.ends(geometry) for pair in structure.pairs}
+    crossings = {pair.name: crossing(pair, ends[pair.name]) for pair in structure.pairs}
+    pairs = [pair for pair in structure.pairs if crossings[pair.name] is not None]
+    found = loops_through(structure, pairs)
+    if len(found) > MOST_LOOPS:
+        what = f"{len(found)} loops are too many to write out"
+        raise InvalidInput(Problem("structure", what, f"take a part with {MOST_LOOPS} loops at most"))
+    walk = _Walk({name: c for name, c in crossings.items() if c is not None}, NO_LENGTH * geometry.size)
+    loops = tuple(VectorLoop(loop, tuple(walk.around(loop))) for loop in found)
+    auxiliary = [c.auxiliary for c in walk.crossings.values() if c.auxiliary is not None]
+    auxiliary += [a for pair in structure.pairs if (a := relation(pair, ends[pair.name])) is not None]
+    auxiliary += _racks(structure, pairs, walk, ends)
+    spun = {spin.link for spin in structure.passive}
+    links = [name for name in structure.mechanism.links if name != FRAME and name not in spun]
+    unknowns = [Unknown("angle", name) for name in links]
+    unknowns += [c.unknown for c in walk.crossings.values() if c.unknown is not None]
+    drivers = tuple(_drivers(structure, walk.crossings))
+    return LoopEquations(structure, loops, tuple(auxiliary), drivers, tuple(unknowns), walk.lengths)
+
+
+class _Walk:
+    """Walks from pair to pair and writes down the vectors, naming each length once."""
+
+    def __init__(self, crossings: Mapping[str, Crossing], nothing: float) -> None:
+        self.crossings, self.nothing = crossings, nothing
+        self.lengths: dict[str, Number] = {}
+
+    def around(self, loop: Loop) -> Iterator[Term]:
+        """The vectors of a loop."""
+        last = loop.pairs[-1]
+        point, label = self._side(last, loop.links[0])
+        for link, pair in zip(loop.links, loop.pairs, strict=True):
+            yield from self._on(link, point, label, *self._side(pair, link))
+            first = link == pair.members[0]
+            yield from self._arms(pair, first)
+            point, label = self._side(pair, pair.members[1] if first else pair.members[0])
+
+    def along(self, links: Sequence[str], pairs: Sequence[Pair], start: Number, end: Number) -> Iterator[Term]:
+        """The vectors of an open way, from a point of its first link to one of its last."""
+        point, label = start, "line"
+        for link, pair in zip(links, pairs, strict=False):
+            yield from self._on(link, point, label, *self._side(pair, link))
+            first = link == pair.members[0]
+            yield from self._arms(pair, first)
+            point, label = self._side(pair, pair.members[1] if first else pair.members[0])
+        yield from self._on(links[-1], point, label, end, "axis")
+
+    def _side(self, pair: Pair, link: str) -> tuple[Number, str]:
+        own = self.crossings[pair.name]
+        k = pair.members.index(link)
+        return own.points[k], own.labels[k]
+
+    def _arms(self, pair: Pair, forward: bool) -> Iterator[Term]:
+        arms = self.crossings[pair.name].arms
+        for arm in arms if forward else [arm.reversed() for arm in reversed(arms)]:
+            if isinstance(arm, Vector) and arm.symbol:
+                self.lengths[arm.symbol] = arm.length.constant
+            yield arm
+
+    def _on(self, link: str, start: Number, first: str, end: Number, last: str) -> Iterator[Vector]:
+        """The vector on a link between two of its points; none where they are one."""
+        line = end - start
+        if np.all(np.abs(line) <= self.nothing):
+            return
+        angle = np.angle(line)
+        sign, symbol = 1, _symbol(first, last)
+        if np.all(np.abs(np.abs(angle) - np.pi) < STRAIGHT):
+            # against the link's axis: the vector between the points named the other way round, taken away
+            sign, angle, symbol = -1, 0.0 * angle, _symbol(last, first)
+        symbol = self._named(symbol, link, np.abs(line))
+        yield Vector(
+            symbol, Sum(np.abs(line)), angle_of(link).plus(np.where(np.abs(angle) < STRAIGHT, 0.0, angle)), sign
+        )
+
+    def _named(self, symbol: str, link: str, length: Number) -> str:
+        """A symbol that means one length."""
+        known: Number = self.lengths.setdefault(symbol, length)
+        if np.shape(known) == np.shape(length) and np.all(np.abs(known - length) <= self.nothing):
+            return symbol
+        self.lengths[f"{symbol} of {link}"] = length
+        return f"{symbol} of {link}"
+
+
+def _symbol(first: str, last: str) -> str:
+    short = len(first.rstrip("'")) == len(last.rstrip("'")) == 1
+    return f"{first}{last}" if short else f"{first}-{last}"
+
+
+def _racks(
+    structure: Structure, pairs: Sequence[Pair], walk: _Walk, ends: Mapping[str, tuple[Any, ...]]
+) -> list[Auxiliary]:
+    """What racks add: the way of the axis along the pitch line, and the turn of the pinion."""
+    found = []
+    for pair in structure.pairs:
+        if pair.name in walk.crossings or pair.adds_angles:
+            continue
+        line, axis = ends[pair.name]
+        links, way = _way(pairs, *pair.members[:2])
+        path = tuple(walk.along(links, way, line.point, axis.point))
+        rack, pinion = (angle_of(name) for name in pair.members)
+        turned = tuple((axis.measure * factor, unknown) for factor, unknown in difference(rack, pinion).parts)
+        along = rack.plus(np.angle(line.along.c[0]))
+        found.append(Auxiliary(pair.name, Sum(-line.measure, turned), path, along, counts_turns=True))
+    return found
+
+
+def _way(pairs: Sequence[Pair], start: str, end: str) -> tuple[list[str], list[Pair]]:
+    """The links and pairs of a shortest way from a link to another."""
+    came: dict[str, tuple[str, Pair]] = {}
+    queue = deque([start])
+    while queue and end not in came:
+        link = queue.popleft()
+        for pair in pairs:
+            if link in pair.members[:2]:
+                other = pair.members[1] if link == pair.members[0] else pair.members[0]
+                if other != start and other not in came:
+                    came[other] = link, pair
+                    queue.append(other)
+    links, way = [end], []
+    while links[-1] != start and links[-1] in came:
+        link, pair = came[links[-1]]
+        links.append(link)
+        way.append(pair)
+    return links[::-1], way[::-1]
+
+
+def _drivers(structure: Structure, crossings: Mapping[str, Crossing]) -> Iterator[Driven]:
+    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
+    for step in (step for body in bodies for step in body.driven if not step.is_passive):
+        free = crossings[step.pair.name].unknown
+        if free is None:
+            first, second = (angle_of(name) for name in step.pair.members)
+            value = difference(first, second)
+        else:
+            value = Sum(0.0, ((1.0, free),))
+        if step.pair.driven_by(step.drive.link) < 0:
+            value = Sum(-value.constant, tuple((-factor, unknown) for factor, unknown in value.parts))
+        yield Driven(step.drive.name, value, step.pair.free_is_angle)

@@ -1,0 +1,180 @@
+"""The linkage of pins and slides that stands for a mechanism with higher pairs at one pose.
+
+Source: two profiles that touch move, up to accelerations, as if a bar joined their centres of curvature; e.g.
+I. I. Artobolevskii, Theory of Mechanisms and Machines, on the replacement of higher pairs by lower ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import constant
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.model.elements import Drive, Item, Link, drawn, drive
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair, slide
+from compoundkin.model.pairs.contract import Osculation
+
+# A centre of curvature farther away than this many times the mechanism's size belongs to a straight profile.
+STRAIGHT = 1e8
+# A centre nearer to a point of its link than this part of the size is that point.
+SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """What stands for one higher pair: `link` is a bar of some `length`, or a block where that is None."""
+
+    pair: Pair
+    link: str
+    length: float | None
+    centres: tuple[complex | None, complex | None]
+
+    def __str__(self) -> str:
+        if self.length is None:
+            return f"{self.pair.name} ({self.pair.title}): a block"
+        return f"{self.pair.name} ({self.pair.title}): a bar of length {self.length:.6g}"
+
+
+def equivalent_linkage(motion: Motion, at: int = 0) -> Mechanism:
+    """The mechanism of lower pairs with the same velocities and accelerations at one pose, `at` by its flat index.
+
+    Every higher pair gives way to a bar between the centres of curvature, or to a block where one profile is straight;
+    gears and belts to a bar on their line of action. Raises InvalidInput for a pose that is not assembled.
+
+    >>> import compoundkin as ck
+    >>> wheel = ck.Mechanism(
+    ...     "Quick return", ck.link("frame", A=0, C=-2j), ck.link("crank", A=0, B=1), ck.link("arm", C=0, D=3),
+    ...     ck.slot("crank", on="arm", at="B", through="C"), ck.drive("crank"))
+    >>> linkage = equivalent_linkage(ck.solve(wheel), at=3)
+    >>> [group.name for group in ck.decompose(linkage).groups]
+    ['RPR']
+    """
+    return replaced(motion, at)[0]
+
+
+def replaced(motion: Motion, at: int = 0) -> tuple[Mechanism, tuple[Replacement, ...]]:
+    """The equivalent linkage, and what stands for each higher pair in the order of the pairs."""
+    builder = _Builder(motion, at)
+    return builder.mechanism(), tuple(builder.found)
+
+
+class _Builder:
+    """Collects the links of the linkage and the points that they gain."""
+
+    def __init__(self, motion: Motion, at: int) -> None:
+        if not isinstance(motion, Motion):
+            raise InvalidInput(Problem("motion", f"{motion!r} is not a motion", "solve() the mechanism first"))
+        if not isinstance(at, int | np.integer) or isinstance(at, bool):
+            raise InvalidInput(Problem("at", f"{at!r} is not an index", "give the flat index of a pose"))
+        if not 0 <= at < motion.failed.size or not motion.regular.flat[at]:
+            what = f"pose {at} is not assembled, or at a limit position"
+            raise InvalidInput(Problem("at", what, f"give the index of one of the {motion.failed.size} poses"))
+        self.motion = motion
+        self.at = at
+        design, pose = divmod(at, motion.inputs.poses)
+        self.inputs: Inputs = motion.inputs.pick(np.array([design]), np.array([float(pose)]))
+        self.poses = {name: _at(pose_, at, motion.failed.shape) for name, pose_ in motion.poses.items()}
+        self.on = {spin.link: spin.on for spin in motion.structure.passive}
+        self.points = {name: dict(self._points(name)) for name in motion.mechanism.links if name not in self.on}
+        self.found: list[Replacement] = []
+
+    def mechanism(self) -> Mechanism:
+        """The linkage."""
+        pairs = [item for pair in self.motion.mechanism.written_pairs for item in self._pair(pair)]
+        links = [Link(name, points) for name, points in self.points.items()]
+        drives = [self._drive(item) for item in self.motion.mechanism.drives]
+        places = {k: self._world(name, p) for name, points in self.points.items() for k, p in points.items()
+                  if name in self.poses}  # fmt: skip
+        title = f"Equivalent linkage of {self.motion.mechanism.title}"
+        return Mechanism(title, *links, *pairs, *drives, drawn(**places), unit=self.motion.mechanism.unit)
+
+    def _points(self, name: str) -> Iterator[tuple[str, complex]]:
+        back = self.poses[name].inverse()
+        for letter in self.motion.mechanism.links[name].points:
+            yield letter, complex(back.at(self.motion.points[letter].position.flat[self.at]).c[0])
+
+    def _world(self, name: str, p: complex) -> complex:
+        return complex(self.poses[name].at(p).c[0])
+
+    def _drive(self, item: Drive) -> Drive:
+        value, *rates = (float(np.ravel(v)[0]) for v in self.inputs.drives[item.name])
+        return drive(item.link, on=item.on, pair=item.pair, values=value, name=item.name,
+                     **dict(zip(("speed", "acceleration", "jerk"), rates, strict=True)))  # fmt: skip
+
+    def _pair(self, pair: Pair) -> Iterator[Item]:
+        poses = tuple(self.poses[name] for name in pair.members)
+        ends = self.inputs.ends[pair.name]
+        found = pair.osculation(ends, poses)
+        if found is not None:
+            yield from self._replaced(pair, _plain(found, self.motion.size))
+        elif ends[0].direction is not None and ends[1].direction is not None:
+            on, link = pair.members
+            start, block = (self._letter(*side, pair.name) for side in zip(pair.members, ends, strict=True))
+            angle, turn = _angle(ends[0]), -_angle(ends[1])
+            yield slide(link, on=on, at=block, through=start, angle=angle, turn=turn, name=pair.name)
+        else:
+            yield pair
+
+    def _letter(self, name: str, end: End, pair: str) -> str:
+        """The letter of a pair's side on a link."""
+        return self._named(name, self._world(name, complex(np.ravel(np.asarray(end.point))[0])), pair)
+
+    def _replaced(self, pair: Pair, found: Osculation) -> Iterator[Item]:
+        """The bar or block that stands for a pair, and its slide."""
+        first, second = (self.on.get(name, name) for name in pair.members[:2])
+        new = f"{pair.name} {'block' if None in found[:2] else 'bar'}"
+        if found.first is not None and found.second is not None:
+            letters = [self._named(*side, pair.name) for side in ((first, found.first), (second, found.second))]
+            length = abs(found.second - found.first)
+            self.points[new] = {letters[0]: 0j, letters[1]: complex(length)}
+            self.found.append(Replacement(pair, new, length, found[:2]))
+            return
+        on, other, centre = (first, second, found.second) if found.first is None else (second, first, found.first)
+        letter = self._named(other, centre, pair.name)
+        self.points[new] = {letter: 0j}
+        along = self.poses[on].inverse().u.c[0] * found.normal * 1j
+        yield slide(new, on=on, at=letter, through=self._named(on, centre, f"{pair.name} guide", letter),
+                    angle=float(np.angle(along)), name=f"{pair.name} slide")  # fmt: skip
+        self.found.append(Replacement(pair, new, None, found[:2]))
+
+    def _named(self, name: str, place: complex, wanted: str, taken: str = "") -> str:
+        """The letter of a place of the world on a link: that of its point there, or a new one."""
+        local = complex(self.poses[name].inverse().at(place).c[0])
+        for letter, p in self.points[name].items():
+            if abs(p - local) <= SAME * self.motion.size and letter != taken:
+                return letter
+        letter, count = wanted, 1
+        while letter in self.motion.mechanism.carriers or letter in self.points or self._used(letter):
+            count += 1
+            letter = f"{wanted} {count}"
+        self.points[name][letter] = local
+        return letter
+
+    def _used(self, letter: str) -> bool:
+        return any(letter in points for points in self.points.values())
+
+
+def _angle(end: End) -> float:
+    """The direction of a side, as an angle in its link's frame."""
+    return float(np.ravel(end.along.angle().c[0])[0])
+
+
+def _plain(found: Osculation, size: float) -> Osculation:
+    """With numbers, and None for a centre that is too far away to be one."""
+    centres = (None if v is None else complex(np.ravel(v)[0]) for v in found[:2])
+    first, second = (None if v is None or not abs(v) < STRAIGHT * size else v for v in centres)
+    return Osculation(first, second, complex(np.ravel(found.normal)[0]))
+
+
+def _at(pose: Pose, at: int, shape: tuple[int, ...]) -> Pose:
+    """One pose of a motion, without derivatives."""
+    z, u = (complex(np.broadcast_to(series.c[0], shape).flat[at]) for series in (pose.z, pose.u))
+    theta = float(np.broadcast_to(pose.angle.c[0], shape).flat[at])
+    return Pose(constant(z), constant(u), constant(theta))

@@ -1,0 +1,1 @@
+"""What knows no mechanism: errors, series, poses, curves, linear algebra."""

@@ -1,0 +1,250 @@
+"""`Curve`: a smooth plane curve with all that cams and curved slots ask of it, from its Taylor expansion alone."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import factorial
+
+import numpy as np
+
+from compoundkin.base.composition import composed, differentiated
+from compoundkin.base.curves.requirements import check_points, checked_range
+from compoundkin.base.curves.samples import Samples
+from compoundkin.base.curves.self_crossings import Crossing, crossings
+from compoundkin.base.curves.touch_points import held, touching
+from compoundkin.base.curves.undercut import spans
+from compoundkin.base.series import Number, Series, as_series, cross, dot
+
+# Two places of a curve whose distances from a point differ by less than the square of this part of the curve cannot
+# be told apart by samples; Newton starts this close to its answer.
+SAMPLES = 2048
+# Places where what is given as a curve is tried.
+TRIED = 7
+# Gauss's rule with this many points between two samples has the length to rounding.
+GAUSS = 3
+
+
+class Curve(ABC):
+    """A smooth plane curve in a link's own frame: points C(s), complex, for s between `low` and `high`.
+
+    A closed curve is periodic: any s is meant modulo ``high - low``. An open one goes on smoothly beyond its ends;
+    what is searched for (`foot`, `support`) stays on it. Series are in time, their coefficients numbers or arrays of
+    any shapes that broadcast; NaN stays NaN.
+    """
+
+    low: float
+    high: float
+    closed: bool
+
+    @abstractmethod
+    def _expansion(self, s: Number, order: int) -> tuple[Number, ...]:
+        """The Taylor coefficients of C at parameters within the period, an array of any shape."""
+
+    # --- points and derivatives ---
+
+    def expansion(self, s: Number, order: int) -> tuple[Number, ...]:
+        """The Taylor coefficients 0 .. order of C at the parameters `s`: complex, of the shape of `s`."""
+        return self._expansion(self.wrapped(s), order)
+
+    def derivatives(self, s: Number, order: int) -> list[Number]:
+        """C and its derivatives by s up to an order: complex, of the shape of `s`."""
+        return [c * factorial(k) for k, c in enumerate(self.expansion(s, order))]
+
+    def wrapped(self, s: Number) -> Number:
+        """The same parameters between `low` and `high` on a closed curve; on an open one as they are."""
+        s = np.asarray(s, dtype=float)[()]
+        if not self.closed:
+            return s
+        period = self.high - self.low
+        return s - period * np.floor((s - self.low) / period)
+
+    def at(self, s: Series | Number) -> Series:
+        """The point of the curve at a parameter that changes in time."""
+        s = as_series(s)
+        return composed(self.expansion(s.c[0], s.order), s)
+
+    def tangent(self, s: Series | Number) -> Series:
+        """The unit vector along the curve, towards greater s."""
+        s = as_series(s)
+        return composed(differentiated(self.expansion(s.c[0], s.order + 1)), s).unit()
+
+    def normal(self, s: Series | Number) -> Series:
+        """The unit vector to the right of the tangent: outward on a counterclockwise curve."""
+        return self.tangent(s) * -1j
+
+    def curvature(self, s: Number) -> Number:
+        """The curvature, 1 / length: positive where the curve turns left, which a counterclockwise convex one does."""
+        _, first, second = self.derivatives(s, 2)
+        return cross(first, second) / np.abs(first) ** 3
+
+    def covers(self, s: Number) -> Number:
+        """Whether parameters belong to the curve; an open one has two ends."""
+        return np.isfinite(s) if self.closed else (self.low <= s) & (s <= self.high)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The parameters, within the period, at which derivatives may jump: none of a curve smooth all along."""
+        return ()
+
+    def stretch(self, s: Number, more: tuple[float, ...] = ()) -> Number:
+        """On which smooth stretch between two `breaks`, or some `more`, parameters lie: an index."""
+        breaks = np.sort([*self.breaks, *more])
+        found = np.searchsorted(breaks, self.wrapped(s))
+        return found % breaks.size if self.closed and breaks.size else found
+
+    # --- the curve as a whole ---
+
+    @property
+    def _count(self) -> int:
+        """How many samples show every feature of the curve."""
+        return SAMPLES
+
+    @cached_property
+    def samples(self) -> Samples:
+        """Points at equally spaced parameters, from which every search starts."""
+        s = np.linspace(self.low, self.high, self._count + 1)
+        s = s[:-1] if self.closed else s
+        return Samples(s, self.expansion(s, 0)[0], self.closed)
+
+    @property
+    def size(self) -> float:
+        """The diagonal of the box around the curve: its length scale."""
+        return self.samples.size
+
+    @property
+    def is_counterclockwise(self) -> bool:
+        """Whether the area inside is on the left; an open curve is closed by its chord."""
+        return self.samples.area > 0.0
+
+    @cached_property
+    def length(self) -> float:
+        """The length of arc from `low` to `high`."""
+        samples = self.samples
+        starts = samples.s if self.closed else samples.s[:-1]
+        nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
+        places = starts[:, None] + 0.5 * samples.step * (nodes + 1.0)
+        return float(np.sum(np.abs(self.expansion(places, 1)[1]) @ weights) * 0.5 * samples.step)
+
+    def crosses_itself(self) -> tuple[Crossing, ...]:
+        """The places where the curve crosses itself; none for a proper profile.
+
+        Loops smaller than the distance of two samples, and branches that touch without crossing, are not seen.
+        """
+        return crossings(self.samples, self.expansion)
+
+    # --- what touches the curve ---
+
+    def foot(self, p: Series | Number) -> Series:
+        """The parameter of the point of the curve nearest to a point that moves.
+
+        The nearest of the whole curve; of two places equally near within the square of the samples' distance, either.
+        Where it is an end of an open curve and the point lies beyond (`beyond`), it stays there. Coefficients after the
+        first are not finite where the point is the centre of curvature of its foot.
+
+        >>> unit_circle = Analytic(Series.turn, 0.0, 2 * np.pi, closed=True)
+        >>> [round(float(c), 12) for c in unit_circle.foot(Series((3j, 2 + 0j))).c]  # 90 degrees, 2 / 3 rad/s clockwise
+        [1.570796326795, -0.666666666667]
+        """
+        p = as_series(p)
+
+        def rise(s: Number, point: Number) -> tuple[Number, Number]:
+            place, first, second = self.derivatives(s, 2)
+            return dot(point - place, first), dot(point - place, second) - dot(first, first)
+
+        return touching(
+            self, p, self.size, rise, self.samples.nearest, lambda place, along, point: (point - place).dot(along)
+        )
+
+    def support(self, n: Series | Number) -> Series:
+        """The parameter of the point farthest in a direction that turns: where a flat face with this normal touches.
+
+        `n` is the face's normal away from the curve, of any length. Where an end of an open curve is farthest, it stays
+        there. Of several points equally far, any; coefficients after the first are not finite where the curve is
+        straight.
+
+        >>> ellipse = Analytic(lambda s: 2.0 * s.turn().real + 1j * s.turn().imag, 0.0, 2 * np.pi, closed=True)
+        >>> round(float(ellipse.support(1 + 2j).c[0]), 12)  # tan s = (b / a) (2 / 1)
+        0.785398163397
+        """
+        n = as_series(n)
+
+        def rise(s: Number, direction: Number) -> tuple[Number, Number]:
+            _, first, second = self.derivatives(s, 2)
+            return dot(direction, first), dot(direction, second)
+
+        return touching(
+            self, n, np.abs(n.c[0]), rise, self.samples.outermost, lambda _, along, direction: direction.dot(along)
+        )
+
+    def beyond(self, p: Series | Number, foot: Series | None = None) -> Number:
+        """Whether points lie beyond an end of an open curve, so that their foot (if known, `foot`) is that end."""
+        p = as_series(p).c[0]
+        s = (self.foot(p) if foot is None else foot).c[0]
+        place, along = self.expansion(s, 1)
+        return held(self, s, dot(p - place, along) / np.abs(along) / self.size)
+
+    # --- the parallel curve ---
+
+    def offset(self, distance: float) -> Analytic:
+        """The parallel curve at a distance along the normal: outside a counterclockwise curve if positive.
+
+        Its own direction turns back where the curve is undercut, see `undercut`.
+
+        >>> circle = Analytic(Series.turn, 0.0, 2 * np.pi, closed=True)
+        >>> round(circle.offset(0.5).length / np.pi, 12)
+        3.0
+        """
+
+        def parallel(s: Series) -> Series:
+            coefficients = self.expansion(s.c[0], s.order + 1)
+            along = composed(differentiated(coefficients), s)
+            return composed(coefficients, s) + along.unit() * (-1j * distance)
+
+        return Analytic(parallel, self.low, self.high, self.closed, self.breaks)
+
+    def offset_is_regular(self, distance: float) -> bool:
+        """Whether the parallel curve has no cusp: nowhere is the curve's radius on that side less than the distance."""
+        return not self.undercut(distance)
+
+    def undercut(self, distance: float) -> tuple[tuple[float, float], ...]:
+        """The spans of s where ``1 + distance * curvature`` is not positive, so that the parallel curve turns back.
+
+        On a closed curve a span may run past `high`; spans shorter than the distance of two samples are not seen.
+        Differentiating C + d n with Frenet's ``n' = curvature |C'| tangent`` gives ``|C'| (1 + d curvature)`` along it.
+        """
+        return spans(self.samples, self.low, self.high, lambda s: 1.0 + distance * self.curvature(s))
+
+
+@dataclass(frozen=True)
+class Analytic(Curve):
+    """A curve by a formula in series arithmetic: `function` takes the parameter as a `Series` and gives the point.
+
+    Derivatives of any order are those of the formula, exact to rounding. Raises `InvalidMechanism` if the range of s is
+    empty, a point is not finite, or a closed curve does not close.
+
+    >>> involute = Analytic(lambda s: s.turn() * (1.0 - 1j * s), 0.0, 2.0, closed=False)
+    >>> float(involute.curvature(0.5))
+    2.0
+    """
+
+    function: Callable[[Series], Series]
+    low: float
+    high: float
+    closed: bool
+    breaks: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        checked_range(self.low, self.high)
+        s = np.linspace(self.low, self.high, TRIED)
+        points = self._expansion(s, 1)[0]
+        check_points(s, points, float(np.max(np.abs(points - points[0]))), self.closed)
+
+    def _expansion(self, s: Number, order: int) -> tuple[Number, ...]:
+        moving = Series((s, 1.0, *[0.0] * (order - 1))) if order else Series((s,))
+        found = self.function(moving).c
+        shape = np.shape(s)
+        full = [np.broadcast_to(c, shape)[()] + 0j for c in found]
+        return (*full, *[np.zeros(shape, dtype=complex)[()]] * (order + 1 - len(found)))

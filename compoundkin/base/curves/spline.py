@@ -1,0 +1,118 @@
+"""A curve through given points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.curves.curve import SAMPLES, Curve
+from compoundkin.base.curves.piecewise import Pieces, interpolated
+from compoundkin.base.errors import InvalidMechanism, Problem
+from compoundkin.base.series import Number
+
+FEWEST = 4
+# Through fewer points than this goes a cubic spline, through more one of degree five, whose third derivative (the jerk
+# of what follows it) is smooth.
+FEWEST_QUINTIC = 6
+# Points nearer than this part of the profile's size are one point twice.
+SAME = 1e-12
+# Lengths of arc measured on the spline before and used for the next one; the first uses chords. Two are enough for the
+# full order of a quintic.
+ROUNDS = 2
+# Gauss points to measure a piece of arc.
+GAUSS = 8
+# Samples for each piece of the spline.
+SAMPLES_PER_PIECE = 4
+
+
+@dataclass(frozen=True)
+class Spline(Curve):
+    """The spline through points in a link's frame: quintic (five points or fewer: cubic), `closed` or open.
+
+    `points` are four or more complex numbers; a closed curve may repeat its first point as the last. The parameter
+    is nearly the length of arc from the first point. Raises `InvalidMechanism` for fewer points, points that are not
+    finite, or the same point twice in a row.
+
+    Source: M. S. Floater and T. Surazhsky, Parameterization for curve interpolation, 2006: chords as parameters limit
+    the accuracy, lengths of arc of a first spline restore it.
+
+    >>> square = Spline([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j], closed=True)
+    >>> square.is_counterclockwise, square.crosses_itself()
+    (True, ())
+    """
+
+    points: Sequence[complex] | Number
+    closed: bool
+    low: float = field(init=False, default=0.0, repr=False, compare=False)
+    high: float = field(init=False, default=0.0, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        points = checked_points(self.points, self.closed)
+        object.__setattr__(self, "points", tuple(points.tolist()))
+        object.__setattr__(self, "high", float(self._pieces.breaks[-1]))
+
+    @cached_property
+    def _pieces(self) -> Pieces:
+        points = np.array(self.points)
+        degree = 5 if points.size >= FEWEST_QUINTIC else 3
+        if self.closed:
+            points = np.append(points, points[0])
+        s = _summed(np.abs(np.diff(points)))
+        for _ in range(ROUNDS):
+            s = _summed(_arcs(interpolated(s, points, degree, self.closed), s))
+        return interpolated(s, points, degree, self.closed)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The given points: the highest derivatives jump there."""
+        return tuple(self._pieces.breaks[:-1].tolist())
+
+    @property
+    def _count(self) -> int:
+        return max(SAMPLES, SAMPLES_PER_PIECE * len(self.points))
+
+    def _expansion(self, s: Number, order: int) -> tuple[Number, ...]:
+        return self._pieces.taylor(s, order)
+
+
+def checked_points(given: Sequence[complex] | Number, closed: bool) -> Number:
+    """The points of a profile as an array, without a repetition of the first at the end; else `InvalidMechanism`."""
+    try:
+        points = np.array(given, dtype=complex)
+    except (TypeError, ValueError):
+        raise InvalidMechanism(
+            Problem("points", "the points of a curve are complex numbers", "write x + 1j * y")
+        ) from None
+    if points.ndim != 1:
+        what = f"a curve is one list of points, these have the shape {points.shape}"
+        raise InvalidMechanism(
+            Problem("points", what, "write every point as x + 1j * y, and one curve for each design")
+        )
+    lost = np.flatnonzero(~np.isfinite(points))
+    if lost.size:
+        raise InvalidMechanism([Problem(f"points[{k}]", f"{points[k]} is not a finite point") for k in lost])
+    if closed and points.size > 1 and abs(points[-1] - points[0]) <= SAME * np.max(np.abs(points - points[0])):
+        points = points[:-1]
+    if points.size < FEWEST:
+        what = f"{points.size} points are too few for a curve"
+        raise InvalidMechanism(Problem("points", what, f"give {FEWEST} or more, all different"))
+    chords = np.abs(np.diff(points))
+    repeated = np.flatnonzero(chords <= SAME * np.max(np.abs(points - points[0])))
+    if repeated.size:
+        what, remedy = "the same point as the one before", "leave it out"
+        raise InvalidMechanism([Problem(f"points[{k + 1}]", what, remedy) for k in repeated])
+    return points
+
+
+def _summed(lengths: Number) -> Number:
+    return np.append(0.0, np.cumsum(lengths))
+
+
+def _arcs(pieces: Pieces, s: Number) -> Number:
+    """The lengths of arc between parameters."""
+    nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
+    half = 0.5 * np.diff(s)[:, None]
+    return (np.abs(pieces.taylor(s[:-1, None] + half * (nodes + 1.0), 1)[1]) * half) @ weights

@@ -1,0 +1,85 @@
+"""The place of a curve where something touches it: the best sample, Newton, then order by order in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from compoundkin.base.composition import composed, differentiated, implicit
+from compoundkin.base.curves.samples import Samples, climbed
+from compoundkin.base.series import Number, Series
+
+# Seen from an end, a point is beyond it if it is in front of it by this part of the curve's size, a direction if it
+# leans forward by this angle: what touches the very end moves on like its neighbours.
+BEYOND = 1e-12
+
+
+class Searched(Protocol):
+    """What a search needs of a curve."""
+
+    low: float
+    high: float
+    closed: bool
+
+    @property
+    def samples(self) -> Samples:
+        """Points from which to start."""
+
+    def expansion(self, s: Number, order: int) -> tuple[Number, ...]:
+        """Taylor coefficients of the curve."""
+
+    def wrapped(self, s: Number) -> Number:
+        """Parameters within the period."""
+
+
+def touching(
+    curve: Searched,
+    given: Series,
+    scale: Number,
+    rise: Callable[[Number, Number], tuple[Number, Number]],
+    best: Callable[[Number], Number],
+    condition: Callable[[Series, Series, Series], Series],
+) -> Series:
+    """The parameter that `given`, as large as `scale`, belongs to: the best sample, Newton, then order by order."""
+    lead = np.asarray(given.c[0], dtype=complex)
+    flat = lead.ravel()
+    known = np.isfinite(flat)
+    found = np.full(flat.shape, np.nan)
+    targets = flat[known]
+    if targets.size:
+        bounds = curve.samples.around(best(targets))
+        found[known] = climbed(lambda s, which: rise(s, targets[which]), *bounds)
+    s = found.reshape(lead.shape)[()]
+    if given.order == 0:
+        return Series((curve.wrapped(s),))
+    coefficients = curve.expansion(s, given.order + 1)
+    first, slope = rise(s, lead)
+    stays = held(curve, s, first / np.abs(coefficients[1]) / scale)
+    rates = _rates(given, s, slope, coefficients, condition)
+    return Series((curve.wrapped(s), *[np.where(stays, 0.0, rate)[()] for rate in rates]))
+
+
+def held(curve: Searched, s: Number, ahead: Number) -> Number:
+    """Where a search ended at an end of the curve, what it looks for lying this far ahead (a pure number)."""
+    if curve.closed:
+        return np.zeros(np.shape(s), dtype=bool)[()]
+    return ((s <= curve.low) & (ahead < -BEYOND)) | ((s >= curve.high) & (ahead > BEYOND))
+
+
+def _rates(
+    given: Series,
+    s: Number,
+    slope: Number,
+    coefficients: tuple[Number, ...],
+    condition: Callable[[Series, Series, Series], Series],
+) -> tuple[Number, ...]:
+    """The coefficients after the first of the parameter that keeps a condition of point, derivative and `given`."""
+    along = differentiated(coefficients)
+
+    def residual(trial: Series) -> Series:
+        cut = Series(given.c[: trial.order + 1])
+        return condition(composed(coefficients, trial), composed(along, trial), cut)
+
+    return implicit(s, given.order, slope, residual).c[1:]

@@ -1,0 +1,93 @@
+"""Batches of small linear systems: three unknowns by Cramer's rule, more by LAPACK; a singular one gives NaN."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+import numpy as np
+
+from compoundkin.base.series import Number
+
+# One row of a matrix over a batch: its entries by column; what is not there is zero.
+Row: TypeAlias = dict[int, Number]
+
+
+class Inverse:
+    """The inverse of a batch of matrices given by rows, for any number of right-hand sides.
+
+    >>> halves = Inverse([{0: 2.0}, {1: 4.0}, {2: np.array([8.0, 0.0])}], 3)
+    >>> [x.tolist() for x in halves.times([2.0, 4.0, 8.0])[2:]]
+    [[1.0, nan]]
+    """
+
+    def __init__(self, rows: Sequence[Row], size: int) -> None:
+        self.size = size
+        if size == 3:
+            self._entries, self.determinant = _cramer([[row.get(j, 0.0) for j in range(3)] for row in rows])
+        else:
+            matrix = stacked(rows, size)
+            self.determinant = np.linalg.slogdet(matrix)[0]
+            inverse = inverted(matrix)
+            self._entries = [[inverse[..., i, j] for j in range(size)] for i in range(size)]
+
+    def times(self, right: Sequence[Number]) -> list[Number]:
+        """The solutions for one right-hand side, each unknown an array of its own."""
+        found = []
+        for row in self._entries:
+            total = row[0] * right[0]
+            for entry, value in zip(row[1:], right[1:], strict=True):
+                total = total + entry * value
+            found.append(total)
+        return found
+
+
+def _cramer(m: list[list[Number]]) -> tuple[list[list[Number]], Number]:
+    """The inverse and the determinant of 3 x 3 matrices of arrays."""
+    (a, b, c), (d, e, f), (g, h, i) = m
+    ei, di, dh = e * i - f * h, d * i - f * g, d * h - e * g
+    determinant = np.asarray(a * ei - b * di + c * dh)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        r = np.where(determinant == 0.0, np.nan, 1.0) / determinant
+    rows = [
+        [ei * r, (c * h - b * i) * r, (b * f - c * e) * r],
+        [-di * r, (a * i - c * g) * r, (c * d - a * f) * r],
+        [dh * r, (b * g - a * h) * r, (a * e - b * d) * r],
+    ]
+    return rows, determinant
+
+
+def stacked(rows: Sequence[Row], size: int) -> Number:
+    """The matrices (..., rows, size) of some rows.
+
+    >>> stacked([{0: 1.0}, {1: np.array([2.0, 3.0])}], 2).tolist()
+    [[[1.0, 0.0], [0.0, 2.0]], [[1.0, 0.0], [0.0, 3.0]]]
+    """
+    shape = np.broadcast_shapes(*(np.shape(entry) for row in rows for entry in row.values()))
+    out = np.zeros((*shape, len(rows), size))
+    for i, row in enumerate(rows):
+        for j, entry in row.items():
+            out[..., i, j] = entry
+    return out
+
+
+def solve(matrix: Number, right: Number) -> Number:
+    """Solve a batch of linear systems; a singular one gives NaN instead of an error.
+
+    >>> solve(np.eye(2)[None] * 2.0, np.ones((1, 2))).tolist()
+    [[0.5, 0.5]]
+    """
+    try:
+        return np.linalg.solve(matrix, right[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        return np.einsum("...ij,...j->...i", inverted(matrix), right)
+
+
+def inverted(matrix: Number) -> Number:
+    """The inverses of a batch of matrices, NaN for a singular one."""
+    try:
+        return np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(matrix) == 0
+        safe = np.where(singular[..., None, None], np.eye(matrix.shape[-1]), matrix)
+        return np.where(singular[..., None, None], np.nan, np.linalg.inv(safe))

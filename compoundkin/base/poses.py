@@ -1,0 +1,113 @@
+"""Where a link is: its origin and its orientation, both as series in time."""
+
+from __future__ import annotations
+
+from math import factorial
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.series import Number, Series, constant
+
+
+class End(NamedTuple):
+    """One link's side of a pair: a point; for a guide or its block the direction; a number that belongs to it.
+
+    In a link's own frame point and direction are constants; in a driven composite link or in the world they are
+    series. The `measure` is a radius, a number of teeth or a phase: the same in every frame.
+    """
+
+    point: Series | Number
+    direction: Series | Number | None = None
+    measure: Number = None
+
+    @property
+    def along(self) -> Series:
+        """The direction as a series; only the ends of guides and blocks have one.
+
+        >>> End(0j, 1j).along.c
+        (1j,)
+        """
+        return self.direction if isinstance(self.direction, Series) else constant(self.direction)
+
+
+class Pose:
+    """A link's pose: origin `z` and orientation `u`, a unit vector; a point p of the link is at ``z + u p``.
+
+    `theta` is the angle of `u` where full turns are counted, None where only the orientation is known.
+
+    >>> Pose(constant(1 + 0j), constant(1j)).at(2.0).c
+    ((1+2j),)
+    """
+
+    __slots__ = ("theta", "u", "z")
+
+    def __init__(self, z: Series, u: Series, theta: Series | None = None) -> None:
+        self.z = z
+        self.u = u
+        self.theta = theta
+
+    @classmethod
+    def of(cls, z: Number, u: Number) -> Pose:
+        """A pose of order 0."""
+        return cls(constant(z), constant(u))
+
+    def at(self, p: Series | Number) -> Series:
+        """Where the point that is `p` in the link's frame is in the world."""
+        if isinstance(p, (complex, float, int)) and p == 0:
+            return self.z
+        if self is FIXED:
+            return p if isinstance(p, Series) else constant(p)
+        return self.z + self.u * p
+
+    @property
+    def angle(self) -> Series:
+        """The angle of its orientation: with full turns where they are counted, else between -pi and pi.
+
+        >>> FIXED.angle.c
+        (0.0,)
+        """
+        return self.u.angle() if self.theta is None else self.theta
+
+    def counted(self, near: Number) -> Pose:
+        """The pose with full turns counted: its angle is the one nearest to `near`.
+
+        >>> Pose.of(0j, 1j).counted(8.0).angle.c[0].round(6)
+        np.float64(7.853982)
+        """
+        theta = self.u.angle()
+        turns = np.round((near - theta.c[0]) / (2.0 * np.pi))
+        return Pose(self.z, self.u, theta + 2.0 * np.pi * turns)
+
+    def derivative(self, p: Number, k: int) -> Number:
+        """The k-th time derivative of where the point `p` of the link is.
+
+        >>> Pose(constant(1 + 0j), constant(1j)).derivative(2.0, 0)
+        (1+2j)
+        """
+        z, u = self.z.c, self.u.c
+        found = u[k] * p if k < len(u) else 0j
+        if k < len(z):
+            found = found + z[k]
+        return found * factorial(k) if k > 1 else found
+
+    def carry(self, end: End) -> End:
+        """The link's side of a pair, in the world."""
+        if self is FIXED:
+            return End(self.at(end.point), end.direction, end.measure)
+        return End(self.at(end.point), None if end.direction is None else self.u * end.direction, end.measure)
+
+    def compose(self, inner: Pose) -> Pose:
+        """The pose of what has pose `inner` in this link's frame."""
+        if self is FIXED:
+            return inner
+        known = self.theta is not None and inner.theta is not None
+        return Pose(self.at(inner.z), self.u * inner.u, self.angle + inner.angle if known else None)
+
+    def inverse(self) -> Pose:
+        """The pose of the world as seen from the link."""
+        back = self.u.conj()
+        return Pose(-(back * self.z), back, None if self.theta is None else -self.theta)
+
+
+FIXED = Pose(constant(0j), constant(1 + 0j), constant(0.0))

@@ -1,0 +1,126 @@
+"""The options that drive a mechanism, and the motion they ask for."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from compoundkin.cli.shell import say
+
+if TYPE_CHECKING:
+    from compoundkin.kinematics import Motion
+    from compoundkin.structure import Structure
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+SPEED = click.option("--speed", "speeds", multiple=True, metavar="[NAME=]VALUE",
+                     help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).")  # fmt: skip
+MODE = click.option("--mode", "modes", multiple=True, metavar="LINK=SIGN",
+                    help="Assembly mode, +1 or -1, of the group with this link.")  # fmt: skip
+DESIGN = click.option("--design", default=0, show_default=True, metavar="INDEX",
+                      help="Which one, where dimensions are arrays.")  # fmt: skip
+AT = click.option("--at", "at", multiple=True, metavar="[NAME=]VALUE",
+                  help="The pose: a driver's value, degrees or length; the first of its range "
+                  "if left out.")  # fmt: skip
+# How the options are called on the command line, by the names of their values.
+OPTIONS: tuple[Any, ...] = (
+    click.option("--at", "at", metavar="VALUES", help="Solve at these values of the only driver: 35 or 0,35,60."),
+    click.option("--from", "start", type=float, metavar="VALUE", help="First value of the only driver."),
+    click.option("--to", "stop", type=float, metavar="VALUE", help="Last value of the only driver."),
+    click.option("--step", "step", type=float, metavar="VALUE", help="Distance between its values."),
+    click.option("--drive", "drives", multiple=True, metavar="NAME=VALUES",
+                 help="Values of a driver: crank=35, crank=0,35,60 or crank=0:360:5 (from:to:step)."),
+    click.option("--time", "time", metavar="SECONDS",
+                 help="Solve at these times: 0:2:0.01 (from:to:step) or 0,0.5,1. Drivers move by their laws, others "
+                 "from their value by their speed and acceleration."),
+    SPEED,
+    click.option("--acceleration", "accelerations", multiple=True, metavar="[NAME=]VALUE",
+                 help="Its second rate in rad/s^2 or length/s^2."),
+    click.option("--order", type=click.IntRange(0, 3), help="0 position, 1 velocity, 2 acceleration, 3 jerk; "
+                 "otherwise what the outputs need, at least 2."),
+    MODE,
+    click.option("--output", "outputs", multiple=True, metavar="QUANTITY", callback=lambda _c, _p, given: names(given),
+                 help="Such as G.velocity, G.speed, bar.angle, slot.rate; repeat it, or write commas."),
+)  # fmt: skip
+
+
+def drive_options(command: F) -> F:
+    """The options of a command that solves a mechanism; values in degrees or lengths."""
+    for option in reversed(OPTIONS):
+        command = option(command)
+    return command
+
+
+def pose_options(command: F) -> F:
+    """The options of a command that shows one pose: rates, modes, which design."""
+    for option in (DESIGN, MODE, SPEED):
+        command = option(command)
+    return command
+
+
+def names(given: Sequence[str]) -> tuple[str, ...]:
+    """Names given one by one or with commas between them.
+
+    >>> names(["G.x,G.y", "bar"])
+    ('G.x', 'G.y', 'bar')
+    """
+    return tuple(name.strip() for text in given for name in text.split(",") if name.strip())
+
+
+def solved(structure: Structure, asked: Mapping[str, Any]) -> Motion:
+    """The motion that the options ask for; what cannot be assembled is said on stderr.
+
+    Raises InvalidInput for options that do not fit the mechanism, and whatever `solve` raises.
+    """
+    from compoundkin.cli import typed_values
+
+    return solved_at(structure, typed_values.of_drivers(structure, asked), asked)
+
+
+def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[str, Any]) -> Motion:
+    """As `solved`, at these values of the drivers."""
+    from compoundkin.base.errors import UnassembledPoses
+    from compoundkin.cli import typed_values
+    from compoundkin.cli.progress import working
+    from compoundkin.kinematics import solve
+
+    rates = {
+        what: typed_values.of_rates(structure, f"--{what}", asked[f"{what}s"]) for what in ("speed", "acceleration")
+    }
+    modes = typed_values.of_modes(structure, asked["modes"])
+    time = typed_values.of_times(asked.get("time"))
+    with working("solving"), warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UnassembledPoses)
+        motion = solve(structure, driven, time=time, **rates, order=_order(structure, asked), modes=modes)
+    for warning in caught:
+        _pass_on(warning, motion)
+    return motion
+
+
+def _order(structure: Structure, asked: Mapping[str, Any]) -> int:
+    """The order asked for, or the highest that an output needs; raises InvalidInput where they disagree."""
+    from compoundkin.base.errors import InvalidInput, Problem
+    from compoundkin.kinematics.quantities import order_of
+
+    order = asked["order"]
+    if order is None:
+        return max([2, *(order_of(name) for name in asked["outputs"] or structure.mechanism.outputs)])
+    for name in asked["outputs"]:
+        if order_of(name) > order:
+            remedy = f"leave --order out, or give --order {order_of(name)}"
+            raise InvalidInput(Problem(f"--order {order}", f"{name} needs a higher order", remedy))
+    return int(order)
+
+
+def _pass_on(warning: warnings.WarningMessage, motion: Motion) -> None:
+    """The sentence on poses that cannot be assembled; any other warning as it is."""
+    from compoundkin.base.errors import UnassembledPoses
+
+    if issubclass(warning.category, UnassembledPoses):
+        missing = int((motion.failed != 0).sum())
+        say(f"Warning: {missing:,} of {motion.failed.size:,} poses cannot be assembled.")
+    else:
+        warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)

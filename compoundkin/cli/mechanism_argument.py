@@ -1,0 +1,44 @@
+"""The argument that every verb starts from: a mechanism file, or a name of the catalog."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+from click.shell_completion import CompletionItem
+
+if TYPE_CHECKING:
+    from compoundkin.model.mechanism import Mechanism
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def complete_name(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """The names of the catalog that begin so."""
+    from compoundkin.files.shipped_mechanisms import names
+
+    return [CompletionItem(name) for name in names() if name.startswith(incomplete)]
+
+
+def _complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """The names that begin so, and files."""
+    return [*complete_name(ctx, param, incomplete), CompletionItem(incomplete, type="file")]
+
+
+def mechanism_argument(command: F) -> F:
+    """The argument FILE of a command."""
+    return click.argument("file", metavar="FILE", shell_complete=_complete)(command)
+
+
+def loaded(file: str) -> Mechanism:
+    """The mechanism of a file or of a name; raises what is wrong with it."""
+    from compoundkin.base.errors import InvalidInput, Problem
+    from compoundkin.files import load
+    from compoundkin.files.shipped_mechanisms import resolve
+
+    if Path(file).is_dir():
+        raise InvalidInput(Problem(file, "this is a folder", "name a mechanism file in it"))
+    # what is there but is no regular file, such as a pipe, is for `load` to judge
+    return load(file if Path(file).exists() else resolve(file))

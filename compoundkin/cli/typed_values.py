@@ -1,0 +1,226 @@
+"""Values of drivers, rates and assembly modes as they are written on the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.series import Number
+from compoundkin.files.written_quantities import MOST_VALUES, RPM, spaced
+from compoundkin.kinematics.inputs import FULL_TURN
+from compoundkin.kinematics.quantities import degrees
+from compoundkin.model.elements import Drive
+from compoundkin.structure import Structure
+from compoundkin.view.report.links_and_pairs import driven_pairs
+
+HOW = "write 35, 0,35,60 or 0:360:5 (from:to:step)"
+TIMES = "write seconds: 0.5, 0,0.5,1 or 0:2:0.01 (from:to:step)"
+
+
+def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
+    """The values asked for, by driver, as `solve` takes them: radians or lengths.
+
+    Raises InvalidInput for what cannot be read, for drivers that do not exist, and for ranges of different lengths.
+    """
+    texts: dict[str, str] = {}
+    for name, text in _named(structure, "--drive", asked["drives"]):
+        if name in texts:
+            raise _wrong(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
+        texts[name] = text
+    shown = {name: numbers(text, f"--drive {name}") for name, text in texts.items()}
+    span = {key: asked[key] for key in ("at", "start", "stop", "step") if asked[key] is not None}
+    if span:
+        name = _only(structure, "--at" if "at" in span else "--from, --to, --step")
+        if name in shown:
+            raise _wrong(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
+        shown[name] = _spanned(structure, name, span)
+    angles = _angles(structure)
+    values = {name: np.deg2rad(v) if angles[name] else v for name, v in shown.items()}
+    if asked.get("time") is None:
+        _of_one_length(structure, values)
+    return {name: float(v[0]) if len(v) == 1 else v for name, v in values.items()}
+
+
+def of_times(text: str | None) -> Number | None:
+    """The times asked for, in seconds; None where none are.
+
+    >>> of_times("0:1:0.5").tolist()
+    [0.0, 0.5, 1.0]
+    """
+    return None if text is None else numbers(text, "--time", TIMES)
+
+
+def of_pose(structure: Structure, given: Sequence[str], option: str = "--at") -> dict[str, float]:
+    """One value of every driver, radians or lengths: the one given, else the first of its own range."""
+    names = [drive.name for drive in structure.mechanism.drives]
+    if len(names) > 1 and any("=" not in text for text in given):
+        raise _wrong(option, f"there are {len(names)} drivers", f"write NAME=VALUE, NAME one of {', '.join(names)}")
+    found, angles = _first(structure), _angles(structure)
+    shown = list(_named(structure, option, given))
+    for name, text in shown:
+        if sum(other == name for other, _ in shown) > 1:
+            raise _wrong(f"{option} {name}", "the driver's value is given twice", "leave one of them out")
+        found[name] = _single(text, f"{option} {text}", angles[name])
+    return found
+
+
+def _first(structure: Structure) -> dict[str, float]:
+    """The first value of every driver that has values, a law, or turns a full turn."""
+    own = {drive.name: _values_of(structure, drive) for drive in structure.mechanism.drives}
+    return {name: float(np.ravel(values)[0]) for name, values in own.items() if values is not None}
+
+
+def _values_of(structure: Structure, drive: Drive) -> Number | None:
+    """The values of a driver that it has itself; one that has a law, its first one."""
+    if drive.law is not None:
+        time = structure.mechanism.time
+        first = float(np.ravel(time)[0]) if time is not None else (drive.law.span or (0.0,))[0]
+        return drive.law.coordinate(np.array([first]), 0).c[0]
+    return FULL_TURN if drive.values is None and _angles(structure)[drive.name] else drive.values
+
+
+def _single(text: str, where: str, is_angle: bool) -> float:
+    try:
+        value = number(text, where)
+    except InvalidInput:
+        raise _wrong(where, "this is not one number", "give the value of a single pose") from None
+    return float(np.deg2rad(value)) if is_angle else value
+
+
+def numbers(text: str, where: str, how: str = HOW) -> Number:
+    """Numbers written one by one, or as from:to:step.
+
+    >>> numbers("0:10:5", "--at").tolist()
+    [0.0, 5.0, 10.0]
+    """
+    parts = text.split(":")
+    if len(parts) == 1:
+        return np.array([number(part, where, how) for part in text.split(",")])
+    if len(parts) != 3:
+        raise _wrong(where, f"{text!r} is not a range", how)
+    start, stop, step = (number(part, where, how) for part in parts)
+    return stepped(start, stop, step, where)
+
+
+def number(text: str, where: str, how: str = HOW) -> float:
+    """One finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        raise _wrong(where, f"{text!r} is not a number", how) from None
+    if not isfinite(value):
+        raise _wrong(where, f"{text!r} is not finite", how)
+    return value
+
+
+def stepped(start: float, stop: float, step: float, where: str) -> Number:
+    """From start to stop in steps; raises InvalidInput where the step leads elsewhere or is too small."""
+    if not all(map(isfinite, (start, stop, step))) or step == 0 or (stop - start) * step < 0:
+        raise _wrong(where, f"steps of {step:g} do not lead from {start:g} to {stop:g}")
+    found = spaced(start, stop, step)
+    if found is None:
+        raise _wrong(where, f"these are more than {MOST_VALUES:,} values", "take a greater step")
+    return found
+
+
+def of_rates(structure: Structure, option: str, given: Sequence[str]) -> dict[str, float] | None:
+    """Rates by driver; None where none is given."""
+    angles = _angles(structure)
+    named = _named(structure, option, given)
+    return {name: _rate(text, f"{option} {name}", angles[name]) for name, text in named} or None
+
+
+def _rate(text: str, where: str, is_angle: bool) -> float:
+    for unit, factor in (("rpm", RPM), ("deg", np.pi / 180.0)):
+        if text.endswith(unit):
+            if not is_angle:
+                raise _wrong(where, f"{text!r} is no rate of a length", "write lengths a second")
+            return number(text.removesuffix(unit), where) * float(factor)
+    return number(text, where)
+
+
+def of_modes(structure: Structure, given: Sequence[str]) -> dict[str, int]:
+    """Assembly modes by link."""
+    signs = {"+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}
+    found = {}
+    for text in given:
+        link, _, sign = text.rpartition("=")
+        where, name = f"--mode {text}", link or text
+        if name not in structure.mechanism.links:
+            raise _wrong(where, f"there is no link {name!r}", nearest(name, list(structure.mechanism.links)))
+        if sign not in signs:
+            raise _wrong(where, f"{sign!r} is not an assembly mode", f"write {name}=+1 or {name}=-1")
+        found[link] = signs[sign]
+    return found
+
+
+def _named(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Pairs of a driver and what is given for it; the only driver need not be named."""
+    drivers = [drive.name for drive in structure.mechanism.drives]
+    for text in given:
+        name, equals, value = text.rpartition("=")
+        name = name if equals else _only(structure, f"{option} {text}")
+        if name not in drivers:
+            raise _wrong(f"{option} {text}", f"there is no driver {name!r}", nearest(name, drivers))
+        yield name, value
+
+
+def _only(structure: Structure, where: str) -> str:
+    drivers = [drive.name for drive in structure.mechanism.drives]
+    if len(drivers) == 1:
+        return drivers[0]
+    if not drivers:
+        raise _wrong(where, "the mechanism has no driver")
+    raise _wrong(where, f"there are {len(drivers)} drivers", f"name one with --drive: {', '.join(drivers)}")
+
+
+def _spanned(structure: Structure, name: str, span: Mapping[str, Any]) -> Number:
+    """The values of --at, or those of --from, --to and --step; what is left out is the driver's own."""
+    if "at" in span:
+        if len(span) > 1:
+            raise _wrong("--at", "it does not go with --from, --to and --step", "leave one of them out")
+        return numbers(span["at"], "--at")
+    own = _own(structure, name)
+    if own is None and not {"start", "stop", "step"} <= set(span):
+        raise _wrong("--from, --to, --step", f"the driver {name!r} has no range of its own", "give all three")
+    start, stop, step = own if own is not None else (0.0, 0.0, 0.0)
+    start, stop = span.get("start", start), span.get("stop", stop)
+    step = span.get("step", abs(step))
+    # "--from 90 --to 0 --step 5" can only mean to go back
+    return stepped(start, stop, step if stop >= start or step < 0 else -step, "--from, --to, --step")
+
+
+def _own(structure: Structure, name: str) -> tuple[float, float, float] | None:
+    """First value, last value and step of a driver as the mechanism has it; the first design's of several."""
+    drive = next(drive for drive in structure.mechanism.drives if drive.name == name)
+    is_angle = _angles(structure)[name]
+    if drive.values is None and not is_angle:
+        return None
+    values = np.atleast_1d(FULL_TURN if drive.values is None else drive.values)
+    values = values.reshape(-1, values.shape[-1])[0]
+    if len(values) < 2:
+        return None
+    shown = degrees(values) if is_angle else values
+    return float(shown[0]), float(shown[-1]), float(shown[1] - shown[0])
+
+
+def _angles(structure: Structure) -> dict[str, bool]:
+    """Which drivers drive an angle."""
+    return {name: step.pair.free_is_angle for name, step in driven_pairs(structure).items()}
+
+
+def _of_one_length(structure: Structure, values: Mapping[str, Number]) -> None:
+    full = {drive.name: _values_of(structure, drive) for drive in structure.mechanism.drives}
+    lengths = {name: np.shape(v)[-1] for name, v in {**full, **values}.items() if v is not None and np.shape(v)}
+    if len({length for length in lengths.values() if length > 1}) > 1:
+        told = ", ".join(f"{name} has {length}" for name, length in lengths.items())
+        what = f"the drivers have different numbers of values: {told}"
+        raise _wrong("--drive", what, "give every driver as many values, or a single one")
+
+
+def _wrong(where: str, what: str, remedy: str = "") -> InvalidInput:
+    return InvalidInput(Problem(where, what, remedy))

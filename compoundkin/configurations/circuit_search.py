@@ -1,0 +1,224 @@
+"""`circuits`: all circuits of a mechanism that one driver moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.display import Shows
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, nearest
+from compoundkin.base.series import Number
+from compoundkin.configurations import dyad_segments, general_segments
+from compoundkin.configurations.all_modes import Choices, closed_redundant
+from compoundkin.configurations.chain_circuits import built
+from compoundkin.configurations.circuit import Branch, Circuit, Limit, Place, Toggle
+from compoundkin.configurations.driver_range import TURN, range_of
+from compoundkin.configurations.location import located, starting_configuration, starting_values
+from compoundkin.configurations.routes import Route, route
+from compoundkin.configurations.segment_chains import chains
+from compoundkin.configurations.segment_poses import Placing
+from compoundkin.configurations.segment_run import Sweep
+from compoundkin.configurations.segments import Strands
+from compoundkin.configurations.toggles import toggles_of
+from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.groups.gear_train import TrainStep
+from compoundkin.kinematics.groups.steps import AffineStep, GeneralStep
+from compoundkin.kinematics.inputs import Inputs, inputs
+from compoundkin.kinematics.solution import plan_of
+from compoundkin.kinematics.solving_order import Plan
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure.parts import Structure
+
+# The configurations are counted anew at so many driver values, spread by the golden ratio.
+FRESH = 48
+GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+# More pieces of curves than these nobody can read, and with each group they are twice as many.
+MOST_STRANDS = 8192
+# Angles along a strand at which redundant pairs must be closed.
+INSIDE = (0.7, 1.3, 2.1)
+# Where the counts differ, everything is done again with slices so many times as dense.
+FINENESS = (1, 3, 9)
+
+
+@dataclass(frozen=True, eq=False)
+class Circuits(Shows):
+    """All circuits of a mechanism, moved by one driver while the others stand still.
+
+    `fixed` are the values of the others. The real configurations were counted at `checked` fresh driver values, and
+    `consistent` says whether as many branches cross each of them; `start` is where `solve` and the drawing begin.
+    """
+
+    structure: Structure
+    driver: str
+    fixed: Mapping[str, float]
+    circuits: tuple[Circuit, ...]
+    checked: int
+    consistent: bool
+    start: Place | None
+    period: float = field(repr=False)
+    placing: Placing = field(repr=False)
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        """The branches of all circuits; branch n is the n-th."""
+        return tuple(branch for circuit in self.circuits for branch in circuit.branches)
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """The limit positions of all circuits."""
+        return tuple(limit for circuit in self.circuits for limit in circuit.limits)
+
+    @cached_property
+    def toggles(self) -> tuple[Toggle, ...]:
+        """Where links on the frame stand still and turn back while the driver goes on."""
+        return toggles_of(self.placing, self.circuits)
+
+    def at(self, configuration: Configuration) -> Place:
+        """The circuit and branch that a configuration lies on.
+
+        Raises InvalidInput for a configuration that is of another mechanism or at other values of the other drivers.
+        """
+        return located(self.placing, self.circuits, self.period, configuration)
+
+    def path(self, start: Configuration | int, end: Configuration | int, poses: int = 200) -> Route:
+        """The shorter way along a circuit from one configuration, or the middle of a branch, to another.
+
+        Raises InvalidInput where they lie on different circuits.
+        """
+        first, last = self._place(start), self._place(end)
+        if first.circuit != last.circuit:
+            what = f"circuit {first.circuit} and circuit {last.circuit} are not connected"
+            raise InvalidInput(Problem("path", what, "the mechanism must be taken apart to get from one to the other"))
+        return route(self.placing, self.circuits[first.circuit - 1], self.period, first, last, poses)
+
+    def _place(self, what: Configuration | int) -> Place:
+        if isinstance(what, Configuration):
+            return self.at(what)
+        if not 1 <= what <= len(self.branches):
+            raise InvalidInput(Problem("path", f"there is no branch {what}", f"they are 1 to {len(self.branches)}"))
+        return self.at(self.branches[what - 1].configuration)
+
+    def __repr__(self) -> str:
+        return f"Circuits({len(self.circuits)} circuits, {len(self.branches)} branches of the driver {self.driver!r})"
+
+
+def circuits(
+    mechanism: Mechanism | Structure,
+    driver: str | None = None,
+    values: Mapping[str, Any] | None = None,
+    *,
+    between: Sequence[float] | None = None,
+    design: int = 0,
+) -> Circuits:
+    """All circuits of a mechanism as one driver takes all its values.
+
+    `values` are those of the other drivers (radians or lengths; as drawn, or the first of their own, if left out),
+    `between` the range of the driver where it shall not be a full turn, or all lengths within reach. Of dimensions that
+    are arrays one `design` is taken, at its first pose.
+
+    Raises NotDetermined where the structure cannot be solved, InvalidInput for drivers and values that do not fit and
+    where there are thousands of branches, NotAssembled where the mechanism cannot be assembled at all.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> triple_rocker = Mechanism(
+    ...     "Triple rocker", link("frame", A=(0, 0), D=(7, 0)), link("crank", A=(0, 0), B=(4, 0)),
+    ...     link("coupler", B=(0, 0), C=(5, 0)), link("rocker", D=(0, 0), C=(3, 0)), drive("crank"))
+    >>> found = circuits(triple_rocker)
+    >>> [len(circuit.branches) for circuit in found.circuits], [round(limit.value, 6) for limit in found.limits]
+    ([2], [1.552938, -1.552938])
+    """
+    plan = plan_of(mechanism)
+    name = _driver(plan, driver)
+    with np.errstate(all="ignore"):
+        known = starting_values(plan, values or {}, name)
+        given = _of_design(inputs(plan, known, None, None, None), design)
+        fixed = {other: value for other, value in known.items() if other != name}
+        sweep = Sweep(plan, given.ends, fixed, name)
+        strands, period, lost, good = _traced(sweep, between, known[name])
+        if not strands.rows:
+            raise NotAssembled(Problem("circuits", f"the mechanism cannot be assembled at any value of {name!r}"))
+        placing = Placing(sweep, strands, design)
+        found = built(placing, chains(strands), period)
+        start = starting_configuration(plan, known, design)
+        place = None
+        if start is not None:
+            try:
+                place = located(placing, found, period, start)
+            except InvalidInput:
+                place = None
+    consistent = good and not lost
+    return Circuits(plan.structure, name, fixed, found, FRESH, consistent, place, period, placing)
+
+
+def _of_design(given: Inputs, design: int) -> Inputs:
+    """The numbers of one design at its first pose; raises InvalidInput for one that there is not."""
+    if not 0 <= design < given.designs:
+        what = f"there is no design {design}"
+        raise InvalidInput(Problem("design", what, f"they are 0 to {given.designs - 1}"))
+    return given.cut(slice(design, design + 1), slice(0, 1))
+
+
+def _driver(plan: Plan, driver: str | None) -> str:
+    names = list(plan.driven)
+    if driver is None and len(names) == 1:
+        return names[0]
+    if not names:
+        raise InvalidInput(Problem("driver", "the mechanism has no driver"))
+    if driver is None:
+        raise InvalidInput(Problem("driver", f"there are {len(names)} drivers", f"name one: {', '.join(names)}"))
+    if driver not in names:
+        raise InvalidInput(Problem(f"driver {driver}", f"there is no driver {driver!r}", nearest(driver, names)))
+    return driver
+
+
+def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tuple[Strands, float, int, bool]:
+    """All strands, the driver's period, how many arcs were lost, whether the counts agree."""
+    start, period = range_of(sweep, between, value)
+    turns = max(1, round(period / TURN))
+    for fineness in FINENESS:
+        strands, lost = _lifted(sweep, start, fineness * turns)
+        good = _counts_agree(sweep, strands, float(start.low[0]), float(start.high[0]))
+        if good and not lost:
+            break
+    return strands, period, lost, good
+
+
+def _lifted(sweep: Sweep, strands: Strands, fineness: int) -> tuple[Strands, int]:
+    """All groups, one after another."""
+    lost = 0
+    for k, step in enumerate(sweep.plan.steps):
+        if not strands.rows:
+            break
+        if isinstance(step, GeneralStep):
+            strands, missing = general_segments.lifted(sweep, strands, k, fineness)
+            lost += missing
+        elif not isinstance(step, AffineStep | TrainStep):
+            strands = dyad_segments.lifted(sweep, strands, k, fineness)
+        if strands.rows > MOST_STRANDS:
+            what = f"the circuits are in more than {MOST_STRANDS:,} pieces: the groups multiply them"
+            raise InvalidInput(Problem("circuits", what, "ask for a part of the mechanism"))
+    return _with_redundant(sweep, strands), lost
+
+
+def _with_redundant(sweep: Sweep, strands: Strands) -> Strands:
+    """The strands on which redundant pairs are closed too."""
+    if not sweep.plan.structure.redundant or not strands.rows:
+        return strands
+    rows = np.arange(strands.rows)
+    run = sweep.run(strands, rows, strands.at(rows, np.array(INSIDE)))
+    closed = np.broadcast_to(closed_redundant(sweep.plan, run), (len(rows), len(INSIDE)))
+    return strands.kept(closed.all(axis=1))
+
+
+def _counts_agree(sweep: Sweep, strands: Strands, low: float, high: float) -> bool:
+    """Whether at fresh driver values as many strands cross as there are real configurations."""
+    values = low + (high - low) * np.mod(GOLDEN * np.arange(1, FRESH + 1), 1.0)
+    drives: dict[str, tuple[Number, ...]] = {name: (value,) for name, value in sweep.fixed.items()}
+    given = Inputs((FRESH,), sweep.ends, {**drives, sweep.driver: (values[None],)})
+    counted = Choices.of(sweep.plan, given).real[:, 0].sum(axis=0)
+    crossed = ((strands.low[:, None] < values) & (values < strands.high[:, None])).sum(axis=0)
+    return bool(np.all(counted == crossed))

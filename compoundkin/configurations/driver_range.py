@@ -1,0 +1,109 @@
+"""Over which values a driver is followed: a full turn, several where gears ask for them, or lengths within reach."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.configurations.segment_run import Sweep, count_turns, edge_root
+from compoundkin.configurations.segments import Strands, base
+from compoundkin.kinematics.groups.gear_train import TrainStep
+from compoundkin.kinematics.groups.steps import AffineStep, GeneralStep
+from compoundkin.kinematics.solving_order import Plan
+
+# A turn begins here: special positions lie at round angles, and none of them shall fall on the seam.
+BEGIN = -2.5066282746310002
+# Gears are tried for so many turns of the driver before they count as ones that never come back: what racks carry
+# away, and trains of many teeth. Then the driver is followed one turn each way.
+MOST_TURNS = 60
+# Orientations this near are one: rounding of angles of many turns.
+SAME = 1e-9
+TURN = 2.0 * np.pi
+# Lengths are followed beyond the reach, for a limit position may lie at the reach itself.
+BEYOND = 1.25
+
+
+def range_of(sweep: Sweep, between: Sequence[float] | None, start: float) -> tuple[Strands, float]:
+    """The strand of the driver alone, and the period of its value (0 where it has none); `start` is one of its values.
+
+    Raises InvalidInput for a range that is none, and for gears whose turns cannot be told.
+    """
+    if between is not None:
+        low, high = _checked(between)
+        return base(low, high, periodic=False), 0.0
+    driven = sweep.plan.driven[sweep.driver]
+    if driven.pair.free_is_angle:
+        turns = _turns(sweep)
+        if turns is None:
+            return base(start - TURN, start + TURN, periodic=False), 0.0
+        return base(BEGIN, BEGIN + TURN * turns, periodic=True), TURN * turns
+    reach = BEYOND * (reach_of(sweep.plan) + abs(start))
+    on_frame = driven.link in sweep.plan.structure.ground.links
+    return base(-reach if on_frame else 0.0, reach, periodic=False), 0.0
+
+
+def _checked(between: Sequence[float]) -> tuple[float, float]:
+    try:
+        low, high = (float(value) for value in between)
+    except (TypeError, ValueError):
+        raise InvalidInput(Problem("between", f"{between!r} is not a range", "give two values (low, high)")) from None
+    if not (np.isfinite([low, high]).all() and low < high):
+        raise InvalidInput(Problem("between", f"{low:g} to {high:g} is not a range", "give two values (low, high)"))
+    return low, high
+
+
+def reach_of(plan: Plan) -> float:
+    """A length that no displacement of links that are pinned to one another exceeds: the sum of their extents."""
+    points = plan.structure.mechanism.geometry.points.values()
+    return float(sum(_extent(list(placed.values())) for placed in points)) or plan.size
+
+
+def _extent(points: list[Number]) -> float:
+    if len(points) < 2:
+        return 0.0
+    x, y = ([part(p) for p in points] for part in (np.real, np.imag))
+    wide, high = (max(float(np.max(v)) for v in c) - min(float(np.min(v)) for v in c) for c in (x, y))
+    return float(np.hypot(wide, high))
+
+
+def _turns(sweep: Sweep) -> int | None:
+    """After how many turns of the driver gears and racks are where they were; None where they do not come back.
+
+    Raises InvalidInput where gears ride on links that groups solve, and it matters how often those have turned.
+    """
+    if not any(isinstance(step, AffineStep | TrainStep) for step in sweep.plan.steps):
+        return 1
+    places = _geared(sweep, BEGIN + TURN * np.arange(MOST_TURNS + 1), 0.0)
+    again = np.flatnonzero(_apart(sweep, places, places[:, :1])[1:] < SAME)
+    if np.max(_apart(sweep, places[:, :1], _geared(sweep, np.array([BEGIN]), TURN))) > SAME:
+        what = "its gears ride on links whose full turns circuits do not count"
+        raise InvalidInput(Problem("circuits", what, "follow it with solve(), which counts them"))
+    return int(again[0]) + 1 if len(again) else None
+
+
+def _geared(sweep: Sweep, s: Number, more: float) -> Number:
+    """Origins and orientations of all bodies that gears and racks place, (2 bodies, values).
+
+    Links that groups solve have turned by `more` than their orientations show.
+    """
+    run, found = sweep.start(s[None]), list[Number]()
+    for step in sweep.plan.steps:
+        if isinstance(step, GeneralStep):
+            break
+        if isinstance(step, AffineStep | TrainStep):
+            step.run(run)
+            poses = [run.world[link] for link in step.group.links]
+            found += [np.broadcast_to(value, (1, len(s)))[0] for p in poses for value in (p.z.c[0], p.u.c[0])]
+        else:
+            step.run(run, 1.0, edge_root)
+            count_turns(sweep.plan, run, step.group.links, more)
+    return np.array(found).reshape(-1, len(s))
+
+
+def _apart(sweep: Sweep, one: Number, other: Number) -> Number:
+    """The largest difference of any body, at each value."""
+    size = np.tile([sweep.plan.size, 1.0], len(one) // 2)[:, None]
+    return np.max(np.nan_to_num(np.abs(one - other) / size), axis=0, initial=0.0)

@@ -1,0 +1,130 @@
+"""The way along a circuit from one configuration to another, through limit positions where the driver turns back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from compoundkin.base.errors import Problem, UnknownName
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, constant
+from compoundkin.configurations.circuit import Circuit, Place
+from compoundkin.configurations.enumeration import dimensions_at
+from compoundkin.configurations.segment_chains import Visit
+from compoundkin.configurations.segment_poses import Placing
+from compoundkin.configurations.segments import NONE
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """Poses in order along a circuit: `values` of the driver (poses,), `links` the poses of all links.
+
+    `along` is the arc length travelled at each pose: of all links, parts of the mechanism's size and radians together.
+    `branches` are the numbers of the branches passed, in order.
+    """
+
+    values: Number
+    links: Mapping[str, Pose]
+    along: Number
+    branches: tuple[int, ...]
+    dimensions: Mapping[str, Mapping[str, complex]] = field(repr=False)
+
+    def point(self, name: str) -> Number:
+        """Where a point is, complex (poses,); raises UnknownName."""
+        for link, points in self.dimensions.items():
+            if name in points:
+                return np.broadcast_to(self.links[link].at(points[name]).c[0], self.values.shape)
+        raise UnknownName(Problem(name, "there is no such point"))
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A strand passed from one angle to another; 0 is the low end, pi the high one."""
+
+    visit: Visit
+    start: float
+    end: float
+
+
+def route(placing: Placing, circuit: Circuit, period: float, first: Place, last: Place, poses: int) -> Route:
+    """The shorter of both ways around."""
+    ways = [way for sense in (1, -1) if (way := _legs(placing, circuit, first, last, sense)) is not None]
+    count = max(2, poses)
+    found = [_sampled(placing, circuit, period, way, count) for way in ways]
+    return min(found, key=lambda one: float(one.along[-1]))
+
+
+def _legs(placing: Placing, circuit: Circuit, first: Place, last: Place, sense: int) -> list[Leg] | None:
+    """The strands from one place to another in one direction around the circuit; None where the chain ends before."""
+    visits = [v if sense > 0 else Visit(v.row, -v.sense, v.periods) for b in circuit.branches for v in b.visits]
+    visits = visits[::sense]
+    here = next(i for i, v in enumerate(visits) if v.row == first.visit.row)
+    begin, goal = _angle(placing, first), _angle(placing, last)
+    same = first.visit.row == last.visit.row
+    if same and (goal - begin) * visits[here].sense >= 0:
+        return [Leg(visits[here], begin, goal)]
+    legs = [Leg(visits[here], begin, _exit(visits[here]))]
+    for k in range(1, len(visits) + 1):
+        i = here + k
+        if i >= len(visits) and not circuit.closed:
+            return None
+        visit = visits[i % len(visits)]
+        if visit.row == last.visit.row:
+            return [*legs, Leg(visit, np.pi - _exit(visit), goal)]
+        legs.append(Leg(visit, np.pi - _exit(visit), _exit(visit)))
+    return None
+
+
+def _angle(placing: Placing, place: Place) -> float:
+    low, high = (float(v[place.visit.row]) for v in (placing.strands.low, placing.strands.high))
+    return float(np.arccos(np.clip(1.0 - 2.0 * (place.inside - low) / (high - low), -1.0, 1.0)))
+
+
+def _exit(visit: Visit) -> float:
+    return np.pi if visit.sense > 0 else 0.0
+
+
+def _sampled(placing: Placing, circuit: Circuit, period: float, legs: list[Leg], poses: int) -> Route:
+    total = sum(abs(leg.end - leg.start) for leg in legs) or 1.0
+    parts = [_leg(placing, leg, max(2, round(poses * abs(leg.end - leg.start) / total) + 1)) for leg in legs]
+    values = np.concatenate([values for values, _ in parts])
+    names = list(parts[0][1])
+    links = {name: (_joined(parts, name, 0), _joined(parts, name, 1)) for name in names}
+    kept = np.append(True, _steps(links, placing.sweep.plan.size) > 0)
+    kept = kept | np.append(True, np.diff(values) != 0)
+    links = {name: (z[kept], u[kept]) for name, (z, u) in links.items()}
+    along = np.append(0.0, np.cumsum(_steps(links, placing.sweep.plan.size)))
+    shown = np.unwrap(values[kept], period=period) if period else values[kept]
+    numbers = [next(b.number for b in circuit.branches for v in b.visits if v.row == leg.visit.row) for leg in legs]
+    passed = tuple(n for i, n in enumerate(numbers) if i == 0 or n != numbers[i - 1])
+    poses_of = {name: Pose(constant(z), constant(u)) for name, (z, u) in links.items()}
+    dimensions = dimensions_at(placing.sweep.plan.structure, placing.design, 0)
+    return Route(shown, poses_of, along, passed, dimensions)
+
+
+def _leg(placing: Placing, leg: Leg, count: int) -> tuple[Number, dict[str, tuple[Number, Number]]]:
+    """Driver values along a leg, and the origin and orientation of every link."""
+    phi = np.linspace(leg.start, leg.end, count)
+    rows = np.array([leg.visit.row])
+    sides = np.where(phi == 0.0, 0, np.where(phi == np.pi, 1, NONE))
+    s = placing.strands.at(rows, phi[None])
+    with np.errstate(all="ignore"):
+        run = placing.sweep.run(placing.strands, rows, s, sides=sides)
+    found = {name: (_row(pose.z.c[0], count), _row(pose.u.c[0], count)) for name, pose in run.world.items()}
+    return s[0], found
+
+
+def _joined(parts: list[tuple[Number, dict[str, tuple[Number, Number]]]], name: str, i: int) -> Number:
+    return np.concatenate([part[name][i] for _, part in parts])
+
+
+def _row(value: Number, count: int) -> Number:
+    return np.broadcast_to(value, (1, count))[0]
+
+
+def _steps(links: Mapping[str, tuple[Number, Number]], size: float) -> Number:
+    """How far all links move from pose to pose."""
+    squares = [np.abs(np.diff(z) / size) ** 2 + np.abs(np.angle(u[1:] / u[:-1])) ** 2 for z, u in links.values()]
+    return np.sqrt(np.sum(squares, axis=0))

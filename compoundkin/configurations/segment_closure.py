@@ -1,0 +1,122 @@
+"""The closure equations of a group along strands of what it is attached to: unknown are its bodies and the angle.
+
+A state is x, y (parts of the size) and theta of every body, and last the angle along the strand.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, constant
+from compoundkin.configurations.segment_run import Sweep
+from compoundkin.configurations.segments import NONE, Strands
+from compoundkin.kinematics.groups.general import Setting
+from compoundkin.kinematics.groups.steps import GeneralStep
+from compoundkin.model.pairs.contract import Poses
+
+# Nearer to an end than this, rates are taken here: at a limit position itself they are infinite.
+BESIDE = 1e-5
+
+
+@dataclass(frozen=True)
+class Equations:
+    """The equations of group `k`, which has no closed form, on strands of the groups before it."""
+
+    sweep: Sweep
+    strands: Strands
+    k: int
+
+    @property
+    def step(self) -> GeneralStep:
+        """The group as it is solved."""
+        step = self.sweep.plan.steps[self.k]
+        assert isinstance(step, GeneralStep)
+        return step
+
+    @property
+    def weights(self) -> Number:
+        """What makes x, y, theta of each body a part of a state."""
+        size = self.sweep.plan.size
+        return np.tile([1.0 / size, 1.0 / size, 1.0], self.step.solver.n)
+
+    def at(self, rows: Number, y: Number) -> tuple[Number, Number]:
+        """The residuals (paths, 3 n) and their Jacobian (paths, 3 n, 3 n + 1), at states `y` of strands `rows`."""
+        phi = np.clip(y[:, -1], BESIDE, np.pi - BESIDE)[:, None]
+        setting = self.setting(rows, phi, self.strands.rate(rows, phi))
+        found, by_angle, matrix = self._assembled(y, setting)
+        ends = phi[:, 0] != y[:, -1]
+        if np.any(ends):
+            sides = np.where(y[ends, -1] > 1.0, 1, 0)
+            for side in (0, 1):
+                here = np.flatnonzero(ends)[sides == side]
+                if len(here):
+                    exact = self.setting(rows[here], y[here, -1:], None, np.array([side]))
+                    found[here] = self._assembled(y[here], exact)[0]
+        return found, np.concatenate([matrix * (1.0 / self.weights), by_angle[..., None]], axis=-1)
+
+    def setting(self, rows: Number, phi: Number, rate: Number | None, sides: Number | None = None) -> Setting:
+        """What the group is attached to, at angles (rows, columns)."""
+        return self.sweep.run(self.strands, rows, self.strands.at(rows, phi), rate, sides, self.k).setting
+
+    def settings(self, phi: Number) -> Setting:
+        """What it is attached to on all strands, at angles from one end to the other."""
+        sides = np.full(len(phi), NONE)
+        sides[0], sides[-1] = 0, 1
+        return self.setting(np.arange(self.strands.rows), phi[None], None, sides)
+
+    def _assembled(self, y: Number, setting: Setting) -> tuple[Number, Number, Number]:
+        """Residuals, their derivatives by the angle, and by x, y, theta of the bodies."""
+        solver = self.step.solver
+        bodies = self.bodies(y)
+        count, n = len(y), 3 * solver.n
+        found, by_angle, matrix = np.zeros((count, n)), np.zeros((count, n)), np.zeros((count, n, n))
+        top = 0
+        for pair, members in zip(solver.pairs, solver.members, strict=True):
+            poses = tuple(_pose(member.link, member.body, bodies, setting) for member in members)
+            ends = setting.ends[pair.name]
+            for i, closure in enumerate(pair.closure(ends, poses)):
+                found[:, top + i] = _column(closure.c[0])
+                by_angle[:, top + i] = _column(closure.c[1]) if len(closure.c) > 1 else 0.0
+            rows = pair.jacobian(ends, poses)[..., : pair.held, :]
+            for side, member in enumerate(members):
+                if member.body is not None:
+                    block = rows[..., 3 * side : 3 * side + 3]
+                    block = np.broadcast_to(block, (count, 1, *block.shape[-2:]))[:, 0]
+                    about = _about(block, poses, side, bodies[member.body])
+                    matrix[:, top : top + pair.held, 3 * member.body : 3 * member.body + 3] += about
+            top += pair.held
+        return found, by_angle, matrix
+
+    def bodies(self, y: Number) -> list[Pose]:
+        """The poses of the bodies, each (paths, 1)."""
+        size = self.sweep.plan.size
+        out = []
+        for k in range(self.step.solver.n):
+            z = size * (y[:, 3 * k] + 1j * y[:, 3 * k + 1])[:, None]
+            theta = y[:, 3 * k + 2, None]
+            out.append(Pose(constant(z), constant(np.cos(theta) + 1j * np.sin(theta)), constant(theta)))
+        return out
+
+
+def _pose(link: str, body: int | None, bodies: list[Pose], setting: Setting) -> Pose:
+    if body is None:
+        return setting.world[link]
+    local = setting.local.get(link)
+    return bodies[body] if local is None else bodies[body].compose(local)
+
+
+def _column(value: Number) -> Number:
+    return value if np.ndim(value) == 0 else np.asarray(value)[:, 0]
+
+
+def _about(block: Number, poses: Poses, side: int, body: Pose) -> Number:
+    """Derivatives by a link's x, y, theta as derivatives by those of the body it is fixed in."""
+    if poses[side] is body:
+        return block
+    arm = np.broadcast_to(poses[side].z.c[0] - body.z.c[0], (len(block), 1))
+    out = np.array(block)
+    out[..., 2] += out[..., 1] * arm.real - out[..., 0] * arm.imag
+    return out

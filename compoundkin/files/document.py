@@ -1,0 +1,97 @@
+"""What a mechanism file holds: the table of keys that reader, writer and schema are derived from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from compoundkin.model.elements import Drive
+from compoundkin.model.fields import Key
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import KINDS, WRITTEN
+from compoundkin.model.validation import drivable
+
+FORMATS = (1,)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Tables of one sort in a mechanism file: ``[name.X]`` if named, ``[[name]]`` if an array of tables."""
+
+    name: str
+    form: Literal["named", "array"]
+    keys: tuple[Key, ...]
+    doc: str
+    required: bool = False
+
+
+FORMAT_DOC = f"The version of this file format; known: {', '.join(map(str, FORMATS))}."
+
+HEAD = (
+    Key("title", "text", "What the mechanism is called.", required=True),
+    Key("unit", "text", "The unit of every length, such as mm; it is only ever printed.", default=""),
+    Key("source", "text", "Where the mechanism comes from: book, page, paper.", default=""),
+    Key("description", "text", "What it is and what to look at.", default=""),
+    Key("outputs", "names", 'The quantities a report tabulates, such as "bar.angle".', default=()),
+    Key("time", "times", "The times in seconds at which drivers with laws are solved unless others are asked for."),
+)
+
+LINK = (
+    Key(
+        "points",
+        "points",
+        "The points of the link in its own frame by letter, or the letters alone for a link given as drawn.",
+        required=True,
+    ),
+)
+
+DRAWN = Key("drawn", "drawing", "Points as drawn: one pose in global coordinates, exact or roughly.")
+
+MODE = (
+    Key("links", "names", "Links of the group whose assembly mode is chosen.", required=True),
+    Key("sign", "sign", "The assembly mode, 1 or -1, as the group's kind defines it.", required=True),
+)
+
+EXPECTED = (
+    Key("at", "at", 'Driver values; rates by "DRIVER.speed" or "DRIVER.acceleration"; or the time.', default=()),
+    Key("quantity", "name", 'What is expected, such as "G.velocity".', required=True),
+    Key("value", "published", "The published value; degrees where the quantity is an angle.", required=True),
+    Key("tolerance", "margin", "How far the solved value may be from it, in the same unit.", required=True),
+)
+
+# In the order in which a file is written; the drawing comes after the drives.
+TABLES = (
+    Table("links", "named", LINK, "The links by name; the one called frame is fixed.", required=True),
+    *(Table(name, "array", kind.keys, f"Each is a {kind.title}.") for name, kind in WRITTEN.items()),
+    Table("drives", "array", Drive.keys, "The drivers."),
+    Table("modes", "array", MODE, "Assembly modes chosen by sign instead of by a drawing."),
+    Table("expected", "array", EXPECTED, "Published numbers to hold the solution against."),
+)
+
+# The pins are not written: they follow from shared letters.
+_PIN_IS_ANGLE = next(kind.free_is_angle for kind in KINDS if not kind.table)
+
+
+def is_angle(mechanism: Mechanism, drive: Drive) -> bool | None:
+    """Whether a driver's coordinate is an angle (else a length); None where its pair is not determined.
+
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import link
+    >>> m = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1))
+    >>> is_angle(m, Drive("crank", "crank"))
+    True
+    """
+    choices = drivable(mechanism, drive)
+    if len(choices) != 1:
+        return None
+    written = {pair.name: pair.free_is_angle for pair in mechanism.written_pairs}
+    return written.get(choices[0], _PIN_IS_ANGLE)
+
+
+def quantity_is_angle(quantity: object) -> bool:
+    """Whether a quantity is written in degrees in files.
+
+    >>> quantity_is_angle("bar.angle"), quantity_is_angle("bar.angular_velocity")
+    (True, False)
+    """
+    return isinstance(quantity, str) and quantity.endswith(".angle")

@@ -1,0 +1,198 @@
+"""The JSON Schema of mechanism files, derived from the same table of keys as reader and writer."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from typing import Any
+
+from compoundkin.files import document as doc
+from compoundkin.files import exact_numbers
+from compoundkin.files.atomic import write_atomically
+from compoundkin.files.law_tables import KIND
+from compoundkin.files.profile_tables import PROGRAM, SEGMENT
+from compoundkin.model.elements import FRAME
+from compoundkin.model.fields import Key, Kind
+from compoundkin.model.laws import WRITTEN as LAWS
+from compoundkin.model.laws.motion_programs import Segment
+from compoundkin.model.profiles import WRITTEN as PROFILES
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema (2020-12) that every mechanism file, TOML or JSON, fits.
+
+    >>> schema()["required"]
+    ['format', 'title', 'links']
+    """
+    return {
+        "$schema": DIALECT,
+        "title": "compoundkin mechanism file",
+        "description": "A planar compound mechanism: its links, pairs and drivers.",
+        "type": "object",
+        "properties": {
+            "format": {"enum": list(doc.FORMATS), "description": doc.FORMAT_DOC},
+            **{key.name: _key(key) for key in doc.HEAD},
+            **{table.name: _tables(table) for table in doc.TABLES},
+            doc.DRAWN.name: _key(doc.DRAWN),
+        },
+        "required": [
+            "format",
+            *(key.name for key in doc.HEAD if key.required),
+            *(table.name for table in doc.TABLES if table.required),
+        ],
+        "additionalProperties": False,
+        "$defs": {
+            **DEFINITIONS,
+            "law": _tagged(LAWS, "How a driven coordinate moves in time."),
+            "segment": _table(Segment.keys),
+            "turned": _table(SEGMENT),
+            "program": _table(PROGRAM),
+            "profile": _tagged(PROFILES, "The profile of a cam or curved slot, in the coordinates of its link."),
+        },
+    }
+
+
+def publish(path: str | os.PathLike[str]) -> None:
+    """Write the schema to a file, as in ``docs/mechanism.schema.json``."""
+    text = json.dumps(schema(), indent=2, ensure_ascii=False) + "\n"
+    write_atomically(path, lambda file: file.write(text.encode("utf-8")))
+
+
+def _tables(table: doc.Table) -> dict[str, Any]:
+    one = _table(table.keys)
+    if table.form == "array":
+        return {"type": "array", "items": one, "description": table.doc}
+    return {"type": "object", "additionalProperties": one, "required": [FRAME], "description": table.doc}
+
+
+def _table(keys: tuple[Key, ...]) -> dict[str, Any]:
+    out: dict[str, Any] = {"type": "object", "properties": {key.name: _key(key) for key in keys}}
+    required = [key.name for key in keys if key.required]
+    return {**out, **({"required": required} if required else {}), "additionalProperties": False}
+
+
+def _tagged(kinds: Mapping[str, type[Any]], doc: str) -> dict[str, Any]:
+    """One table for each kind of law or profile."""
+    tables = [(name, _table(kind.keys)) for name, kind in kinds.items()]
+    ways = [
+        {**table, "properties": {KIND: {"const": name}, **table["properties"]},
+         "required": [KIND, *table.get("required", ())]}
+        for name, table in tables
+    ]  # fmt: skip
+    return {"description": doc, "anyOf": ways}
+
+
+def _key(key: Key) -> dict[str, Any]:
+    out = {**FRAGMENTS[key.kind], "description": key.doc}
+    if key.default in (None, "", ()):
+        return out
+    if key.kind in ("turn", "place"):
+        return {
+            **out,
+            "default": exact_numbers.degrees(key.default) if key.kind == "turn" else exact_numbers.point(key.default),
+        }
+    return {**out, "default": key.default}
+
+
+def _ref(name: str) -> dict[str, Any]:
+    return {"$ref": f"#/$defs/{name}"}
+
+
+def _closed(**properties: Any) -> dict[str, Any]:
+    """A table that has exactly these keys."""
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": list(properties),
+        "additionalProperties": False,
+    }
+
+
+def _pair_of(first: Any, second: Any) -> dict[str, Any]:
+    return {"type": "array", "prefixItems": [first, second], "minItems": 2, "maxItems": 2}
+
+
+NUMBER = {"type": "number"}
+NAME = {"type": "string", "minLength": 1}
+
+DEFINITIONS: dict[str, Any] = {
+    "numbers": {
+        "description": "A number, or a nested list of numbers for an array.",
+        "anyOf": [NUMBER, {"type": "array", "items": _ref("numbers"), "minItems": 1}],
+    },
+    "angle": {
+        "description": "Degrees, or {rad = ...}.",
+        "anyOf": [_ref("numbers"), _closed(rad=_ref("numbers"))],
+    },
+    "values": {
+        "description": "Degrees for a pin, lengths for a slide; {from, to, step}; {rad = ...}.",
+        "anyOf": [_ref("angle"), _closed(**{"from": NUMBER, "to": NUMBER, "step": NUMBER})],
+    },
+    "times": {
+        "description": "Seconds: a list or {from, to, step}.",
+        "anyOf": [_ref("numbers"), _closed(**{"from": NUMBER, "to": NUMBER, "step": NUMBER})],
+    },
+    "rate": {
+        "description": "rad/s for a pin, length/s for a slide; {rpm = ...}; {deg = ...} (a second).",
+        "anyOf": [_ref("numbers"), _closed(rpm=_ref("numbers")), _closed(deg=_ref("numbers"))],
+    },
+    "point": {
+        "description": "[x, y] or {polar = [radius, degrees]}.",
+        "anyOf": [
+            _pair_of(_ref("numbers"), _ref("numbers")),
+            _closed(polar=_pair_of(_ref("numbers"), _ref("angle"))),
+        ],
+    },
+    "single": {
+        "description": "A number, or {rad = ...} for an angle.",
+        "anyOf": [NUMBER, _closed(rad=NUMBER)],
+    },
+    "single_rate": {
+        "description": "A number, {rpm = ...} or {deg = ...}.",
+        "anyOf": [NUMBER, _closed(rpm=NUMBER), _closed(deg=NUMBER)],
+    },
+}
+
+FRAGMENTS: dict[Kind, dict[str, Any]] = {
+    "name": NAME,
+    "text": {"type": "string"},
+    "names": {"type": "array", "items": NAME, "uniqueItems": True},
+    "length": _ref("numbers"),
+    "angle": _ref("angle"),
+    "point": _ref("point"),
+    "sign": {"enum": [1, -1]},
+    "flag": {"type": "boolean"},
+    "two": _pair_of(_ref("numbers"), _ref("numbers")),
+    "points": {
+        "anyOf": [
+            {"type": "object", "additionalProperties": _ref("point"), "minProperties": 1},
+            {"type": "array", "items": NAME, "uniqueItems": True, "minItems": 1},
+        ]
+    },
+    "drawing": {"type": "object", "additionalProperties": _ref("point")},
+    "whole": {"type": "integer"},
+    "span": {"type": "number", "exclusiveMinimum": 0},
+    "times": _ref("times"),
+    "coordinate": _ref("angle"),
+    "segments": {"type": "array", "items": _ref("segment"), "minItems": 1},
+    "law": _ref("law"),
+    "number": NUMBER,
+    "turn": _ref("single"),
+    "place": _ref("point"),
+    "places": {"type": "array", "items": _ref("point"), "minItems": 4},
+    "turned": {"type": "array", "items": _ref("turned"), "minItems": 1},
+    "program": {"anyOf": [{"type": "array", "items": _ref("turned"), "minItems": 1}, _ref("program")]},
+    "profile": _ref("profile"),
+    "values": _ref("values"),
+    "rate": _ref("rate"),
+    "at": {
+        "type": "object",
+        "patternProperties": {r"\.": _ref("single_rate")},
+        "additionalProperties": _ref("single"),
+    },
+    "published": {"anyOf": [_ref("single"), _pair_of(NUMBER, NUMBER)]},
+    "margin": _ref("single"),
+}

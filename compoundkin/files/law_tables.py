@@ -1,0 +1,79 @@
+"""Driving laws in mechanism files: a table with the kind of the law and what that law holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.files.single_values import bad, described, wrong
+from compoundkin.model.fields import Key
+from compoundkin.model.laws import WRITTEN, Law
+from compoundkin.model.laws.cam_laws import LAWS
+from compoundkin.model.laws.motion_programs import Segment
+
+if TYPE_CHECKING:
+    from compoundkin.files.recovery import Recovery
+
+KIND = "kind"
+# The law whose segments need not say how far they rise.
+DWELL = "dwell"
+RISING = tuple(name for name in LAWS if name != DWELL)
+
+
+def law(log: Recovery, raw: Any, where: str, angle: bool | None) -> Law | None:
+    """The law that a table says; None where it is broken, which is reported."""
+    return of_kind(log, "law", WRITTEN, raw, where, angle)
+
+
+def of_kind(
+    log: Recovery, word: str, known: Mapping[str, type[Any]], raw: Any, where: str, angle: bool | None
+) -> Any | None:
+    """An object from a table that says its kind, one of those known; None where it is broken, which is reported."""
+    how = f'write {{ {KIND} = "...", ... }}, the kind one of {", ".join(known)}'
+    if not isinstance(raw, dict):
+        log.report(wrong(where, raw, f"a {word}", how))
+        return None
+    kind = raw.get(KIND)
+    if not isinstance(kind, str) or kind not in known:
+        what = f"there is no {word} {described(kind)}" if KIND in raw else "it is missing"
+        log.report(bad(f"{where}.{KIND}", what, nearest(str(kind), list(known))))
+        return None
+    entries = {key: value for key, value in raw.items() if key != KIND}
+    return made(log, known[kind], entries, where, angle)
+
+
+def segments(
+    log: Recovery, raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] = Segment.keys
+) -> tuple[Segment, ...]:
+    """The segments of a program; those that are broken are left out, which is reported."""
+    if not isinstance(raw, list):
+        log.report(wrong(where, raw, "a list of segments", 'write [{ law = "cycloidal", over = 1, rise = 90 }]'))
+        return ()
+    found = [made(log, Segment, table, f"{where}[{index}]", angle, keys) for index, table in enumerate(raw)]
+    for index, table in enumerate(raw):
+        if isinstance(table, dict) and "rise" not in table and table.get("law") in RISING:
+            log.report(bad(f"{where}[{index}].rise", "it is missing", f'write rise = 30, or law = "{DWELL}"'))
+    return tuple(segment for segment in found if segment is not None)
+
+
+def made(
+    log: Recovery, kind: type[Any], raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] | None = None
+) -> Any:
+    """An object of a kind from its table; None where the table is broken or what it says cannot be meant."""
+    before = len(log.problems)
+    found = log.table(raw, kind.keys if keys is None else keys, where, angle)
+    if len(log.problems) > before:
+        return None
+    try:
+        return kind(**found)
+    except InvalidMechanism as error:
+        log.report(InvalidMechanism([_placed(problem, where) for problem in error.problems]))
+        return None
+
+
+def _placed(problem: Problem, where: str) -> Problem:
+    """A problem of an object, "segment.over", at the place of its table."""
+    _, dot, rest = problem.where.partition(".")
+    return replace(problem, where=where + dot + rest)

@@ -1,0 +1,179 @@
+"""Mechanism files in and out: `load`, `loads`, `save`, `dumps`; TOML and JSON are the same document."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import tomllib
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.files import toml_text
+from compoundkin.files.atomic import write_atomically
+from compoundkin.files.reader import failed, read
+from compoundkin.files.writer import document
+from compoundkin.model.mechanism import Mechanism
+
+Syntax: TypeAlias = Literal["toml", "json"]
+SYNTAXES: tuple[Syntax, ...] = ("toml", "json")
+
+
+def load(path: str | os.PathLike[str]) -> Mechanism:
+    """The mechanism of a TOML or JSON file, told apart by the suffix.
+
+    Raises InvalidInput for a file that cannot be read, InvalidMechanism listing all problems of its content.
+
+    >>> load("no/such.toml")
+    Traceback (most recent call last):
+    compoundkin.base.errors.InvalidInput: no/such.toml: there is no such file
+    """
+    syntax = _syntax(path)
+    try:
+        text = Path(path).read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise _unreadable(path, f"it is not UTF-8 text (byte {error.start})", "save it as UTF-8") from None
+    except FileNotFoundError:
+        raise _unreadable(path, "there is no such file", _neighbour(Path(path))) from None
+    except (OSError, ValueError) as error:
+        what = getattr(error, "strerror", None) or str(error)
+        raise _unreadable(path, f"it cannot be read: {what}") from None
+    return loads(text, syntax, str(path))
+
+
+def loads(text: str, syntax: Syntax = "toml", where: str = "") -> Mechanism:
+    """The mechanism that a text in TOML or JSON says; `where` names the text in errors.
+
+    Raises InvalidMechanism listing all problems.
+
+    >>> loads('format = 1\\ntitle = "Pin"\\n[links.frame]\\npoints = { A = [0, 0] }').links["frame"].letters
+    ('A',)
+    """
+    return read(_parsed(text, _known(syntax), where), where)
+
+
+def dumps(mechanism: Mechanism, syntax: Syntax = "toml") -> str:
+    """The text of a mechanism file, from which `loads` makes an equal mechanism.
+
+    >>> from compoundkin.model.elements import link
+    >>> print(dumps(Mechanism("Pin", link("frame", A=(0, 0.5)))))
+    format = 1
+    title = "Pin"
+    <BLANKLINE>
+    [links.frame]
+    points = { A = [0, 0.5] }
+    <BLANKLINE>
+    """
+    whole = document(mechanism)
+    if _known(syntax) == "toml":
+        return toml_text.dumps(whole)
+    return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
+
+
+def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
+    """Write a mechanism file, TOML or JSON by the suffix; the file is replaced whole or not at all.
+
+    Raises InvalidInput where it cannot be written.
+
+    >>> import tempfile
+    >>> from compoundkin.model.elements import link
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save(Mechanism("Pin", link("frame", A=0)), f"{folder}/pin.json")
+    ...     load(f"{folder}/pin.json").title
+    'Pin'
+    """
+    text = dumps(mechanism, _syntax(path))
+    try:
+        content = text.encode("utf-8")
+    except UnicodeEncodeError as error:
+        raise _unreadable(path, f"{error.object[error.start]!r} cannot be written as UTF-8") from None
+    write_atomically(path, lambda file: file.write(content))
+
+
+def _unreadable(path: str | os.PathLike[str], what: str, remedy: str = "") -> InvalidInput:
+    return InvalidInput(Problem(str(path), what, remedy))
+
+
+def _syntax(path: str | os.PathLike[str]) -> Syntax:
+    for syntax in SYNTAXES:
+        if Path(path).suffix.lower() == f".{syntax}":
+            return syntax
+    known = " or ".join(f".{syntax}" for syntax in SYNTAXES)
+    raise _unreadable(path, "the name does not tell the format", f"mechanism files end in {known}")
+
+
+def _known(syntax: str) -> Syntax:
+    for known in SYNTAXES:
+        if syntax == known:
+            return known
+    raise InvalidInput(Problem("syntax", f"{syntax!r} is not known", nearest(str(syntax), SYNTAXES)))
+
+
+def _neighbour(path: Path) -> str:
+    """The file in the same folder that may be meant."""
+    try:
+        found = sorted(p.name for p in path.parent.iterdir() if p.suffix[1:] in SYNTAXES)
+    except OSError:
+        return ""
+    remedy = nearest(path.name, found)
+    return remedy if remedy.startswith("did") else ""
+
+
+class _Repeats(dict[str, Any]):
+    """A JSON object that remembers which of its keys were given twice."""
+
+    def __init__(self, pairs: list[tuple[str, Any]]) -> None:
+        super().__init__(pairs)
+        keys = [key for key, _ in pairs]
+        self.twice = [] if len(self) == len(keys) else [key for key in self if keys.count(key) > 1]
+
+
+def _parsed(text: str, syntax: Syntax, where: str) -> dict[str, Any]:
+    try:
+        parsed = tomllib.loads(text) if syntax == "toml" else json.loads(text, object_pairs_hook=_Repeats)
+    except tomllib.TOMLDecodeError as error:
+        raise failed([_toml_problem(str(error), text)], where) from None
+    except json.JSONDecodeError as error:
+        problem = Problem(_place(error.lineno, error.colno), f"this is not JSON: {error.msg}")
+        raise failed([problem], where) from None
+    except RecursionError:
+        raise failed([Problem("", "lists or tables are nested too deeply")], where) from None
+    except ValueError as error:
+        raise failed([Problem("", f"a value cannot be read: {error}")], where) from None
+    if not isinstance(parsed, dict):
+        raise failed([Problem("", "a mechanism file is a table (a JSON object)")], where)
+    repeats = list(_repeats(parsed, ""))
+    if repeats:
+        raise failed(repeats, where)
+    return parsed
+
+
+def _toml_problem(message: str, text: str) -> Problem:
+    found = re.fullmatch(r"(.*) \(at line (\d+), column (\d+)\)", message, re.DOTALL)
+    if found:
+        return Problem(_place(int(found[2]), int(found[3])), f"this is not TOML: {found[1]}")
+    lines = text.split("\n")
+    return Problem(_place(len(lines), len(lines[-1]) + 1), f"this is not TOML: {message}")
+
+
+def _place(line: int, column: int) -> str:
+    return f"line {line}, column {column}"
+
+
+def _repeats(value: Any, where: str) -> list[Problem]:
+    """Every key given twice in a JSON document, with its place."""
+    found: list[Problem] = []
+    if isinstance(value, _Repeats):
+        remedy = "leave one of them out"
+        found += [Problem(f"{where}{key}", "this key is given twice", remedy) for key in value.twice]
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            found += _repeats(entry, f"{where}{key}.")
+    elif isinstance(value, list):
+        for index, entry in enumerate(value):
+            found += _repeats(entry, f"{where.removesuffix('.')}[{index}].")
+    return found
+
+
+__all__ = ["Syntax", "dumps", "load", "loads", "save"]

@@ -1,0 +1,168 @@
+"""From a parsed document to a mechanism; all problems of a file are found in one reading."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import MISSING, fields, replace
+from typing import Any
+
+from compoundkin.base.errors import InvalidMechanism, Problem
+from compoundkin.files import document as doc
+from compoundkin.files.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
+from compoundkin.files.single_values import bad, described, single, wrong
+from compoundkin.files.written_quantities import rate, values
+from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drive
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import WRITTEN, Pair
+from compoundkin.model.validation import TIME
+
+
+def read(document: Mapping[str, Any], where: str = "") -> Mechanism:
+    """The mechanism that the document of a file says; raises InvalidMechanism listing all problems.
+
+    >>> read({"format": 1, "title": "Pin", "links": {"frame": {"points": {"A": [0, 0]}}}}).title
+    'Pin'
+    """
+    log = Recovery()
+    if not _version(document.get("format"), log):
+        raise failed(log.problems, where)
+    about, parts = _parts(document, log)
+    try:
+        mechanism = Mechanism(about.pop("title"), *_items(parts, log), **about)
+    except InvalidMechanism as error:
+        raise failed(log.problems + log.new(error.problems), where) from None
+    if log.problems:
+        raise failed(log.problems, where)
+    return mechanism
+
+
+def failed(problems: list[Problem], where: str) -> InvalidMechanism:
+    """The one error with all problems of a file.
+
+    >>> print(failed([Problem("title", "it is missing")], "a.toml"))
+    a.toml: 1 problem:
+      title: it is missing
+    """
+    count = "1 problem" if len(problems) == 1 else f"{len(problems)} problems"
+    return InvalidMechanism(problems, heading=f"{where or 'mechanism file'}: {count}")
+
+
+def default_name(pair: Pair) -> str:
+    """What a pair is called that is given no name.
+
+    >>> from compoundkin.model.pairs import slide
+    >>> default_name(slide("block", on="bar", through="F", at="C"))
+    'block/bar'
+    """
+    return pair.called
+
+
+def _version(version: Any, log: Recovery) -> bool:
+    """Whether to read on: a file of another version would be full of false problems."""
+    is_number = isinstance(version, int) and not isinstance(version, bool)
+    if is_number and version in doc.FORMATS:
+        return True
+    what = "it is missing" if version is None else f"{described(version)} is not a known version of the format"
+    log.report(bad("format", what, "known: " + ", ".join(f"format = {known}" for known in doc.FORMATS)))
+    return not is_number
+
+
+def _parts(document: Mapping[str, Any], log: Recovery) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What the file says on the whole, and its links, pairs, drives ... as written."""
+    parts = [*(table.name for table in doc.TABLES), doc.DRAWN.name]
+    given = log.recognized(document, ["format", *(key.name for key in doc.HEAD), *parts], "")
+    head = {key.name: given[key.name][0] for key in doc.HEAD if key.name in given}
+    found = {name: given[name][0] for name in parts if name in given}
+    links = found.get("links")
+    if not isinstance(links, dict) or not links:
+        missing = "links" not in found or links == {}
+        remedy = "write a table [links.NAME] for every link"
+        log.report(
+            bad("links", "there is no link", remedy) if missing else wrong("links", links, "a table", remedy),
+            ALL,
+        )
+        found["links"] = {}
+    return log.table(head, doc.HEAD, ""), found
+
+
+def _items(parts: Mapping[str, Any], log: Recovery) -> Iterator[Item]:
+    """The words of the mechanism; what a driver's numbers mean depends on the pairs read before."""
+    links = [_link(name, table, log) for name, table in parts.get("links", {}).items()]
+    pairs = [_pair(kind, *at, log) for name, kind in WRITTEN.items() for at in _array(parts, name, log)]
+    shown = {key: value for key, value in parts.items() if key == doc.DRAWN.name}
+    drawn = [Drawn(points) for points in log.table(shown, (doc.DRAWN,), "").values()]
+    base = _valid(links, pairs, drawn)
+    drives = [_drive(base, *at, log) for at in _array(parts, "drives", log)]
+    if any(problem.where.startswith("drives") for problem in log.problems):
+        log.doubts.append(r"expected\[\d+\]\.at\.")
+    angles = {item.name: doc.is_angle(base, item) for item in drives} if base else {}
+    yield from links
+    yield from pairs
+    yield from drives
+    yield from drawn
+    yield from (Mode(**log.table(raw, doc.MODE, where)) for raw, where in _array(parts, "modes", log))
+    yield from (_expected(angles, *at, log) for at in _array(parts, "expected", log))
+
+
+def _valid(*items: Iterable[Item]) -> Mechanism | None:
+    """The mechanism without drivers, which tells what each would drive; None where it cannot be built."""
+    try:
+        return Mechanism("", *(item for some in items for item in some))
+    except InvalidMechanism:
+        return None
+
+
+def _array(parts: Mapping[str, Any], name: str, log: Recovery) -> list[tuple[Any, str]]:
+    """The tables of an array with their places; a single table is read as an array of one."""
+    raw = parts.get(name, [])
+    if not isinstance(raw, list):
+        log.report(wrong(name, raw, "an array of tables", f"write [[{name}]]"), JOINED)
+        raw = [raw] if isinstance(raw, dict) else []
+    return [(table, f"{name}[{index}]") for index, table in enumerate(raw)]
+
+
+def _link(name: str, raw: Any, log: Recovery) -> Link:
+    points = log.table(raw, doc.LINK, f"links.{name}")["points"]
+    if stands_in(points):
+        log.doubts += LETTERS
+    return Link(name, points)
+
+
+def _pair(kind: type[Pair], raw: Any, where: str, log: Recovery) -> Pair:
+    table = log.table(raw, kind.keys, where)
+    if any(map(stands_in, table.values())):
+        log.doubts += JOINED
+    # what a table leaves out is the field's own default, or empty for the pair to complete
+    blank = {field.name: "" for field in fields(kind) if field.default is MISSING}  # type: ignore[arg-type]
+    pair = kind(**{**blank, **table})
+    return pair if pair.name else replace(pair, name=default_name(pair))  # type: ignore[type-var]
+
+
+def _drive(base: Mechanism | None, raw: Any, where: str, log: Recovery) -> Drive:
+    said = {k: v for k, v in raw.items() if isinstance(v, str)} if isinstance(raw, dict) else {}
+    meant = Drive("", said.get("link", ""), said.get("on", FRAME), said.get("pair", ""))
+    found = log.table(raw, Drive.keys, where, doc.is_angle(base, meant) if base else None)
+    return drive(found.pop("link"), **found)
+
+
+def _expected(angles: Mapping[str, bool | None], raw: Any, where: str, log: Recovery) -> Expectation:
+    quantity = raw.get("quantity") if isinstance(raw, dict) else None
+    found = log.table(raw, doc.EXPECTED, where, doc.quantity_is_angle(quantity))
+    at = found.pop("at", {}).items()
+    return Expectation(**found, at=tuple((k, _at(angles, k, v, f"{where}.at.{k}", log)) for k, v in at))
+
+
+def _at(angles: Mapping[str, bool | None], key: str, raw: Any, where: str, log: Recovery) -> float:
+    name, _, rated = key.partition(".")
+    try:
+        if key == TIME and key not in angles:
+            return single(raw, where)
+        if isinstance(raw, dict) and not rated and "rad" not in raw:
+            raise wrong(where, raw, "a number", f'for rates write "{key}.speed" in quotes')
+        out = (rate if rated else values)(raw, where, angles.get(name))
+        if isinstance(out, float):
+            return out
+        raise wrong(where, raw, "a single number")
+    except InvalidMechanism as error:
+        log.report(error)
+        return 0.0

@@ -1,0 +1,140 @@
+"""Reading on after a problem: what is broken gets a stand-in, so that the rest can be checked as well.
+
+A problem of the mechanism that only a stand-in causes is told apart and not reported.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.series import Number
+from compoundkin.files import law_tables, profile_tables
+from compoundkin.files.single_values import bad, wrong
+from compoundkin.files.written_quantities import READERS
+from compoundkin.model.fields import Key, Kind
+
+# Begins every name that stands in for a broken one: the Unicode replacement character.
+STAND_IN = "\ufffd"
+
+# Places that cannot be judged where the links of a pair, a link's letters or the drawing are not known.
+JOINED = (r"links\.[^.]+$", r"drives\[\d+\]$")
+LETTERS = (*JOINED, r"drawn\.", r"points\.")
+DRAWING = (r"links\..+\.points\.", r"drawn\.")
+ALL = (r".*",)
+
+
+# What is read table by table, each with its own problems.
+TAGGED: dict[Kind, Callable[[Recovery, Any, str, bool | None], Any]] = {
+    "law": law_tables.law,
+    "segments": law_tables.segments,
+    "profile": profile_tables.profile,
+    "program": profile_tables.program,
+    "turned": profile_tables.turned,
+}
+
+
+class Recovery:
+    """The problems found while one document is read, and the stand-ins for what is broken."""
+
+    def __init__(self) -> None:
+        self.problems: list[Problem] = []
+        self.doubts: list[str] = []
+        self._count = 0
+
+    def report(self, error: InvalidMechanism, doubts: Iterable[str] = ()) -> None:
+        """Keep the problems of an error; problems at places that match `doubts` are not judged any more."""
+        self.problems += error.problems
+        self.doubts += doubts
+
+    def new(self, problems: Iterable[Problem]) -> list[Problem]:
+        """Those problems of the mechanism that nothing broken in the file can cause."""
+        broken = [problem.where for problem in self.problems]
+        return [problem for problem in problems if not self._caused(problem, broken)]
+
+    def _caused(self, problem: Problem, broken: list[str]) -> bool:
+        where = problem.where
+        if broken and STAND_IN in str(problem):
+            return True
+        if any(re.match(doubt, where) for doubt in self.doubts):
+            return True
+        return any(where == b or where.startswith((f"{b}.", f"{b}[")) for b in broken)
+
+    def recognized(self, raw: Mapping[str, Any], known: list[str], where: str) -> dict[str, tuple[Any, str]]:
+        """The values by key, with their places; a misspelt key is reported, and read as the one meant."""
+        given = {key: (value, inside(where, key)) for key, value in raw.items() if key in known}
+        for key, value in raw.items():
+            if key in known:
+                continue
+            remedy = nearest(key, known)
+            self.report(bad(inside(where, key), "there is no such key here", remedy))
+            meant = next((name for name in known if remedy == f"did you mean {name!r}?"), None)
+            if meant is not None and meant not in given:
+                given[meant] = (value, inside(where, key))
+        return given
+
+    def table(self, raw: Any, keys: tuple[Key, ...], where: str, angle: bool | None = None) -> dict[str, Any]:
+        """The values of a table by key, with stand-ins where a required one is missing or broken."""
+        if not isinstance(raw, dict):
+            self.report(wrong(where, raw, "a table"))
+            return {key.name: self.stand_in(key.kind) for key in keys if key.required}
+        given = self.recognized(raw, [key.name for key in keys], where)
+        found: dict[str, Any] = {}
+        for key in keys:
+            if key.name in given:
+                found[key.name] = self._value(key.kind, *given[key.name], angle)
+            elif key.required:
+                self.report(bad(inside(where, key.name), "it is missing", key.doc))
+                found[key.name] = self.stand_in(key.kind)
+        return found
+
+    def _value(self, kind: Kind, raw: Any, where: str, angle: bool | None) -> Any:
+        if isinstance(raw, dict) and (kind == "drawing" or (kind == "points" and raw)):
+            return self.points(raw, where)
+        if kind in TAGGED:
+            return TAGGED[kind](self, raw, where, angle)
+        try:
+            return READERS[kind](raw, where, angle)
+        except InvalidMechanism as error:
+            self.report(error, LETTERS if kind == "points" else DRAWING if kind == "drawing" else ())
+            return self.stand_in(kind)
+
+    def points(self, raw: Mapping[str, Any], where: str) -> dict[str, Number]:
+        """Points by letter, each broken one replaced."""
+        return {letter: self._value("point", value, f"{where}.{letter}", None) for letter, value in raw.items()}
+
+    def stand_in(self, kind: Kind) -> Any:
+        """A harmless value of a kind; names and points are distinct."""
+        self._count += 1
+        name = f"{STAND_IN}{self._count}"
+        # no two coincide, with each other or, but by a miracle, with a point that is given
+        point = complex(0.7310585 * self._count, 0.3678794 * self._count)
+        values: dict[Kind, Any] = {
+            "name": name, "text": name, "names": (), "point": point, "points": {name: point}, "drawing": {},
+            "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
+            "two": (1.0, 1.0), "profile": profile_tables.STAND_IN, "program": None, "place": point, "places": (),
+            "turned": (),
+        }  # fmt: skip
+        return values.get(kind, 0.0)
+
+
+def stands_in(value: Any) -> bool:
+    """Whether a name, or one of the letters of some points, is a stand-in.
+
+    >>> stands_in("\\ufffd1"), stands_in({"A": 0}), stands_in(3.0)
+    (True, False, False)
+    """
+    if isinstance(value, Mapping):
+        return any(map(stands_in, value))
+    return isinstance(value, str) and value.startswith(STAND_IN)
+
+
+def inside(where: str, key: str) -> str:
+    """The place of a key in a table.
+
+    >>> inside("links.crank", "points"), inside("", "title")
+    ('links.crank.points', 'title')
+    """
+    return f"{where}.{key}" if where else key

@@ -1,0 +1,89 @@
+"""The shipped mechanisms: one file each, known by the file's name wherever a mechanism file is expected."""
+
+from __future__ import annotations
+
+from functools import cache
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+
+if TYPE_CHECKING:
+    from compoundkin.model.mechanism import Mechanism
+
+SUFFIX = ".toml"
+# A wheel carries the files inside the package; a checkout or an editable install has them beside it.
+FOLDERS = (Path(__file__).parents[1] / "_catalog", Path(__file__).parents[2] / "catalog")
+
+
+@cache
+def folder() -> Path:
+    """Where the files are; the first of `FOLDERS` that exists."""
+    return next((place for place in FOLDERS if place.is_dir()), FOLDERS[0])
+
+
+@cache
+def names() -> tuple[str, ...]:
+    """The names of all shipped mechanisms, in alphabetical order.
+
+    >>> "six-bar" in names()
+    True
+    """
+    return tuple(sorted(file.stem for file in folder().glob(f"*{SUFFIX}")))
+
+
+def path(name: str) -> Path:
+    """The file of a shipped mechanism; raises UnknownName with the nearest name there is.
+
+    >>> path("six-bar").name
+    'six-bar.toml'
+    >>> path("sixbar")
+    Traceback (most recent call last):
+    compoundkin.base.errors.UnknownName: sixbar: the catalog has no such mechanism; did you mean 'six-bar'?
+    """
+    if name not in names():
+        raise UnknownName(Problem(name, "the catalog has no such mechanism", nearest(name, names())))
+    return folder() / (name + SUFFIX)
+
+
+def load_named(name: str) -> Mechanism:
+    """A shipped mechanism by its name; raises UnknownName with the nearest name there is.
+
+    >>> load_named("six-bar").title
+    'Six-bar of Example 3-4'
+    """
+    # here and not above: to list names, as a shell's completion does, must not cost the time to load NumPy
+    from compoundkin.files import load
+
+    return load(path(name))
+
+
+def resolve(name_or_path: str | PathLike[str]) -> Path:
+    """The file that a user means: an existing file, or else a shipped mechanism's.
+
+    Raises InvalidInput for what is written as a path and does not exist, UnknownName for any other text.
+
+    >>> resolve("six-bar") == path("six-bar")
+    True
+    >>> resolve("drafts/six-bar.toml")
+    Traceback (most recent call last):
+    compoundkin.base.errors.InvalidInput: drafts/six-bar.toml: there is no such file
+    >>> resolve("six-bra")
+    Traceback (most recent call last):
+    compoundkin.base.errors.UnknownName: six-bra: neither a file nor in the catalog; did you mean 'six-bar'?
+    """
+    text = fspath(name_or_path)
+    if Path(text).is_file():
+        return Path(text)
+    if text in names():
+        return path(text)
+    if Path(text).suffix in (SUFFIX, ".json") or "/" in text or "\\" in text:
+        raise InvalidInput(Problem(text, "there is no such file", _remedy(text)))
+    raise UnknownName(Problem(text, "neither a file nor in the catalog", nearest(text, names())))
+
+
+def _remedy(text: str) -> str:
+    """A bare file name that is a catalog name with a suffix: say so."""
+    stem = Path(text).stem
+    return f"the catalog's mechanism is called {stem!r}" if text == stem + SUFFIX and stem in names() else ""

@@ -1,0 +1,153 @@
+"""From a mechanism to the document of its file, by the table of keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.files import document as doc
+from compoundkin.files import exact_numbers
+from compoundkin.files.law_tables import DWELL, KIND
+from compoundkin.files.profile_tables import PROGRAM, SEGMENT
+from compoundkin.files.reader import default_name
+from compoundkin.model.elements import Expectation, Link
+from compoundkin.model.fields import Key, Kind
+from compoundkin.model.laws import Function
+from compoundkin.model.laws.motion_programs import Program, Segment
+from compoundkin.model.mechanism import Mechanism, same
+from compoundkin.model.pairs import WRITTEN, Pair
+
+
+def document(mechanism: Mechanism) -> dict[str, Any]:
+    """The document that says what a mechanism says, in the order in which files are written.
+
+    Raises InvalidInput for what files cannot say: a link of which only some points have coordinates, a Python function.
+
+    >>> from compoundkin.model.elements import link
+    >>> document(Mechanism("Pin", link("frame", A=(0, 0))))["links"]
+    {'frame': {'points': {'A': [0, 0]}}}
+    """
+    out: dict[str, Any] = {"format": doc.FORMATS[-1], **_table(mechanism, doc.HEAD)}
+    out["links"] = {name: _link(item) for name, item in mechanism.links.items()}
+    for name, kind in WRITTEN.items():
+        out[name] = [_pair(item) for item in mechanism.items if isinstance(item, kind)]
+    out["drives"] = [_drive(mechanism, i) for i in range(len(mechanism.drives))]
+    out[doc.DRAWN.name] = _points(mechanism.sketch)
+    out["modes"] = [_table(item, doc.MODE) for item in mechanism.modes]
+    out["expected"] = [_expected(mechanism, item) for item in mechanism.expectations]
+    return {key: value for key, value in out.items() if value not in ([], {})}
+
+
+def _table(item: Any, keys: tuple[Key, ...], angle: bool = False) -> dict[str, Any]:
+    """What an item holds by key; defaults are left out."""
+    said = [(key, getattr(item, key.name)) for key in keys]
+    return {key.name: WRITERS[key.kind](held, angle) for key, held in said if not _left_out(key, held)}
+
+
+def _left_out(key: Key, value: Any) -> bool:
+    if key.required:
+        return False
+    return value is None or same(value, key.default) or (isinstance(value, str | tuple) and not value)
+
+
+def _link(item: Link) -> dict[str, Any]:
+    drawn = [letter for letter, p in item.points.items() if p is None]
+    if drawn and len(drawn) < len(item.points):
+        what = f"only some of its points have coordinates; {drawn[0]} has none"
+        remedy = "give all by letters or all by coordinates"
+        raise InvalidInput(Problem(f"links.{item.name}", what, remedy))
+    return {"points": drawn or _points(item.points)}
+
+
+def _points(points: Mapping[str, Number]) -> dict[str, Any]:
+    return {letter: exact_numbers.point(p) for letter, p in points.items()}
+
+
+def _pair(item: Pair) -> dict[str, Any]:
+    for key in item.keys:
+        if key.kind == "profile" and not getattr(item, key.name).keys:
+            what, remedy = "a Python function cannot be written to a file", "write a profile of its points instead"
+            raise InvalidInput(Problem(f"{item.table}.{item.name}.{key.name}", what, remedy))
+    out = _table(item, item.keys)
+    return {key: value for key, value in out.items() if key != "name" or value != default_name(item)}
+
+
+def _drive(mechanism: Mechanism, index: int) -> dict[str, Any]:
+    item = mechanism.drives[index]
+    if isinstance(item.law, Function):
+        what, remedy = "a Python function cannot be written to a file", "write a time_table of its values instead"
+        raise InvalidInput(Problem(f"drives.{item.name}.law", what, remedy))
+    out = _table(item, type(item).keys, bool(doc.is_angle(mechanism, item)))
+    return {key: value for key, value in out.items() if key != "name" or value != item.link}
+
+
+def _tagged(item: Any, angle: bool) -> dict[str, Any]:
+    return {KIND: item.kind, **_table(item, item.keys, angle)}
+
+
+def _segment(item: Segment, keys: tuple[Key, ...], angle: bool) -> dict[str, Any]:
+    """Whatever is not a dwell says how far it rises, even by nothing."""
+    rise = {} if item.law == DWELL else {"rise": exact_numbers.coordinate(item.rise, angle)}
+    return _table(item, keys, angle) | rise
+
+
+def _program(item: Program, angle: bool) -> Any:
+    """A cam's program: its segments alone where it starts on the base circle."""
+    table = _table(item, PROGRAM, angle)
+    return table if len(table) > 1 else table["segments"]
+
+
+def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
+    angles = {d.name: bool(doc.is_angle(mechanism, d)) for d in mechanism.drives}
+    out = _table(item, doc.EXPECTED, doc.quantity_is_angle(item.quantity))
+    if item.at:
+        out["at"] = {key: _at(angles, key, value) for key, value in item.at}
+    owner, _, attribute = item.quantity.partition(".")
+    if owner in mechanism.carriers and attribute in VECTORS:
+        out["value"] = exact_numbers.point(item.value)
+    return out
+
+
+def _at(angles: Mapping[str, bool], key: str, value: float) -> Any:
+    name, _, rated = key.partition(".")
+    return (exact_numbers.rate if rated else exact_numbers.coordinate)(value, angles.get(name, False))
+
+
+def _published(value: complex, angle: bool) -> Any:
+    return exact_numbers.point(value) if value.imag else exact_numbers.coordinate(value.real, angle)
+
+
+# What a point has that is written as [x, y].
+VECTORS = ("position", "velocity", "acceleration", "jerk")
+
+WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
+    "name": lambda value, _: value,
+    "text": lambda value, _: value,
+    "names": lambda value, _: list(value),
+    "sign": lambda value, _: int(value),
+    "flag": lambda value, _: bool(value),
+    "two": lambda value, _: [exact_numbers.plain(entry) for entry in value],
+    "length": lambda value, _: exact_numbers.plain(value),
+    "angle": lambda value, _: exact_numbers.degrees(value),
+    "point": lambda value, _: exact_numbers.point(value),
+    "whole": lambda value, _: int(value),
+    "span": lambda value, _: exact_numbers.plain(value),
+    "times": lambda value, _: exact_numbers.values(value, False),
+    "segments": lambda value, angle: [_segment(one, one.keys, angle) for one in value],
+    "law": _tagged,
+    "number": lambda value, _: exact_numbers.plain(value),
+    "turn": lambda value, _: exact_numbers.degrees(value),
+    "place": lambda value, _: exact_numbers.point(value),
+    "places": lambda value, _: [exact_numbers.point(one) for one in value],
+    "turned": lambda value, angle: [_segment(one, SEGMENT, angle) for one in value],
+    "program": lambda value, angle: _program(value, angle),
+    "profile": lambda value, _: _tagged(value, value.oscillates),
+    "coordinate": exact_numbers.coordinate,
+    "values": exact_numbers.values,
+    "rate": exact_numbers.rate,
+    "at": lambda value, _: None,
+    "published": _published,
+    "margin": exact_numbers.coordinate,
+}

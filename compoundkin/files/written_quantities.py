@@ -1,0 +1,213 @@
+"""Points, angles and the numbers of drivers as Python holds them: radians, complex numbers, arrays."""
+
+from __future__ import annotations
+
+from math import floor
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.files.single_values import (
+    Reader,
+    bad,
+    flag,
+    held,
+    name,
+    names,
+    numbers,
+    points,
+    sign,
+    single,
+    table,
+    text,
+    two,
+    whole,
+    wrong,
+)
+from compoundkin.model.elements import polar, vector
+from compoundkin.model.fields import Kind
+
+# {from, to, step} beyond this many values is taken for a slip: it would only fill the memory.
+MOST_VALUES = 1_000_000
+
+# How far, in steps, `to` may lie beyond a whole number of steps: rounding of decimal steps such as 0.1.
+STEP_SLACK = 1e-9
+
+RPM = np.pi / 30.0
+
+
+def coordinate(value: Any, where: str, angle: bool | None) -> Number:
+    """Degrees or ``{rad = ...}`` as radians if it is an angle; lengths otherwise."""
+    if isinstance(value, dict):
+        return numbers(_unit(value, where, ("rad",), angle)[1], f"{where}.rad")
+    out = numbers(value, where)
+    return out if angle is False else held(np.asarray(np.deg2rad(out)))
+
+
+def degrees(value: Any, where: str, angle: bool | None = True) -> Number:
+    """Degrees or ``{rad = ...}`` as radians.
+
+    >>> degrees({"rad": 0.5}, "slides[0].angle")
+    0.5
+    """
+    return coordinate(value, where, True)
+
+
+def values(value: Any, where: str, angle: bool | None) -> Number:
+    """A coordinate, also as ``{from, to, step}``."""
+    if isinstance(value, dict) and value.keys() & {"from", "to", "step"}:
+        return coordinate(_range(value, where), where, angle)
+    return coordinate(value, where, angle)
+
+
+def times(value: Any, where: str, angle: bool | None = None) -> Number:
+    """Seconds, also as ``{from, to, step}``.
+
+    >>> times({"from": 0, "to": 1, "step": 0.5}, "time").tolist()
+    [0.0, 0.5, 1.0]
+    """
+    if isinstance(value, dict) and not value.keys() & {"from", "to", "step"}:
+        raise wrong(where, value, "a list of times", "write seconds, or { from = 0, to = 2, step = 0.01 }")
+    return values(value, where, False)
+
+
+def _range(value: dict[str, Any], where: str) -> list[float]:
+    for key in [*value, "from", "to", "step"]:
+        if key not in ("from", "to", "step"):
+            raise bad(f"{where}.{key}", "it has no place here", "known: from, to, step")
+        if key not in value:
+            raise bad(f"{where}.{key}", "it is missing", "known: from, to, step")
+    start, stop, step = (single(value[key], f"{where}.{key}") for key in ("from", "to", "step"))
+    if step == 0 or (stop - start) * step < 0:
+        raise bad(f"{where}.step", f"steps of {step:g} do not lead from {start:g} to {stop:g}")
+    out = spaced(start, stop, step)
+    if out is None:
+        raise bad(f"{where}.step", f"more than {MOST_VALUES} values", "take a greater step")
+    return [float(entry) for entry in out]
+
+
+def spaced(start: float, stop: float, step: float) -> np.ndarray[Any, np.dtype[np.float64]] | None:
+    """What ``{from, to, step}`` means: start + step k up to `stop`; None where that is too many values.
+
+    >>> spaced(0.0, 10.0, 5.0).tolist()
+    [0.0, 5.0, 10.0]
+    """
+    with np.errstate(over="ignore"):
+        count = np.divide(stop - start, step) + STEP_SLACK
+    return start + step * np.arange(floor(count) + 1) if count < MOST_VALUES else None
+
+
+def rate(value: Any, where: str, angle: bool | None) -> Number:
+    """A rate as it is, or ``{rpm = ...}`` or ``{deg = ...}`` (a second) as rad/s."""
+    if not isinstance(value, dict):
+        return numbers(value, where)
+    unit, amount = _unit(value, where, ("rpm", "deg"), angle)
+    out = numbers(amount, f"{where}.{unit}")
+    return held(np.asarray(out * RPM if unit == "rpm" else np.deg2rad(out)))
+
+
+def _unit(value: dict[str, Any], where: str, known: tuple[str, ...], angle: bool | None) -> tuple[str, Any]:
+    if len(value) != 1 or next(iter(value)) not in known:
+        ways = " or ".join(f"{{{unit} = ...}}" for unit in known)
+        raise bad(where, f"a table of {', '.join(value)} means nothing here", f"write a number or {ways}")
+    unit, amount = next(iter(value.items()))
+    if angle is False:
+        raise bad(f"{where}.{unit}", "this coordinate is a length, not an angle", "write lengths")
+    return unit, amount
+
+
+def point(value: Any, where: str, angle: bool | None = None) -> Number:
+    """``[x, y]`` or ``{polar = [radius, degrees]}`` as a complex number or array.
+
+    >>> point([1, [2, 3]], "drawn.A").tolist()
+    [(1+2j), (1+3j)]
+    """
+    is_polar = isinstance(value, dict) and list(value) == ["polar"]
+    entries = value["polar"] if is_polar else value
+    if not isinstance(entries, list) or len(entries) != 2:
+        raise wrong(where, entries, "a point", "write [x, y] or {polar = [radius, degrees]}")
+    place, second = (f"{where}.polar", degrees) if is_polar else (where, numbers)
+    parts = numbers(entries[0], place), second(entries[1], place)
+    try:
+        np.broadcast_shapes(*map(np.shape, parts))
+    except ValueError:
+        raise bad(where, "the two lists differ in shape") from None
+    return vector(where, polar(*parts) if is_polar else parts)
+
+
+def published(value: Any, where: str, angle: bool | None) -> complex:
+    """A number or ``[x, y]``; an angle in degrees or ``{rad = ...}``."""
+    if isinstance(value, list):
+        if angle:
+            raise wrong(where, value, "an angle", "write degrees")
+        if len(value) != 2:
+            raise wrong(where, value, "a vector", "write [x, y]")
+        return complex(*(single(v, where) for v in value))
+    return complex(margin(value, where, angle))
+
+
+def margin(value: Any, where: str, angle: bool | None) -> float:
+    """A single number; an angle in degrees or ``{rad = ...}``."""
+    out = coordinate(value, where, bool(angle))
+    return out if isinstance(out, float) else single(value, where)
+
+
+def turn(value: Any, where: str, angle: bool | None = True) -> float:
+    """A single angle: degrees or ``{rad = ...}`` as radians.
+
+    >>> turn({"rad": 0.5}, "cams[0].profile.start")
+    0.5
+    """
+    return margin(value, where, True)
+
+
+def place(value: Any, where: str, angle: bool | None = None) -> complex:
+    """A point that is one for all designs.
+
+    >>> place([1, 2], "cams[0].profile.middle")
+    (1+2j)
+    """
+    found = point(value, where)
+    if np.ndim(found):
+        raise wrong(where, value[0] if isinstance(value, list) else value, "a single number")
+    return complex(found)
+
+
+def places(value: Any, where: str, angle: bool | None = None) -> tuple[complex, ...]:
+    """A list of such points.
+
+    >>> places([[1, 2], [3, 4]], "cams[0].profile.points")
+    ((1+2j), (3+4j))
+    """
+    if not isinstance(value, list):
+        raise wrong(where, value, "a list of points", "write [[x, y], [x, y]]")
+    return tuple(place(one, f"{where}[{index}]") for index, one in enumerate(value))
+
+
+READERS: dict[Kind, Reader] = {
+    "name": name,
+    "text": text,
+    "names": names,
+    "length": numbers,
+    "angle": degrees,
+    "point": point,
+    "sign": sign,
+    "flag": flag,
+    "two": two,
+    "points": points,
+    "drawing": table,
+    "whole": whole,
+    "span": single,
+    "times": times,
+    "coordinate": coordinate,
+    "number": single,
+    "turn": turn,
+    "place": place,
+    "places": places,
+    "values": values,
+    "rate": rate,
+    "at": table,
+    "published": published,
+    "margin": margin,
+}

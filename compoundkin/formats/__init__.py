@@ -1,9 +1,0 @@
-"""Mechanism files in and out, their schema, and tables of a motion."""
-
-from __future__ import annotations
-
-from compoundkin.formats.files import dumps, load, loads, save
-from compoundkin.formats.schema import schema
-from compoundkin.formats.tables import columns, save_table, to_pandas
-
-__all__ = ["columns", "dumps", "load", "loads", "save", "save_table", "schema", "to_pandas"]

@@ -1,0 +1,9 @@
+"""Solving: from a mechanism and driver values to a motion with every derivative asked for."""
+
+from __future__ import annotations
+
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.results import LinkMotion, PairMotion, PointMotion, Vectors
+from compoundkin.kinematics.solution import solve
+
+__all__ = ["LinkMotion", "Motion", "PairMotion", "PointMotion", "Vectors", "solve"]

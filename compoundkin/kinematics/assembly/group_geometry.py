@@ -1,0 +1,128 @@
+"""What a group is for finding all its configurations: bodies joined by pins and slides, as plain numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+
+# Two points of a body nearer than this part of the size are one pin: rounding of a few additions.
+SAME = 1e-12
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A pin or a slide between two bodies, or between a body and what is known.
+
+    `bodies` are two indices, None for what is known. A pin holds `points[0]` of the first on `points[1]` of the
+    second. With `directions` it is a slide: the first carries a guide through its point, along which the
+    second's point runs, and the second's direction stays along the guide. Points and unit directions are
+    complex, each in its own body, or in the world where known; scalars or arrays over poses.
+    """
+
+    bodies: tuple[int | None, int | None]
+    points: tuple[Number, Number]
+    directions: tuple[Number, Number] | None = None
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """Bodies 0 to `n` - 1 held by `connections`, exactly as many as fix them all; `size` is a typical length.
+
+    Raises `InvalidInput` where the number of connections does not fit.
+
+    >>> dyad = Assembly(2, (
+    ...     Connection((None, 0), (0, 0)), Connection((0, 1), (3, 0)), Connection((None, 1), (4, 2))), 4.0)
+    >>> dyad.loops
+    1
+    """
+
+    n: int
+    connections: tuple[Connection, ...]
+    size: float = 1.0
+
+    def __post_init__(self) -> None:
+        if 2 * len(self.connections) != 3 * self.n:
+            what = f"{len(self.connections)} connections do not fix {self.n} bodies in finitely many ways"
+            raise InvalidInput(Problem("connections", what, "give three for every two bodies"))
+
+    @property
+    def loops(self) -> int:
+        """The number of independent loops."""
+        return len(self.connections) - self.n
+
+    def pins(self) -> tuple[tuple[int, int], ...]:
+        """For both sides of every connection the number of its point on that body: coinciding points have one."""
+        seen: dict[int | None, list[Number]] = {}
+        return tuple(
+            (self._pin(seen, c.bodies[0], c.points[0]), self._pin(seen, c.bodies[1], c.points[1]))
+            for c in self.connections
+        )
+
+    def _pin(self, seen: dict[int | None, list[Number]], body: int | None, point: Number) -> int:
+        known = seen.setdefault(body, [])
+        for k, other in enumerate(known):
+            if np.all(np.abs(point - other) <= SAME * self.size):
+                return k
+        known.append(point)
+        return len(known) - 1
+
+    def structure(self) -> Structure:
+        """What of it does not depend on dimensions: which bodies are joined, by what, and which pins coincide."""
+        slides = tuple(c.directions is not None for c in self.connections)
+        return Structure(self.n, tuple(c.bodies for c in self.connections), slides, self.pins())
+
+
+@dataclass(frozen=True)
+class Structure:
+    """An assembly without its dimensions; it can be hashed, so that what depends on it alone is found once."""
+
+    n: int
+    bodies: tuple[tuple[int | None, int | None], ...]
+    slides: tuple[bool, ...]
+    pins: tuple[tuple[int, int], ...]
+
+    def tree(self) -> tuple[tuple[tuple[int, int], ...], tuple[int, ...]]:
+        """A spanning tree outward from what is known: (connection, new body) in order, and the other connections.
+
+        Breadth first, so that loops are short.
+        """
+        reached: list[int | None] = [None]
+        steps: list[tuple[int, int]] = []
+        for body in reached:
+            for k, new in self._around(body):
+                if new is not None and new not in reached:
+                    reached.append(new)
+                    steps.append((k, new))
+        if len(steps) < self.n:
+            raise InvalidInput(Problem("connections", "some bodies are not attached to what is known"))
+        used = {k for k, _ in steps}
+        return tuple(steps), tuple(k for k in range(len(self.bodies)) if k not in used)
+
+    def _around(self, body: int | None) -> Iterator[tuple[int, int | None]]:
+        for k, (a, b) in enumerate(self.bodies):
+            if body == a:
+                yield k, b
+            elif body == b:
+                yield k, a
+
+    def random(self, rng: np.random.Generator) -> tuple[Number, Number]:
+        """Random dimensions with the same coinciding pins: points and directions (connections, 2 sides, 2).
+
+        In isotropic coordinates, the two of a point independent, as a generic complex instance needs.
+        """
+        m = len(self.bodies)
+        points = np.empty((m, 2, 2), dtype=complex)
+        seen: dict[tuple[int | None, int], Number] = {}
+        for k in range(m):
+            for side in range(2):
+                key = (self.bodies[k][side], self.pins[k][side])
+                if key not in seen:
+                    seen[key] = rng.standard_normal(2) + 1j * rng.standard_normal(2)
+                points[k, side] = seen[key]
+        direction = np.exp(2j * np.pi * rng.random((m, 2)) + 0.3 * rng.standard_normal((m, 2)))
+        return points, np.stack([direction, 1 / direction], axis=-1)

@@ -1,0 +1,117 @@
+"""Where a motion cannot be assembled: between which driver values, which group fails, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+
+# Halvings of the distance between two neighbouring poses: 2**-45 of it is far below 1e-9 of any driver value.
+HALVINGS = 45
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A run of poses that cannot be assembled, in one design.
+
+    `begin` and `end` are the driver values at which the group stops and starts to close, found to 1e-9;
+    where the run reaches an end of the motion (`open_begin`, `open_end`) they are the motion's own value
+    there. `first` and `last` are the indices of the poses along the motion.
+    """
+
+    design: tuple[int, ...]
+    first: int
+    last: int
+    begin: Mapping[str, float]
+    end: Mapping[str, float]
+    open_begin: bool
+    open_end: bool
+    links: tuple[str, ...]
+    group: str
+    reason: str
+
+
+def gaps(motion: Motion) -> tuple[Gap, ...]:
+    """All gaps of a motion, design by design, in the order of the motion.
+
+    >>> import warnings
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.kinematics import solve
+    >>> triple_rocker = Mechanism(
+    ...     "Triple rocker", link("frame", A=(0, 0), D=(7, 0)), link("crank", A=(0, 0), B=(4, 0)),
+    ...     link("coupler", B=(0, 0), C=(5, 0)), link("rocker", D=(0, 0), C=(3, 0)), drive("crank"))
+    >>> with warnings.catch_warnings(action="ignore"):
+    ...     gap, = gaps(solve(triple_rocker))
+    >>> gap.reason
+    '|BD| = 11 > |BC| + |CD| = 5 + 3'
+    >>> round(gap.begin["crank"], 6)
+    1.552938
+    """
+    runs = _runs(motion.failed != 0)
+    if not len(runs):
+        return ()
+    designs, first, last = runs[:, 0], runs[:, 1], runs[:, 2]
+    with np.errstate(all="ignore"):
+        begin = _edges(motion, designs, first - 1, first)
+        end = _edges(motion, designs, last + 1, last)
+        middle = (first + last) // 2
+        reasons = _reasons(motion, designs, middle)
+    axes = motion.shape[:-1]
+    found = []
+    for k, (d, a, b) in enumerate(runs.tolist()):
+        group = motion.structure.groups[int(motion.failed[d, middle[k]]) - 1]
+        design = tuple(int(i) for i in np.unravel_index(d, axes)) if axes else ()
+        found.append(
+            Gap(
+                design,
+                a,
+                b,
+                _at(begin, k),
+                _at(end, k),
+                a == 0,
+                b == motion.inputs.poses - 1,
+                group.links,
+                group.name,
+                reasons[k],
+            )
+        )
+    return tuple(found)
+
+
+def _runs(failed: Number) -> Number:
+    """Rows (design, first, last) of the runs of True along the last axis."""
+    edge: Number = np.diff(np.pad(failed, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    design, first = np.nonzero(edge == 1)
+    last = np.nonzero(edge == -1)[1] - 1
+    return np.stack([design, first, last], axis=1)
+
+
+def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[str, Number]:
+    """The driver values between an assembled pose and its neighbour that is not, by bisection."""
+    inside = (good >= 0) & (good < motion.inputs.poses)
+    near: Number = bad + np.where(inside, good - bad, 0.0)
+    far = bad.astype(float)
+    for _ in range(HALVINGS):
+        middle = (near + far) / 2.0
+        part = motion.inputs.pick(designs, middle)
+        closed = motion.tracker.run(part, 0, middle[:, None], designs[:, None]).failed == 0
+        closed = np.broadcast_to(closed, (len(designs), 1))[:, 0]
+        near, far = np.where(closed, middle, near), np.where(closed, far, middle)
+    drives = motion.inputs.pick(designs, near).drives
+    return {name: np.broadcast_to(np.ravel(values[0]), len(designs)) for name, values in drives.items()}
+
+
+def _reasons(motion: Motion, designs: Number, poses: Number) -> list[str]:
+    part = motion.inputs.pick(designs, poses.astype(float))
+    run = motion.tracker.run(part, 0, poses.astype(float)[:, None], designs[:, None])
+    steps = motion.tracker.plan.steps
+    return [steps[motion.failed[d, m] - 1].explain(run, k) for k, (d, m) in enumerate(zip(designs, poses, strict=True))]
+
+
+def _at(values: Mapping[str, Number], k: int) -> dict[str, float]:
+    return {name: float(v[k]) for name, v in values.items()}

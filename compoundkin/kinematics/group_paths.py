@@ -1,0 +1,192 @@
+"""Continuation of a group without a closed form: along the way to a motion, and along the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.kinematics.groups.general import General, Setting
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.sampling import CLOSE, pace
+
+if TYPE_CHECKING:
+    from compoundkin.kinematics.tracking import Tracker
+
+# What the terms of the prediction, first to third, may move at most (parts of the size, or radians) in one step: what
+# is left out is then below a hundredth, from which Newton converges unless a limit position is near.
+MOVES = (0.5, 0.2, 0.02)
+# A corrector that moves farther than this may have left its branch.
+STRAY = 0.03
+# What is interpolated may be off by this part of a step: near a limit position steps are so short that it is smooth.
+BENT = 0.05
+# Differences below this (of the size, or radians) are none.
+SAME = 1e-7
+# No step takes more spacings than this of the drivers (of five degrees each), even where nothing moves.
+SPACINGS = 6.0
+# The continuation gives up where its step falls below this part of the distance between two poses; what
+# is left is then known to be nearer to a limit than that.
+SHORTEST = 1e-12
+# Drivers that take less than this part of a spacing a pose stand still.
+SLOWEST = 1e-9
+
+
+@dataclass(frozen=True)
+class Path:
+    """The tracked states of one group: nodes `s`, states (designs, nodes, 3 n), their slopes by s, and the
+    reach (designs, 2) of s within which each design was tracked."""
+
+    s: Number
+    states: Number
+    slopes: Number
+    reach: Number
+
+    def seeds(self, designs: Number, s: Number) -> Number:
+        """Cubic interpolation for design indices and places `s` (broadcast together): NaN beyond reach."""
+        low, high = self.reach[designs, 0], self.reach[designs, 1]
+        if len(self.s) == 1:
+            out = self.states[designs, np.zeros(np.shape(s), dtype=int)]
+        else:
+            i = np.clip(np.searchsorted(self.s, s, side="right") - 1, 0, len(self.s) - 2)
+            h = (self.s[i + 1] - self.s[i])[..., None]
+            t = (s - self.s[i])[..., None] / h
+            out = (
+                (1 + 2 * t) * (1 - t) ** 2 * self.states[designs, i]
+                + t * (1 - t) ** 2 * h * self.slopes[designs, i]
+                + t * t * (3 - 2 * t) * self.states[designs, i + 1]
+                - t * t * (1 - t) * h * self.slopes[designs, i + 1]
+            )
+        return np.where(((s >= low) & (s <= high))[..., None], out, np.nan)
+
+
+def track(tracker: Tracker, k: int, solver: General, state: Number) -> tuple[Path, Path]:
+    """Follow group `k` along the lead to the motion, then from there to both ends of the motion."""
+    given, lead, at = tracker.given, tracker.lead, tracker.at
+    alive = np.isfinite(state).all(axis=(1, 2))
+    stops = np.arange(lead.poses, dtype=float)
+    first = _March(tracker, k, solver, lead.at, state, alive, lead=True).go(stops)
+    state, alive = first.state, first.alive
+    ahead = _March(tracker, k, solver, given.at, state, alive).go(np.arange(at, given.poses, dtype=float))
+    back = _March(tracker, k, solver, given.before, state, alive).go(np.arange(at, -1, -1, dtype=float))
+    return first.path(np.zeros(len(state))), _joined(back, ahead)
+
+
+def _joined(back: _March, ahead: _March) -> Path:
+    one, two = back.path(back.reached), ahead.path(ahead.reached)
+    keep = slice(None, 0, -1)
+    return Path(
+        np.concatenate([one.s[keep], two.s]),
+        np.concatenate([one.states[:, keep], two.states], axis=1),
+        np.concatenate([one.slopes[:, keep], two.slopes], axis=1),
+        # a change point at an end of the motion is solved just beyond it
+        np.stack([_beyond(back.reached, 0.0, -CLOSE), _beyond(ahead.reached, two.s[-1], CLOSE)], axis=1),
+    )
+
+
+def _beyond(reached: Number, end: float, little: float) -> Number:
+    return np.where(reached == end, reached + 4.0 * little, reached)
+
+
+class _March:
+    """One continuation: all designs take the same steps, those that meet a limit stay behind."""
+
+    def __init__(
+        self,
+        tracker: Tracker,
+        k: int,
+        solver: General,
+        along: Callable[[Number], Inputs],
+        state: Number,
+        alive: Number,
+        lead: bool = False,
+    ) -> None:
+        self.tracker, self.k, self.solver, self.along, self.lead = tracker, k, solver, along, lead
+        self.state = state
+        self.alive = alive
+        self.s: list[float] = []
+        self.states: list[Number] = []
+        self.slopes: list[Number] = []
+        self.reached = np.zeros(len(state))
+        self.longest = SPACINGS / max(pace(tracker.plan, tracker.lead if lead else tracker.given), SLOWEST)
+
+    def go(self, stops: Number) -> _March:
+        """Step from stop to stop; stops that lie within one stride of each other are passed over."""
+        here = float(stops[0])
+        rates, side = self._rates(self.state, self._setting(here))
+        self._note(here, rates[0])
+        self.reached = np.where(self.alive, here, np.nan)
+        goal = 1
+        step = np.inf
+        while goal < len(stops) and self.alive.any():
+            farthest = min(self._stride(rates), self.longest)
+            within = int(np.searchsorted(np.abs(stops[goal:] - here), min(step, farthest), side="right"))
+            goal = min(goal + max(within - 1, 0), len(stops) - 1)
+            ahead = float(stops[goal]) - here
+            h = np.sign(ahead) * min(abs(ahead), step, farthest)
+            state, new_rates, new_side, good = self._step(here, h, rates, side)
+            if good[self.alive].all():
+                here, step = here + h, abs(h) * 2.0
+                self.state = np.where(self.alive[:, None, None], state, self.state)
+                rates, side = new_rates, new_side
+                self._note(here, rates[0])
+                self.reached = np.where(self.alive, here, self.reached)
+                goal += here == stops[goal]
+            elif abs(h) > SHORTEST * max(1.0, abs(here)):
+                step = abs(h) / 2.0
+            else:
+                self.alive = self.alive & good
+                step = np.inf
+        return self
+
+    def _stride(self, rates: list[Number]) -> float:
+        """How far the prediction is good: by the farthest move that each of its terms may make."""
+        weights = self.solver.weights
+        sizes = (float(np.max(np.abs(c[self.alive] * weights), initial=0.0)) for c in rates)
+        return min(((most / c) ** (1.0 / k) for k, (most, c) in enumerate(zip(MOVES, sizes, strict=True), 1) if c > 0),
+                   default=np.inf)  # fmt: skip
+
+    def _setting(self, s: float) -> Setting:
+        place = np.array([s])
+        designs = np.arange(len(self.state))[:, None]
+        run = self.tracker.run(self.along(place), len(MOVES), place[None], designs, self.k, self.lead)
+        return run.setting
+
+    def _rates(self, state: Number, setting: Setting) -> tuple[list[Number], Number]:
+        """The state's coefficients by s, and on which side of a singularity the configuration is."""
+        rates, side = self.solver.rates(state, setting, len(MOVES))
+        return rates, np.broadcast_to(side, state.shape[:2])
+
+    def _step(
+        self, here: float, h: float, rates: list[Number], side: Number
+    ) -> tuple[Number, list[Number], Number, Number]:
+        """One step: the state there, its rates and side, and for which designs it is a neighbour."""
+        guess = self.state + sum(c * h**k for k, c in enumerate(rates, 1))
+        setting = self._setting(here + h)
+        found = self.solver.newton(guess, setting)
+        good = (found.closed & (found.moved <= STRAY)).reshape(len(self.state))
+        state = np.where(good[:, None, None], found.state, self.state)
+        new_rates, new_side = self._rates(state, setting)
+        # the middle of the step as it will be interpolated, against the prediction
+        between = (self.state + state) / 2.0 + (rates[0] - new_rates[0]) * (h / 8.0)
+        predicted = self.state + sum(c * (h / 2.0) ** k for k, c in enumerate(rates, 1))
+        gaps = (between - predicted, state - self.state)
+        off, moved = (np.abs(gap * self.solver.weights).max(axis=(1, 2)) for gap in gaps)
+        near = off <= BENT * moved + SAME
+        return state, new_rates, new_side, good & near & (new_side == side).reshape(len(self.state))
+
+    def path(self, begin: Number) -> Path:
+        """What was tracked; `begin` is where each design's reach starts."""
+        return Path(
+            np.array(self.s),
+            np.concatenate(self.states, axis=1),
+            np.concatenate(self.slopes, axis=1),
+            np.stack([begin, self.reached], axis=1),
+        )
+
+    def _note(self, s: float, slope: Number) -> None:
+        self.s.append(s)
+        self.states.append(self.state)
+        self.slopes.append(slope)

@@ -1,0 +1,58 @@
+"""The PRP dyad: two blocks on known guides, pinned to each other.
+
+Source: intersection of two lines, as in the elliptic trammel.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series, as_series
+from compoundkin.kinematics.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, placed_at
+
+# Guides nearer to parallel than this (the sine of the angle between them) fix no point: their meeting
+# point would lie beyond a billion times the mechanism's size, and carry no correct digit.
+PARALLEL = 1e-9
+
+
+class PRP(Dyad):
+    """It has one assembly mode; a sign has no effect."""
+
+    name: ClassVar[str] = "PRP"
+    modes: ClassVar[int] = 1
+    sign_means: ClassVar[str] = "there is only one mode"
+
+    @staticmethod
+    def close(
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+    ) -> Closed:
+        """Meet the two lines on which the inner pin runs."""
+        (here, u), (there, v) = _line(first, inner[0]), _line(second, inner[1])
+        one, two = first.world.along, second.world.along
+        gap = there - here
+        sine, margin = separated(one.cross(two))
+        pose = placed_at(as_series(first.world.point) + one * (gap.cross(two) / sine), u, first.local.point)
+        other = placed_at(as_series(second.world.point) + two * (gap.cross(one) / sine), v, second.local.point)
+        return Closed((pose, other), margin)
+
+    @staticmethod
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
+        """The guides are parallel."""
+        return f"the guides of {names[0]} and {names[2]} are parallel, so that {names[1]} is not fixed"
+
+
+def _line(attachment: Attachment, pin: End) -> tuple[Series, Series]:
+    """A point of the line on which the inner pin runs, and the orientation of the block that carries it."""
+    u = attachment.world.along * attachment.local.along.conj()
+    return Pose(as_series(attachment.world.point), u).at(pin.point - attachment.local.point), u
+
+
+def separated(sine: Series) -> tuple[Series, Number]:
+    """The sine, NaN where the guides are parallel; and the margin."""
+    margin = np.abs(sine.c[0]) - PARALLEL
+    return Series((np.where(margin >= 0, sine.c[0], np.nan), *sine.c[1:])), margin

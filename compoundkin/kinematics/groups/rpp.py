@@ -1,0 +1,44 @@
+"""The RPP dyad: a link pinned to what is known, sliding on a second one that slides on what is known.
+
+Source: all orientations are known, so the closure is linear; as in the Scotch yoke.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from compoundkin.base.poses import End
+from compoundkin.base.series import Number, as_series
+from compoundkin.kinematics.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, placed_at
+from compoundkin.kinematics.groups.prp import separated
+
+
+class RPP(Dyad):
+    """It has one assembly mode; a sign has no effect."""
+
+    name: ClassVar[str] = "RPP"
+    modes: ClassVar[int] = 1
+    sign_means: ClassVar[str] = "there is only one mode"
+
+    @staticmethod
+    def close(
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+    ) -> Closed:
+        """Slide the second body along its known guide until the first one's guide passes through."""
+        track = second.world.along
+        v = track * second.local.along.conj()
+        guide = v * inner[1].along
+        pose = placed_at(as_series(first.world.point), guide * inner[0].along.conj(), first.local.point)
+        start = placed_at(as_series(second.world.point), v, second.local.point)
+        gap = start.at(inner[1].point) - pose.at(inner[0].point)
+        sine, margin = separated(guide.cross(track))
+        travel = gap.cross(guide) / sine
+        moved = placed_at(as_series(second.world.point) + track * travel, v, second.local.point)
+        return Closed((pose, moved), margin)
+
+    @staticmethod
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
+        """The guides are parallel."""
+        return f"the guides of {names[1]} and {names[2]} are parallel, so that the position along them is not fixed"

@@ -1,0 +1,68 @@
+"""The RPR dyad: a guide and a block, each pinned to what is known, that slide on each other.
+
+Source: the inverted slider-crank with eccentricity, e.g. R. L. Norton, Design of Machinery, section 4.7.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.poses import End
+from compoundkin.base.series import Number, Series, as_series, planar
+from compoundkin.kinematics.groups.contract import (
+    Attachment,
+    Closed,
+    Dyad,
+    Root,
+    clipped_root,
+    element,
+    placed_at,
+    text,
+)
+
+
+class RPR(Dyad):
+    """Mode +1: along the guide's direction, the outer pin of the block lies beyond that of the guide."""
+
+    name: ClassVar[str] = "RPR"
+    modes: ClassVar[int] = 2
+    sign_means: ClassVar[str] = "the block's outer pin is farther along the guide than the guide's own"
+    follows_inner: ClassVar[bool] = True
+
+    @staticmethod
+    def close(
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+    ) -> Closed:
+        """Turn the guide so that the pins have their known distance across it."""
+        line, across = _distances(first, inner, second)
+        line2 = line.abs2()
+        along, margin = root(line2 - across * across, line2.c[0])
+        guide = line / planar(along * sign, across)
+        u, v = guide * inner[0].along.conj(), guide * inner[1].along.conj()
+        first_pose = placed_at(as_series(first.world.point), u, first.local.point)
+        second_pose = placed_at(as_series(second.world.point), v, second.local.point)
+        return Closed((first_pose, second_pose), margin, line2.c[0])
+
+    @staticmethod
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
+        """The pins are nearer to each other than their eccentricity."""
+        line, across = _distances(first, inner, second)
+        if element(np.abs(line.c[0]) - np.abs(across.c[0]), at) >= 0:
+            pins = f"{names[0]} and {names[2]} coincide"
+            return f"{pins}, so that the direction of the guide of {names[1]} is not determined"
+        return (
+            f"|{names[0]}{names[2]}| = {text(np.abs(line.c[0]), at)} < {text(np.abs(across.c[0]), at)},"
+            f" the distance of the two pins across the guide of {names[1]}"
+        )
+
+
+def _distances(first: Attachment, inner: tuple[End, End], second: Attachment) -> tuple[Series, Series]:
+    """The vector between the outer pins, and their distance across the guide."""
+    line = as_series(second.world.point) - first.world.point
+    here = as_series(first.local.point - inner[0].point) * inner[0].along.conj()
+    there = as_series(second.local.point - inner[1].point) * inner[1].along.conj()
+    return line, (there - here).imag

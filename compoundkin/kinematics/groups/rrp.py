@@ -1,0 +1,60 @@
+"""The RRP dyad: a rod pinned to what is known, and pinned to a block (or guide) that slides on what is known.
+
+Source: intersection of a circle and a line; the slider-crank position equation with eccentricity, e.g.
+R. L. Norton, Design of Machinery, section 4.7.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series, as_series
+from compoundkin.kinematics.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, placed_at, text
+
+
+class RRP(Dyad):
+    """Mode +1: the inner pin is the one farther along the direction of the guide."""
+
+    name: ClassVar[str] = "RRP"
+    modes: ClassVar[int] = 2
+    sign_means: ClassVar[str] = "the inner pin is farther along the guide"
+
+    @staticmethod
+    def close(
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+    ) -> Closed:
+        """Intersect the circle about the outer pin with the line on which the inner pin runs."""
+        rod, start, guide, v = _line(first, inner, second)
+        across, along = guide.cross(start), guide.dot(start)
+        rod2 = rod.abs2()
+        half, margin = root(rod2 - across * across, rod2.c[0])
+        travel = half * sign - along
+        u = (start + guide * travel) / rod
+        block = placed_at(as_series(second.world.point) + guide * travel, v, second.local.point)
+        return Closed((placed_at(as_series(first.world.point), u, first.local.point), block), margin)
+
+    @staticmethod
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
+        """The rod does not reach the line of its other pin."""
+        rod, start, guide, _ = _line(first, inner, second)
+        distance = np.abs(guide.cross(start).c[0])
+        return (
+            f"{names[0]} is {text(distance, at)} from the line on which {names[1]} runs"
+            f" > |{names[0]}{names[1]}| = {text(np.abs(rod.c[0]), at)}"
+        )
+
+
+def _line(first: Attachment, inner: tuple[End, End], second: Attachment) -> tuple[Series, Series, Series, Series]:
+    """The rod in its own frame; the line of the inner pin, a point from the outer pin and a direction; the block's
+    orientation.
+    """
+    rod = as_series(inner[0].point - first.local.point)
+    guide = second.world.along
+    v = guide * second.local.along.conj()
+    start = Pose(as_series(second.world.point), v).at(inner[1].point - second.local.point) - first.world.point
+    return rod, start, guide, v

@@ -1,0 +1,75 @@
+"""The RRR dyad: two links, each pinned to what is known, pinned to each other.
+
+Source: intersection of two circles; e.g. E. Soylu, Mechanisms, section on loop closure of four-bars.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.poses import End
+from compoundkin.base.series import Number, Series, as_series, planar
+from compoundkin.kinematics.groups.contract import (
+    COINCIDENT,
+    Attachment,
+    Closed,
+    Dyad,
+    Root,
+    clipped_root,
+    element,
+    placed_at,
+    text,
+)
+
+
+class RRR(Dyad):
+    """Mode +1: outer pin of the first link, inner pin, outer pin of the second run counterclockwise."""
+
+    name: ClassVar[str] = "RRR"
+    modes: ClassVar[int] = 2
+    sign_means: ClassVar[str] = "outer pin, inner pin, outer pin run counterclockwise"
+
+    @staticmethod
+    def close(
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+    ) -> Closed:
+        """Intersect the circle about each outer pin."""
+        a, b, line = _sides(first, inner, second)
+        line2, a2 = line.abs2(), a.abs2()
+        reach2 = a2 * line2
+        foot = (line2 + (a2 - b.abs2())) * 0.5  # the scalar product of the first link and the line
+        apart = line2.c[0] > COINCIDENT**2 * a2.c[0]
+        height, margin = root(reach2 - foot * foot, np.where(apart, reach2.c[0], np.nan))  # their cross product
+        u = line * a.conj() / planar(foot, height * sign)
+        v = (u * a - line) / b
+        first_pose = placed_at(_point(first), u, first.local.point)
+        return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin, line2.c[0])
+
+    @staticmethod
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
+        """Too far apart or too near."""
+        a, b, line = (np.abs(s.c[0]) for s in _sides(first, inner, second))
+        outer, pin, other = names
+        between = f"|{outer}{other}| = {text(line, at)}"
+        if element(line - (a + b), at) > 0:
+            return f"{between} > |{outer}{pin}| + |{pin}{other}| = {text(a, at)} + {text(b, at)}"
+        if element(line - np.abs(a - b), at) < 0 and element(line, at) > COINCIDENT * element(a, at):
+            return f"{between} < ||{outer}{pin}| - |{pin}{other}|| = |{text(a, at)} - {text(b, at)}|"
+        return f"{outer} and {other} coincide, so that the direction of {outer}{pin} is not determined"
+
+
+def _sides(first: Attachment, inner: tuple[End, End], second: Attachment) -> tuple[Series, Series, Series]:
+    """From the outer to the inner pin on each body, and from one outer pin to the other in the world."""
+    return (
+        as_series(inner[0].point - first.local.point),
+        as_series(inner[1].point - second.local.point),
+        _point(second) - _point(first),
+    )
+
+
+def _point(attachment: Attachment) -> Series:
+    return as_series(attachment.world.point)

@@ -1,0 +1,187 @@
+"""A solved motion: points, links, pairs and drivers by name, with all derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compoundkin.base.display import ShowsPicture
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.kinematics.inputs import Inputs, fit
+from compoundkin.kinematics.results import LinkMotion, PairMotion, PointMotion, Table
+from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.tracking import Tracker
+from compoundkin.model.elements import FRAME
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure.parts import Structure
+
+if TYPE_CHECKING:
+    from compoundkin.view.animation import Animation
+    from compoundkin.view.plot import Plot
+
+HIGHEST_ORDER = 3
+
+
+@dataclass(frozen=True)
+class Motion(ShowsPicture):
+    """A mechanism solved: every link's pose with all derivatives, over designs and poses.
+
+    `shape` is the broadcast shape of dimensions and driver values, the last axis the motion. Poses that
+    cannot be assembled are NaN, False in `assembled`, and explained by `compoundkin.kinematics.gaps`.
+    """
+
+    structure: Structure
+    order: int
+    inputs: Inputs
+    poses: Mapping[str, Pose]
+    failed: Number  # shape (designs, poses): index of the first group that does not close plus one, or 0
+    tracker: Tracker
+    time: Number | None = None  # the times (seconds) of a motion in time; broadcasts with its shape
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism that was solved."""
+        return self.structure.mechanism
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of every array of the motion."""
+        return self.inputs.shape
+
+    @cached_property
+    def assembled(self) -> Number:
+        """Which poses are assembled, a bool array of the motion's shape."""
+        return self._shaped(self.failed == 0)
+
+    @cached_property
+    def regular(self) -> Number:
+        """Which poses have finite rates, (designs, poses): the assembled ones but for limit positions."""
+        good = np.array(self.failed == 0)
+        for pose in self.poses.values():
+            for c in (*pose.z.c[1:], *pose.u.c[1:]):
+                good = good & np.isfinite(c)
+        return good
+
+    @property
+    def size(self) -> float:
+        """The mechanism's length scale."""
+        return self._plan.size
+
+    @cached_property
+    def points(self) -> Mapping[str, PointMotion]:
+        """The motion of every point by its letter."""
+        return Table("point", tuple(self.mechanism.carriers), self._point)
+
+    @cached_property
+    def links(self) -> Mapping[str, LinkMotion]:
+        """The motion of every link by its name."""
+        return Table("link", tuple(self.mechanism.links), lambda name: LinkMotion(self, self.poses[name]))
+
+    @cached_property
+    def pairs(self) -> Mapping[str, PairMotion]:
+        """The relative motion in every pair by its name."""
+        return Table("pair", tuple(self._plan.pairs), self._pair)
+
+    @cached_property
+    def drives(self) -> Mapping[str, PairMotion]:
+        """The prescribed coordinate of every driver by its name."""
+        return Table("driver", tuple(self.inputs.drives), self._drive)
+
+    def plot(self, *names: str, **options: Any) -> Plot:
+        """Draw quantities over the driver, the time or any other quantity: `compoundkin.plot` of this motion."""
+        # found by its name: plots come after motions, and only who draws pays for them
+        drawn: Plot = import_module("compoundkin.view.plot").plot(self, *names, **options)
+        return drawn
+
+    def animate(self, **options: Any) -> Animation:
+        """An animation to be saved as GIF, MP4 or SVG: `compoundkin.animate` of this motion."""
+        made: Animation = import_module("compoundkin.view.animation").animate(self, **options)
+        return made
+
+    @property
+    def _plan(self) -> Plan:
+        return self.tracker.plan
+
+    def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:
+        """The motion with some of its poses put in the place of what was solved there."""
+        if not len(designs):
+            return self
+        shape = (self.inputs.designs, self.inputs.poses)
+
+        def put(series: Series, other: Series) -> Series:
+            out = []
+            for k in range(self.order + 1):
+                full = np.array(np.broadcast_to(series.c[k] if k < len(series.c) else 0.0 * series.c[0], shape))
+                full[designs, index] = np.ravel(other.c[k]) if k < len(other.c) else 0.0
+                out.append(full)
+            return Series(tuple(out))
+
+        def mended(pose: Pose, other: Pose) -> Pose:
+            known = pose.theta is not None and other.theta is not None
+            return Pose(put(pose.z, other.z), put(pose.u, other.u), put(pose.angle, other.angle) if known else None)
+
+        return replace(self, poses={n: FIXED if n == FRAME else mended(p, poses[n]) for n, p in self.poses.items()})
+
+    def __repr__(self) -> str:
+        missing = int(np.count_nonzero(self.failed))
+        told = f", {missing} of them not assembled" if missing else ""
+        return f"Motion({self.mechanism.title!r} at {self.shape} poses to order {self.order}{told})"
+
+    def _point(self, name: str) -> PointMotion:
+        link = self.mechanism.carriers[name][0]
+        return PointMotion(self, self._derivative(link, name))
+
+    def _derivative(self, link: str, name: str) -> Any:
+        pose = self.poses[link]
+        p = fit(self.shape)(self.mechanism.geometry.points[link][name])
+        return lambda k: pose.derivative(p, k)
+
+    def _pair(self, name: str) -> PairMotion:
+        pair = self._plan.pairs[name]
+        ends = self.inputs.ends[name]
+        poses = tuple(self.poses[member] for member in pair.members)
+        counted = all(pose.theta is not None for pose in poses)
+        return PairMotion(self, pair.coordinate(ends, poses), pair.free_is_angle, counted=counted)
+
+    def _drive(self, name: str) -> PairMotion:
+        is_angle = self._plan.driven[name].pair.free_is_angle
+        return PairMotion(self, self.inputs.series(self.order)[name], is_angle, prescribed=True)
+
+    def _has(self, k: int) -> None:
+        if not 0 <= k <= self.order:
+            names = ("position", "velocity", "acceleration", "jerk")
+            what = names[k] if 0 <= k <= HIGHEST_ORDER else f"derivative {k}"
+            remedy = f"solve(..., order={k})" if 0 <= k <= HIGHEST_ORDER else f"0 to {HIGHEST_ORDER}"
+            raise InvalidInput(Problem(what, f"the motion was solved to order {self.order}", remedy))
+
+    def _fitted(self, value: Number) -> Number:
+        """A value that broadcasts with the motion, in the form (1 or designs, 1 or poses)."""
+        try:
+            np.broadcast_to(value, self.shape)
+        except ValueError:
+            what = f"shape {np.shape(value)} does not broadcast with {self.shape}"
+            raise InvalidInput(Problem("point", what, "the last axis is the motion")) from None
+        return fit(self.shape)(value)
+
+    def _known(self, value: Number) -> Number:
+        """A value in the motion's shape, not a number at poses that are not assembled."""
+        shaped = self._shaped(value)
+        if self._complete:
+            return shaped
+        return np.where(self.assembled, shaped, complex(np.nan, np.nan) if np.iscomplexobj(shaped) else np.nan)
+
+    @cached_property
+    def _complete(self) -> bool:
+        return not self.failed.any()
+
+    def _shaped(self, value: Number) -> Number:
+        """A value of the form (1 or designs, 1 or poses) in the motion's shape."""
+        full = np.broadcast_to(value, (self.inputs.designs, self.inputs.poses))
+        return full.reshape(self.shape)

@@ -1,0 +1,60 @@
+"""Whether the pairs that were left out as redundant hold along a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from compoundkin.base.errors import NotAssembled, NotDetermined, Problem
+from compoundkin.base.series import Number
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.pairs import Pair
+from compoundkin.structure.parts import Structure
+from compoundkin.structure.redundancy import mobility_analysis
+from compoundkin.structure.redundancy.constraint_equations import ROUNDED
+
+
+def because(structure: Structure) -> str:
+    """What the dimensions say of a mechanism that is held by too much, to be added to a heading."""
+    if not any(fault.kind == "over" for fault in structure.faults):
+        return ""
+    found = mobility_analysis(structure)
+    return f" ({found.verdict})" if found.finite is not None or found.gap else ""
+
+
+@contextmanager
+def explained(structure: Structure) -> Iterator[None]:
+    """Raises NotDetermined with the reason where a group has no pose because its dimensions are special."""
+    try:
+        yield
+    except NotAssembled as error:
+        found = mobility_analysis(structure)
+        if found.finite is None or found.finite == found.gruebler:
+            raise error
+        heading = f"{structure.mechanism.title!r} cannot be solved"
+        raise NotDetermined(Problem("structure", found.verdict), heading=heading) from None
+
+
+def hold_redundant(motion: Motion) -> None:
+    """Nothing, where every redundant pair is closed at all assembled poses; else raises NotAssembled, naming them."""
+    opened = [(pair, opening(motion, pair)) for pair in motion.structure.redundant]
+    wrong = [_problem(motion, pair, gap) for pair, gap in opened if np.nanmax(gap) > ROUNDED.closed * motion.size]
+    if wrong:
+        raise NotAssembled(wrong, heading=f"{motion.mechanism.title!r} does not move like this")
+
+
+def opening(motion: Motion, pair: Pair) -> Number:
+    """By how much a pair is open at each pose (designs x poses), lengths in the user's unit; 0 where not assembled."""
+    poses = tuple(motion.poses[name] for name in pair.members)
+    held = pair.closure(motion.inputs.ends[pair.name], poses)
+    squares = sum(np.abs(np.broadcast_to(one.c[0], motion.failed.shape)) ** 2 for one in held)
+    return np.where(motion.failed == 0, np.sqrt(squares), 0.0)
+
+
+def _problem(motion: Motion, pair: Pair, gap: Number) -> Problem:
+    at = int(np.nanargmax(gap)) % max(motion.inputs.poses, 1)
+    what = f"the pair opens by {float(np.nanmax(gap)):.6g} at pose {at}: other pairs do not hold it there"
+    remedy = "the dimensions or the assembly mode do not allow this motion: draw an assembled pose"
+    return Problem(pair.name, what, remedy)

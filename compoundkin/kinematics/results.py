@@ -1,0 +1,209 @@
+"""What a motion shows of a point, a link, a pair or a driver: arrays of all derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.model.elements import vector
+
+if TYPE_CHECKING:
+    from compoundkin.kinematics.motion import Motion
+
+
+class Vectors(np.ndarray[Any, np.dtype[np.complex128]]):
+    """A complex array of planar vectors; `xy` splits it.
+
+    >>> np.array([1 + 2j]).view(Vectors).xy.tolist()
+    [[1.0, 2.0]]
+    """
+
+    @property
+    def xy(self) -> Number:
+        """The components, in a last axis of length 2."""
+        plain = np.asarray(self)
+        return np.stack([plain.real, plain.imag], axis=-1)
+
+
+class PointMotion:
+    """The motion of a point: complex arrays of the motion's shape; `.xy` of each gives (..., 2)."""
+
+    def __init__(self, motion: Motion, derivative: Any) -> None:
+        self._motion = motion
+        self._derivative = derivative
+
+    def derivative(self, k: int) -> Vectors:
+        """The k-th time derivative of the position; raises InvalidInput beyond the order solved for."""
+        self._motion._has(k)
+        found: Vectors = self._motion._known(self._derivative(k)).astype(complex, copy=False).view(Vectors)
+        return found
+
+    @property
+    def position(self) -> Vectors:
+        """Where it is, in the user's length unit."""
+        return self.derivative(0)
+
+    @property
+    def velocity(self) -> Vectors:
+        """Its velocity, length/s."""
+        return self.derivative(1)
+
+    @property
+    def acceleration(self) -> Vectors:
+        """Its acceleration, length/s^2."""
+        return self.derivative(2)
+
+    @property
+    def jerk(self) -> Vectors:
+        """Its jerk, length/s^3."""
+        return self.derivative(3)
+
+    @property
+    def x(self) -> Number:
+        """The first coordinate of its position."""
+        return np.asarray(self.position.real)
+
+    @property
+    def y(self) -> Number:
+        """The second coordinate of its position."""
+        return np.asarray(self.position.imag)
+
+    @property
+    def speed(self) -> Number:
+        """The length of its velocity."""
+        return np.abs(np.asarray(self.velocity))
+
+
+class LinkMotion:
+    """The motion of a link: its angle from the frame's x axis, and that of any of its points."""
+
+    def __init__(self, motion: Motion, pose: Pose) -> None:
+        self._motion = motion
+        self._pose = pose
+
+    @cached_property
+    def _turning(self) -> Series:
+        return self._pose.u.turning()
+
+    def _rate(self, k: int) -> Number:
+        self._motion._has(k)
+        if k:
+            return self._motion._known(self._turning.derivative(k - 1))
+        return self._motion._known(self._pose.angle.c[0])
+
+    @cached_property
+    def angle(self) -> Number:
+        """The angle of its x axis, radians, unwrapped along the motion; of a driven link or a gear as it is counted."""
+        return unwrapped(self._rate(0)) if self._pose.theta is None else self._rate(0)
+
+    @property
+    def angular_velocity(self) -> Number:
+        """Its angular velocity, rad/s."""
+        return self._rate(1)
+
+    @property
+    def angular_acceleration(self) -> Number:
+        """Its angular acceleration, rad/s^2."""
+        return self._rate(2)
+
+    @property
+    def angular_jerk(self) -> Number:
+        """Its angular jerk, rad/s^3."""
+        return self._rate(3)
+
+    @property
+    def origin(self) -> PointMotion:
+        """The motion of the origin of its frame."""
+        return PointMotion(self._motion, self._pose.z.derivative)
+
+    def at(self, point: Any) -> PointMotion:
+        """The motion of any point given in its frame, complex or (x, y)."""
+        p = self._motion._fitted(vector("point", point))
+        return PointMotion(self._motion, lambda k: self._pose.derivative(p, k))
+
+
+class PairMotion:
+    """The free relative coordinate of a pair: an angle (radians, unwrapped) or a displacement, and its rates."""
+
+    def __init__(
+        self, motion: Motion, coordinate: Series, is_angle: bool, prescribed: bool = False, counted: bool = False
+    ) -> None:
+        self._motion = motion
+        self._prescribed = prescribed
+        self._counted = counted or prescribed
+        self.coordinate = coordinate
+        self.is_angle = is_angle
+
+    def derivative(self, k: int) -> Number:
+        """The k-th time derivative; raises InvalidInput beyond the order solved for."""
+        self._motion._has(k)
+        value = self.coordinate.derivative(k)
+        value = self._motion._shaped(value) if self._prescribed else self._motion._known(value)
+        return unwrapped(value) if k == 0 and self.is_angle and not self._counted else value
+
+    @property
+    def value(self) -> Number:
+        """The relative angle or displacement."""
+        return self.derivative(0)
+
+    @property
+    def rate(self) -> Number:
+        """Its first time derivative."""
+        return self.derivative(1)
+
+    @property
+    def second(self) -> Number:
+        """Its second time derivative."""
+        return self.derivative(2)
+
+    @property
+    def third(self) -> Number:
+        """Its third time derivative."""
+        return self.derivative(3)
+
+
+class Table(Mapping[str, Any]):
+    """Entries made when they are asked for; an unknown name raises UnknownName with the nearest known."""
+
+    def __init__(self, kind: str, names: tuple[str, ...], make: Any) -> None:
+        self._kind, self._names, self._make = kind, names, make
+        self._made: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._made:
+            if name not in self._names:
+                raise UnknownName(Problem(str(name), f"there is no such {self._kind}", nearest(str(name), self._names)))
+            self._made[name] = self._make(name)
+        return self._made[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def __iter__(self) -> Any:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+def unwrapped(angle: Number) -> Number:
+    """An angle made continuous along the last axis, where it is known; leaps over unassembled poses included.
+
+    >>> unwrapped(np.array([3.0, np.nan, -3.0])).round(3).tolist()
+    [3.0, nan, 3.283]
+    """
+    if np.ndim(angle) == 0 or np.shape(angle)[-1] < 2:
+        return angle
+    if not np.isnan(angle).any():
+        return np.unwrap(angle)
+    rows = np.array(angle).reshape(-1, np.shape(angle)[-1])
+    for row in rows:
+        known = ~np.isnan(row)
+        row[known] = np.unwrap(row[known])
+    return rows.reshape(np.shape(angle))

@@ -1,0 +1,180 @@
+"""Solving: from a mechanism and driver values to a motion with every derivative asked for."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses
+from compoundkin.kinematics.block import Run, blocks, places
+from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
+from compoundkin.kinematics.configuration import Configuration, read_name
+from compoundkin.kinematics.inputs import Inputs, by_name, inputs
+from compoundkin.kinematics.joined import Gathering
+from compoundkin.kinematics.motion import HIGHEST_ORDER, Motion
+from compoundkin.kinematics.redundant_pairs import because, explained, hold_redundant
+from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.times import times_of
+from compoundkin.kinematics.tracking import Tracker, read_hint
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure import decompose
+from compoundkin.structure.parts import Structure
+from compoundkin.structure.redundancy import relaxed
+
+# Up to so many poses are solved at once: gathering blocks would copy more than the caches save.
+WHOLE = 65536
+# Longer motions are solved in blocks of so many poses: their arrays stay in a second-level cache of 2 MB, and the
+# calls take far less time than the work.
+BLOCK = 16384
+
+
+def solve(
+    mechanism: Mechanism | Structure,
+    values: Mapping[str, Any] | None = None,
+    *,
+    time: Any = None,
+    speed: Any = None,
+    acceleration: Any = None,
+    jerk: Any = None,
+    order: int = 2,
+    modes: Mapping[str, int] | str | Configuration | None = None,
+    hint: Mapping[str, Any] | None = None,
+) -> Motion:
+    """Solve a mechanism group by group, for position and all derivatives up to `order` (0 to 3).
+
+    `values` gives each driver's coordinate (radians or lengths; arrays, the last axis the motion); `speed`,
+    `acceleration`, `jerk` its rates, a number for a single driver or a mapping by name. What is not given
+    comes from the mechanism's drives; a driver of a pin without values makes a full turn.
+
+    In time: at the times `time` (seconds, any order; the last axis is the motion) drivers with a law are where it
+    takes them, with its derivatives; others move from their single value (0 where they have none) by their speed,
+    acceleration and jerk. Where `time` is not given, drivers with laws that are given no values move at the mechanism's
+    own times, else over the range on which their laws agree.
+
+    The assembly mode of each group is that of `modes` (a link of the group: +1 or -1, or its configuration's number),
+    else the one nearest to `hint` (points near their places at the first pose), else nearest to the mechanism's
+    drawing, else +1. `modes` may also be one of `configurations()`, from which the motion then starts, or the name of
+    one at the first pose.
+
+    A mechanism that moves though it is overconstrained is solved without what is redundant, which is then checked.
+
+    Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
+    NotAssembled where a group has no pose at all or a redundant pair opens; warns UnassembledPoses where some poses do
+    not close.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> solve(crank, {"crank": [0.0, np.pi / 2]}, speed=3.0).points["B"].velocity.xy.round(12).tolist()
+    [[0.0, 6.0], [-6.0, 0.0]]
+    """
+    if isinstance(order, bool) or not isinstance(order, int) or order not in range(HIGHEST_ORDER + 1):
+        raise InvalidInput(
+            Problem("order", f"{order!r} is not an order", "0 position, 1 velocity, 2 acceleration, 3 jerk")
+        )
+    plan = plan_of(mechanism)
+    with np.errstate(all="ignore"):
+        values = by_name(plan.structure.mechanism, values)
+        times = times_of(plan.structure.mechanism, values, time)
+        given = inputs(plan, values, speed, acceleration, jerk, times, order)
+        start = _start(plan, modes)
+        named = isinstance(modes, str)
+        with explained(plan.structure):
+            tracker = Tracker(plan, given, signs_of(plan, modes), read_hint(plan, hint), start, named)
+        motion = replace(_settled(plan, tracker.given, tracker, order), time=times)
+        if plan.structure.relaxation:
+            hold_redundant(motion)
+    missing = int(np.count_nonzero(motion.failed))
+    if missing:
+        text = (
+            f"{missing} of {motion.failed.size} poses cannot be assembled: Motion.assembled masks them, gaps() explains"
+        )
+        warnings.warn(text, UnassembledPoses, stacklevel=2)
+    return motion
+
+
+def plan_of(mechanism: Mechanism | Structure) -> Plan:
+    """The plan of a mechanism, made once and kept with it."""
+    if not isinstance(mechanism, Mechanism | Structure):
+        raise InvalidInput(Problem("mechanism", f"{mechanism!r} is not a mechanism", "load() one from a file"))
+    owner = mechanism.mechanism if isinstance(mechanism, Structure) else mechanism
+    plan: Plan | None = owner.__dict__.get("_plan")
+    if plan is None:
+        structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
+        if structure.faults:
+            structure = relaxed(structure)
+        if structure.faults:
+            problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
+            raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved{because(structure)}")
+        plan = owner.__dict__["_plan"] = Plan(structure)
+    return plan
+
+
+def _start(plan: Plan, modes: Any) -> Configuration | None:
+    """The configuration that is given; raises InvalidInput for one of another mechanism."""
+    if not isinstance(modes, Configuration):
+        return None
+    if list(modes.structure.mechanism.links) != list(plan.structure.mechanism.links):
+        raise InvalidInput(Problem("modes", "the configuration is one of another mechanism"))
+    return modes
+
+
+def signs_of(plan: Plan, modes: Mapping[str, int] | str | Configuration | None = None) -> dict[int, int]:
+    """The modes chosen by sign, by group; those of the call go before those of the mechanism."""
+    mechanism = plan.structure.mechanism
+    if isinstance(modes, Configuration):
+        return {}
+    if isinstance(modes, str):
+        written = {link: mode.sign for mode in mechanism.modes for link in mode.links}
+        return {**_by_group(plan, written), **read_name(plan, modes)}
+    if modes is not None and not isinstance(modes, Mapping):
+        raise InvalidInput(Problem("modes", f"{modes!r} does not name a link", "write {'link of the group': -1}"))
+    called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
+    return {**_by_group(plan, written), **_by_group(plan, called)}
+
+
+def _by_group(plan: Plan, modes: Mapping[str, int]) -> dict[int, int]:
+    signs: dict[int, int] = {}
+    where = {link: k for k, step in enumerate(plan.steps) for link in step.group.links}
+    for name, sign in modes.items():
+        plan.structure.mechanism.link(name)
+        if name not in where:
+            raise InvalidInput(Problem(f"modes.{name}", "this link is driven or fixed: it has no assembly mode"))
+        if sign not in (1, -1) and not (plan.steps[where[name]].modes == 0 and isinstance(sign, int) and sign > 0):
+            raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
+        if signs.setdefault(where[name], sign) != sign:
+            raise InvalidInput(Problem(f"modes.{name}", "another link of its group has the opposite mode"))
+    return signs
+
+
+def _settled(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> Motion:
+    """Solve; again where a group is found to pass through a change point, from which its mode changes sign."""
+    while True:
+        motion, near = _run(plan, given, tracker, order)
+        near |= near_groups(tracker)
+        if not near or not pass_through(tracker, near):
+            return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
+
+
+def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
+    """Solve block by block and gather; also the groups that come near a limit position."""
+    designs, poses = given.designs, given.poses
+    near: set[int] = set()
+    parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
+    if len(parts) == 1:
+        run = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
+        failed = np.broadcast_to(run.failed, (designs, poses))
+        return Motion(plan.structure, order, given, dict(run.world), failed, tracker), _near(run)
+    store = Gathering(designs, poses)
+    for d, m in parts:
+        run = tracker.run(given.cut(d, m), order, *places(d, m))
+        store.take(run.world, run.failed, d, m)
+        near |= _near(run)
+    return Motion(plan.structure, order, given, store.poses(), store.failed, tracker), near
+
+
+def _near(run: Run) -> set[int]:
+    return {k for k, margin in run.margins.items() if np.any(margin < NEAR)}

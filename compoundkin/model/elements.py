@@ -1,0 +1,260 @@
+"""The words to write a mechanism with: link, drive, drawn, mode, expect, deg, polar."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidMechanism, Problem
+from compoundkin.base.series import Number
+from compoundkin.model.fields import Key
+from compoundkin.model.laws import Law, as_law
+from compoundkin.model.pairs import Pair
+
+FRAME = "frame"
+
+
+def deg(angle: Any) -> Number:
+    """Degrees as radians: a number, a list, a range or an array.
+
+    >>> round(deg(180), 6)
+    3.141593
+    """
+    value = np.deg2rad(np.asarray(angle, dtype=float))
+    return float(value) if value.ndim == 0 else value
+
+
+def polar(radius: Any, angle: Any) -> Number:
+    """The planar vector of a length and an angle (radians), a complex number or array.
+
+    >>> polar(2.0, 0.0)
+    (2+0j)
+    """
+    value = np.asarray(radius) * (np.cos(angle) + 1j * np.sin(angle))
+    return complex(value) if value.ndim == 0 else value
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A rigid link: its name and its points.
+
+    `points` maps each letter to its place in the link's own frame (complex, a number or an array), or to
+    None for a link given as drawn.
+    """
+
+    name: str
+    points: Mapping[str, Number | None]
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The names of its points, as written."""
+        return tuple(self.points)
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether its dimensions are to be read off the drawing."""
+        return any(p is None for p in self.points.values())
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """A driver: it prescribes the free coordinate of the pair between `link` and `on`.
+
+    `values` (radians or a length, None for a full turn), `speed`, `acceleration` and `jerk` are numbers or
+    arrays; the last axis of `values` is the motion. Or `law` says how the coordinate moves in time.
+    """
+
+    name: str
+    link: str
+    on: str = FRAME
+    pair: str = ""
+    values: Number | None = None
+    speed: Number = 1.0
+    acceleration: Number = 0.0
+    jerk: Number = 0.0
+    law: Law | None = None
+
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("name", "name", "What the driver is called; the driven link's name where it is left out."),
+        Key("link", "name", "The driven link.", required=True),
+        Key("on", "name", "The link it is driven against.", default=FRAME),
+        Key("pair", "name", "The letter of the pin or name of the slide, where the two links share several."),
+        Key("values", "values", "Values of the driven coordinate; a full turn where they are left out."),
+        Key("speed", "rate", "Rate of the driven coordinate: rad/s for a pin, length/s for a slide.", default=1.0),
+        Key("acceleration", "length", "Second rate, rad/s^2 or length/s^2.", default=0.0),
+        Key("jerk", "length", "Third rate, rad/s^3 or length/s^3.", default=0.0),
+        Key("law", "law", "How the coordinate moves in time, instead of values and rates."),
+    )
+
+
+@dataclass(frozen=True)
+class Mode:
+    """The assembly mode of the group that holds `links`: +1 or -1, as the group's kind defines it."""
+
+    links: tuple[str, ...]
+    sign: int
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """Points as drawn: one pose in global coordinates, exact or roughly, to choose the assembly mode by."""
+
+    points: Mapping[str, Number]
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """A published number: at these driver values the quantity has this value, to this tolerance.
+
+    `at` holds driver values (radians or lengths) and, for "speed", "acceleration", keys such as "crank.speed".
+    Angles in `value` are radians.
+    """
+
+    quantity: str
+    value: complex
+    tolerance: float
+    at: tuple[tuple[str, float], ...] = ()
+
+
+Item: TypeAlias = Link | Pair | Drive | Mode | Drawn | Expectation
+
+
+def link(name: str, *letters: str, **points: Any) -> Link:
+    """A link with its points: ``A=(x, y)`` or complex numbers in the link's frame, or letters alone as drawn.
+
+    Raises InvalidMechanism for a point that is not a planar vector.
+
+    >>> link("crank", E=(0, 0), D=(14, 0)).points["D"]
+    (14+0j)
+    >>> link("crank", "E", "D").is_drawn
+    True
+    """
+    both = [letter for letter in letters if letter in points]
+    if both or (letters and points) or len(set(letters)) < len(letters):
+        raise InvalidMechanism(
+            Problem(
+                f"links.{name}",
+                "points are given twice, or partly as drawn",
+                "give all by letters or all by coordinates",
+            )
+        )
+    placed = _points(f"links.{name}.points", points)
+    return Link(name, placed if placed else dict.fromkeys(letters))
+
+
+def drive(
+    link: str,
+    *,
+    on: str = FRAME,
+    pair: str = "",
+    values: Any = None,
+    speed: Any = 1.0,
+    acceleration: Any = 0.0,
+    jerk: Any = 0.0,
+    law: Any = None,
+    name: str = "",
+) -> Drive:
+    """A driver of the pair between `link` and `on`; angles in radians.
+
+    `law` is one of `constant_speed`, `constant_acceleration`, `program`, `time_table`, or a Python function
+    of an array of times. Raises InvalidMechanism for anything else.
+
+    >>> drive("crank").name
+    'crank'
+    >>> drive("crank", law=lambda t: 0.5 * np.sin(t)).law.kind
+    'function'
+    """
+    given = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk}
+    numbers = {key: real(f"drives.{name or link}.{key}", value) for key, value in given.items()}
+    return Drive(name or link, link, on, pair, **numbers, law=as_law(f"drives.{name or link}.law", law))
+
+
+def drawn(**points: Any) -> Drawn:
+    """Points as drawn, in global coordinates: the dimensions of links given by letters, and the assembly mode.
+
+    >>> drawn(A=(3, 4)).points["A"]
+    (3+4j)
+    """
+    return Drawn(_points("drawn", points))
+
+
+def mode(sign: int, *links: str) -> Mode:
+    """The assembly mode, +1 or -1, of the group that holds the named links.
+
+    >>> mode(-1, "coupler", "rocker").sign
+    -1
+    """
+    if sign not in (1, -1):
+        raise InvalidMechanism(Problem("modes", f"an assembly mode is +1 or -1, not {sign!r}"))
+    return Mode(links, sign)
+
+
+def expect(quantity: str, value: Any, tolerance: float, **at: float) -> Expectation:
+    """A published number to hold the solved motion against, at the given driver values.
+
+    >>> expect("block.angle", 0.5, 1e-3, crank=1.0).at
+    (('crank', 1.0),)
+    """
+    return Expectation(
+        quantity, complex(vector("expected", value)), float(real("expected.tolerance", tolerance)), tuple(at.items())
+    )
+
+
+def vector(where: str, value: Any) -> Number:
+    """A planar vector written as complex or as (x, y), either of them a number or an array.
+
+    Raises InvalidMechanism naming `where`.
+
+    >>> vector("A", (1, [2, 3])).tolist()
+    [(1+2j), (1+3j)]
+    """
+    try:
+        if isinstance(value, tuple | list) and len(value) == 2:
+            x, y = (np.asarray(v, dtype=float) for v in value)
+            out = x + 1j * y
+        elif value is None or isinstance(value, tuple | list | str):
+            raise ValueError
+        else:
+            out = np.asarray(value, dtype=complex)
+    except (TypeError, ValueError):
+        raise InvalidMechanism(
+            Problem(where, f"{value!r} is not a point", "write (x, y) or a complex number")
+        ) from None
+    return complex(out) if out.ndim == 0 else _frozen(out)
+
+
+def _frozen(array: Any) -> Any:
+    out = np.array(array)
+    out.setflags(write=False)
+    return out
+
+
+def _points(where: str, points: Mapping[str, Any]) -> dict[str, Number]:
+    problems: list[Problem] = []
+    placed: dict[str, Number] = {}
+    for letter, value in points.items():
+        try:
+            placed[letter] = vector(f"{where}.{letter}", value)
+        except InvalidMechanism as error:
+            problems += error.problems
+    if problems:
+        raise InvalidMechanism(problems)
+    return placed
+
+
+def real(where: str, value: Any) -> Number:
+    """A number, or an array that cannot be written to; None stays None. Raises InvalidMechanism naming `where`.
+
+    >>> real("time", [0, 1]).tolist()
+    [0.0, 1.0]
+    """
+    if value is None:
+        return None
+    try:
+        out = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidMechanism(Problem(where, f"{value!r} is not a number or an array of numbers")) from None
+    return float(out) if out.ndim == 0 else _frozen(out)

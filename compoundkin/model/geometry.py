@@ -1,0 +1,78 @@
+"""A mechanism's dimensions as numbers: points in link frames, and the poses that a drawing shows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, constant
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """The points of every link in the link's own frame, and the drawn pose of every link a drawing fixes.
+
+    `points[link][name]` is complex, a number or an array; `drawn[link]` is a `Pose` of order 0.
+    `as_drawn` names the links whose dimensions were read off the drawing.
+    """
+
+    points: Mapping[str, Mapping[str, Number]]
+    drawn: Mapping[str, Pose]
+    as_drawn: frozenset[str]
+    sketch: Mapping[str, Number]
+    profiles: float = 0.0  # the size of the largest profile
+
+    @property
+    def size(self) -> float:
+        """The greatest distance between two points of one link, or the size of a profile: the length scale."""
+        spans = [_span(list(points.values())) for points in self.points.values()]
+        spans.append(_span(list(self.sketch.values())))
+        return max(*spans, self.profiles) or 1.0
+
+
+def _span(points: list[Number]) -> float:
+    """The diagonal of the box around some points, over all designs."""
+    if len(points) < 2:
+        return 0.0
+    x = [np.real(p) for p in points]
+    y = [np.imag(p) for p in points]
+    wide = max(float(np.max(v)) for v in x) - min(float(np.min(v)) for v in x)
+    high = max(float(np.max(v)) for v in y) - min(float(np.min(v)) for v in y)
+    return float(np.hypot(wide, high))
+
+
+def read_off(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Pose | None, dict[str, Number]]:
+    """The drawn pose of a link given by its letters only, and its points in its own frame.
+
+    The origin is the first letter; the x axis points to the second. A single letter shows no direction, so no pose.
+    """
+    if len(letters) == 1:
+        return None, {letters[0]: 0j}
+    origin = sketch[letters[0]]
+    line = sketch[letters[1]] - origin
+    turned = line / np.abs(line)
+    back = np.conjugate(turned)
+    points: dict[str, Number] = {}
+    for letter in letters:
+        p = back * (sketch[letter] - origin)
+        points[letter] = complex(p) if np.ndim(p) == 0 else p
+    # the second letter defines the axis: keep rounding out of it
+    points[letters[1]] = points[letters[1]].real + 0j
+    return Pose(constant(origin), constant(turned)), points
+
+
+def fitted_pose(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> Pose | None:
+    """The pose of a link with known dimensions that a drawing shows at two points or more, or None."""
+    shown = [name for name in points if name in sketch]
+    if len(shown) < 2:
+        return None
+    a = shown[0]
+    b = next((k for k in shown[1:] if np.all(sketch[k] != sketch[a]) and np.all(points[k] != points[a])), None)
+    if b is None:
+        return None
+    turned = (sketch[b] - sketch[a]) * np.conjugate(points[b] - points[a])
+    turned = turned / np.abs(turned)
+    return Pose(constant(sketch[a] - turned * points[a]), constant(turned))

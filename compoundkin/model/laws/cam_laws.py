@@ -1,0 +1,161 @@
+"""The standard cam laws, for a rise of 1 over a span of 1, and what pieces of them make.
+
+Every law is given by its acceleration, piece by piece: a polynomial and a sine. Integrated from rest and scaled to
+the rise, it is a polynomial and a sine again, so that one table of numbers holds any sequence of laws, and
+all derivatives follow from it.
+
+Source: R. L. Norton, Cam Design and Manufacturing Handbook, 2nd ed., Industrial Press 2009, chapters 2 to 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from math import comb, cos, factorial, pi, sin
+
+import numpy as np
+
+from compoundkin.base.series import Number
+
+# Terms that cancel leave no more than this part of their sizes: a few units in the last place.
+ROUNDING = 1e-15
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of a law: its span, the acceleration ``sum a[k] u**k + A sin(w u + phase)``, u from its start.
+
+    `wave` is (A, w, phase); `leap` a velocity taken on at once at the start.
+    """
+
+    span: float
+    acceleration: tuple[float, ...] = (0.0,)
+    wave: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    leap: float = 0.0
+
+
+# The accelerations; their scale follows from the rise. The waves of the modified curves take an eighth of the span.
+LAWS: dict[str, tuple[Piece, ...]] = {
+    "dwell": (Piece(1.0),),
+    "constant-velocity": (Piece(1.0, leap=1.0),),
+    "parabolic": (Piece(0.5, (1.0,)), Piece(0.5, (-1.0,))),
+    "harmonic": (Piece(1.0, wave=(1.0, pi, pi / 2)),),
+    "cycloidal": (Piece(1.0, wave=(1.0, 2 * pi, 0.0)),),
+    "3-4-5": (Piece(1.0, (0.0, 60.0, -180.0, 120.0)),),
+    "4-5-6-7": (Piece(1.0, (0.0, 0.0, 420.0, -1680.0, 2100.0, -840.0)),),
+    "modified-trapezoid": (
+        Piece(0.125, wave=(1.0, 4 * pi, 0.0)),
+        Piece(0.25, (1.0,)),
+        Piece(0.25, wave=(1.0, 4 * pi, pi / 2)),
+        Piece(0.25, (-1.0,)),
+        Piece(0.125, wave=(1.0, 4 * pi, -pi / 2)),
+    ),
+    "modified-sine": (
+        Piece(0.125, wave=(1.0, 4 * pi, 0.0)),
+        Piece(0.75, wave=(1.0, 4 * pi / 3, pi / 2)),
+        Piece(0.125, wave=(1.0, 4 * pi, -pi / 2)),
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A position ``sum p[k] u**k + A sin(w u + phase)``, u counted from `start`; `wave` is (A, w, phase)."""
+
+    start: float
+    polynomial: tuple[float, ...]
+    wave: tuple[float, float, float]
+
+    def derivative(self, k: int, u: float) -> float:
+        """The k-th derivative at a distance from the start.
+
+        >>> Arc(0.0, (1.0, 2.0, 3.0), (0.0, 1.0, 0.0)).derivative(1, 2.0)
+        14.0
+        """
+        amplitude, frequency, phase = self.wave
+        smooth = sum(
+            c * factorial(j) / factorial(j - k) * u ** (j - k) for j, c in enumerate(self.polynomial) if j >= k
+        )
+        return smooth + amplitude * frequency**k * sin(frequency * u + phase + k * pi / 2)
+
+    def scaled(self, start: float, over: float, place: float, rise: float) -> Arc:
+        """The same for a span and rise that are not 1, from a place."""
+        amplitude, frequency, phase = self.wave
+        polynomial = [c * rise / over**k for k, c in enumerate(self.polynomial)]
+        polynomial[0] += place
+        return Arc(start + self.start * over, tuple(polynomial), (amplitude * rise, frequency / over, phase))
+
+
+@cache
+def unit_arcs(law: str) -> tuple[Arc, ...]:
+    """A law with a rise of 1 over a span of 1; raises KeyError for one that there is not.
+
+    >>> [arc.start for arc in unit_arcs("modified-sine")]
+    [0.0, 0.125, 0.875]
+    """
+    start = place = speed = 0.0
+    arcs = []
+    for piece in LAWS[law]:
+        arc = _integrated(piece, start, place, speed + piece.leap)
+        start, place, speed = start + piece.span, arc.derivative(0, piece.span), arc.derivative(1, piece.span)
+        arcs.append(arc)
+    return tuple(arc.scaled(0.0, 1.0, 0.0, 1.0 / place if place else 1.0) for arc in arcs)
+
+
+def _integrated(piece: Piece, start: float, place: float, speed: float) -> Arc:
+    """The position of a piece that begins at a place with a speed."""
+    amplitude, frequency, phase = piece.wave
+    wave = -amplitude / frequency**2
+    fixed = (place - wave * sin(phase), speed - wave * frequency * cos(phase))
+    return Arc(start, (*fixed, *(a / ((k + 1) * (k + 2)) for k, a in enumerate(piece.acceleration))),
+               (wave, frequency, phase))  # fmt: skip
+
+
+class Arcs:
+    """The arcs of a program as arrays, to look them up by index."""
+
+    def __init__(self, arcs: Sequence[Arc], end: float) -> None:
+        self.starts = np.array([arc.start for arc in arcs])
+        self.end = end
+        longest = max(len(arc.polynomial) for arc in arcs)
+        # one row for every power
+        self.powers = np.array([[*arc.polynomial, *[0.0] * (longest - len(arc.polynomial))] for arc in arcs]).T.copy()
+        self.waves = np.array([arc.wave for arc in arcs]).T.copy()
+
+    def taylor(self, x: Number, order: int, stops: bool) -> list[Number]:
+        """The Taylor coefficients at places x; outside it stands still, if it `stops`."""
+        place = np.clip(x, 0.0, self.end) if stops else x
+        index = np.clip(np.searchsorted(self.starts, place, side="right") - 1, 0, len(self.starts) - 1)
+        u = place - self.starts[index]
+        out = self._smooth(index, u, order)
+        if self.waves[0].any():
+            out = [a + b for a, b in zip(out, self._waves(index, u, order), strict=True)]
+        if stops and order:
+            # not a number stays what it is
+            outside = (x < 0.0) | (x > self.end)
+            out[1:] = [np.where(outside, 0.0, c) for c in out[1:]]
+        return [out[0], *(np.where(np.abs(c) <= self._rounding(k)[index], 0.0, c) for k, c in enumerate(out[1:], 1))]
+
+    def _rounding(self, k: int) -> Number:
+        """Below which the k-th coefficient of each arc is the rounding of terms that cancel, as where a rise ends."""
+        spans = np.diff([*self.starts, self.end])
+        smooth = sum(comb(j, k) * np.abs(p) * spans ** (j - k) for j, p in enumerate(self.powers) if j >= k)
+        return ROUNDING * (smooth + np.abs(self.waves[0]) * self.waves[1] ** k / factorial(k))
+
+    def _smooth(self, index: Number, u: Number, order: int) -> list[Number]:
+        """Horner's scheme for a polynomial and its derivatives at once."""
+        out: list[Number] = [self.powers[-1][index]] + [np.zeros_like(u)] * order
+        for power in self.powers[-2::-1]:
+            for k in range(order, 0, -1):
+                out[k] = out[k] * u + out[k - 1]
+            out[0] = out[0] * u + power[index]
+        return out
+
+    def _waves(self, index: Number, u: Number, order: int) -> list[Number]:
+        amplitude, frequency, phase = (row[index] for row in self.waves)
+        angle = frequency * u + phase
+        turns = amplitude * np.sin(angle), amplitude * np.cos(angle)
+        # sine, cosine, -sine, -cosine ...
+        signs = (1.0, 1.0, -1.0, -1.0)
+        return [turns[k % 2] * (signs[k % 4] / factorial(k)) * frequency**k for k in range(order + 1)]

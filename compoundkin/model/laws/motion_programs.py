@@ -1,0 +1,249 @@
+"""Motion programs: dwells, rises and falls by the standard cam laws, one after another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.composition import composed
+from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.series import Number, Series
+from compoundkin.model.fields import Key
+from compoundkin.model.laws.cam_laws import LAWS, Arc, Arcs, unit_arcs
+
+Array: TypeAlias = np.ndarray[Any, Any]
+
+# Rounding leaves no jump of a derivative where there is none above this part of what is natural for the program.
+JUMP = 1e-9
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A part of a program: a law, the span it takes, and how far it rises (negative: falls; a dwell 0).
+
+    Raises InvalidMechanism for a law that there is not, a span that is not positive, a dwell that rises.
+
+    >>> Segment("cycloidal", over=2.0, rise=10.0).rise
+    10.0
+    """
+
+    law: str
+    over: float
+    rise: float = 0.0
+
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("law", "name", f"One of {', '.join(LAWS)}.", required=True),
+        Key("over", "span", "The span it takes: seconds, or of a cam's rotation.", required=True),
+        Key("rise", "coordinate", "How far it rises; negative for a fall.", default=0.0),
+    )
+
+    def __post_init__(self) -> None:
+        problems = list(self._problems())
+        if problems:
+            raise InvalidMechanism(problems)
+
+    def _problems(self) -> Iterator[Problem]:
+        if self.law not in LAWS:
+            yield Problem("segment.law", f"there is no law {self.law!r}", nearest(str(self.law), list(LAWS)))
+        if not _is_real(self.over) or self.over <= 0.0:
+            yield Problem("segment.over", f"{self.over!r} is not a span", "give a positive number")
+        if not _is_real(self.rise):
+            yield Problem("segment.rise", f"{self.rise!r} is not a finite number")
+        elif self.law == "dwell" and self.rise != 0.0:
+            yield Problem("segment.rise", "a dwell rises by 0", "choose another law, or leave the rise out")
+
+
+@dataclass(frozen=True)
+class Discontinuity:
+    """A place of a program where a derivative jumps: of order 1 the velocity, 2 the acceleration."""
+
+    place: float
+    order: int
+    jump: float
+
+
+@dataclass(frozen=True)
+class Program:
+    """Segments one after another, from place 0 and value `start`; `repeat`: begun anew after each period.
+
+    It maps a coordinate (the rotation of a cam, or time in seconds) to another one, both in the user's units.
+    Raises InvalidMechanism for what is not a segment.
+
+    >>> lift = program(rise(10.0, over=1.0), dwell(0.5), fall(10.0, over=1.0), dwell(0.5))
+    >>> [round(c, 9) for c in lift.at(Series((0.5, 1.0))).c]
+    [5.0, 20.0]
+    >>> lift.period, lift.lift, lift.repeats
+    (3.0, 10.0, True)
+    """
+
+    segments: tuple[Segment, ...]
+    start: float = 0.0
+    repeat: bool = False
+
+    kind: ClassVar[str] = "program"
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("segments", "segments", "Its dwells, rises and falls, one after another.", required=True),
+        Key("start", "coordinate", "The value at its beginning.", default=0.0),
+        Key("repeat", "flag", "Whether it begins anew after its end, from the value reached.", default=False),
+    )
+
+    def __post_init__(self) -> None:
+        problems = list(self._problems())
+        if problems:
+            raise InvalidMechanism(problems)
+
+    def _problems(self) -> Iterator[Problem]:
+        if not isinstance(self.segments, tuple) or not self.segments:
+            yield Problem("program.segments", "there is no segment", "write rise(...), fall(...), dwell(...)")
+            return
+        for index, segment in enumerate(self.segments):
+            if not isinstance(segment, Segment):
+                yield Problem(f"program.segments[{index}]", f"{segment!r} is not a segment",
+                              "write rise(...), fall(...), dwell(...)")  # fmt: skip
+        if not isinstance(self.repeat, bool):
+            yield Problem("program.repeat", f"{self.repeat!r} is not True or False")
+        if not _is_real(self.start):
+            yield Problem("program.start", f"{self.start!r} is not a finite number")
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Where its segments begin, and the end: one number more than segments."""
+        return np.cumsum([0.0, *(segment.over for segment in self.segments)])
+
+    @cached_property
+    def values(self) -> Array:
+        """Its values at the breaks."""
+        found: Array = self.start + np.cumsum([0.0, *(segment.rise for segment in self.segments)])
+        return found
+
+    @property
+    def period(self) -> float:
+        """The sum of the spans."""
+        return float(self.breaks[-1])
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """From where to where it is defined by its segments."""
+        return 0.0, self.period
+
+    @property
+    def lift(self) -> float:
+        """The distance between its greatest and its least value; every law rises or falls all the way."""
+        return float(np.ptp(self.values))
+
+    @cached_property
+    def repeats(self) -> bool:
+        """Whether it ends where it began, so that a cam may carry it round; or begins anew because it is told to."""
+        return self.repeat or abs(self._advance) <= JUMP * self.lift
+
+    @property
+    def _advance(self) -> float:
+        """How far a period brings it."""
+        return float(self.values[-1] - self.values[0])
+
+    def at(self, x: Series, repeat: bool | None = None) -> Series:
+        """Its value and all derivatives along a coordinate: a real series of any shape.
+
+        Before its beginning and after its end it stands still, or goes on periodically if `repeat`
+        (None: if it `repeats`); a period that does not end where it began goes on from there. At a jump
+        the derivatives are those behind it, at the very end those before it.
+
+        >>> program(rise(1.0, 2.0, "harmonic")).at(Series((np.array([-1.0, 1.0, 3.0]),))).c[0].round(9).tolist()
+        [0.0, 0.5, 1.0]
+        """
+        goes_on = self.repeats if repeat is None else repeat
+        value = x.c[0] if isinstance(x.c[0], np.ndarray) else float(x.c[0])
+        turns = np.floor(value / self.period) if goes_on else 0.0
+        outer = self._table.taylor(value - turns * self.period if goes_on else value, x.order, not goes_on)
+        if goes_on and not self._closes:
+            outer[0] = outer[0] + turns * self._advance
+        return composed(outer if isinstance(value, np.ndarray) else [float(c) for c in outer], x)
+
+    def coordinate(self, t: Number, order: int) -> Series:
+        """As a law in time: value and derivatives at times t (seconds); it goes on after its end if `repeat`."""
+        return self.at(Series((t, 1.0, *[0.0] * (order - 1))[: order + 1]), self.repeat)
+
+    @property
+    def _closes(self) -> bool:
+        return abs(self._advance) <= JUMP * self.lift
+
+    @cached_property
+    def arcs(self) -> tuple[Arc, ...]:
+        """Its pieces, from the first to the last."""
+        places = zip(self.breaks[:-1].tolist(), self.values[:-1].tolist(), self.segments, strict=True)
+        return tuple(arc.scaled(at, s.over, value, s.rise) for at, value, s in places for arc in unit_arcs(s.law))
+
+    @cached_property
+    def _table(self) -> Arcs:
+        return Arcs(self.arcs, self.period)
+
+    def discontinuities(self, repeat: bool | None = None) -> tuple[Discontinuity, ...]:
+        """The places where velocity or acceleration jump, its beginning and end included, in order.
+
+        >>> [(d.place, d.order) for d in program(rise(1.0, over=2.0, law="parabolic")).discontinuities()]
+        [(0.0, 2), (1.0, 2), (2.0, 2)]
+        """
+        goes_on = self.repeats if repeat is None else repeat
+        found = []
+        for order in (1, 2):
+            natural = max(abs(s.rise) / s.over**order for s in self.segments)
+            ends = [arc.derivative(order, end - arc.start) for arc, end in zip(self.arcs, self._ends, strict=True)]
+            starts = [arc.derivative(order, 0.0) for arc in self.arcs]
+            before = [ends[-1] if goes_on else 0.0, *ends]
+            after = [*starts, starts[0] if goes_on else 0.0]
+            for place, a, b in zip([0.0, *self._ends], before, after, strict=True):
+                if abs(b - a) > JUMP * natural:
+                    found.append(Discontinuity(place, order, b - a))
+        return tuple(sorted(found, key=lambda one: (one.place, one.order)))
+
+    @property
+    def _ends(self) -> list[float]:
+        return [*(arc.start for arc in self.arcs[1:]), self.period]
+
+
+def program(*segments: Segment, start: float = 0.0, repeat: bool = False) -> Program:
+    """A program of dwells, rises and falls.
+
+    >>> program(dwell(1.0), rise(2.0, over=1.0), start=3.0).values.tolist()
+    [3.0, 3.0, 5.0]
+    """
+    return Program(segments, start, repeat)
+
+
+def rise(amount: float, over: float, law: str = "cycloidal") -> Segment:
+    """A rise by an amount over a span.
+
+    >>> rise(10.0, over=2.0, law="3-4-5").law
+    '3-4-5'
+    """
+    return Segment(law, over, amount)
+
+
+def fall(amount: float, over: float, law: str = "cycloidal") -> Segment:
+    """A fall by an amount over a span: a rise by its opposite.
+
+    >>> fall(10.0, over=2.0).rise
+    -10.0
+    """
+    if not _is_real(amount):
+        raise InvalidMechanism(Problem("segment.rise", f"{amount!r} is not a finite number"))
+    return Segment(law, over, -amount)
+
+
+def dwell(over: float) -> Segment:
+    """A dwell over a span.
+
+    >>> dwell(2.0).law
+    'dwell'
+    """
+    return Segment("dwell", over)
+
+
+def _is_real(value: Any) -> bool:
+    """Whether it is one finite number."""
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool) and isfinite(value)

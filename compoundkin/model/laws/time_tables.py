@@ -1,0 +1,104 @@
+"""The driving law of a table of values at times: a spline through them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
+from compoundkin.base.series import Number, Series
+from compoundkin.model.fields import Key
+from compoundkin.model.laws.law_numbers import Compared, as_number, from_derivatives, hold_numbers, taylor
+
+# Times beyond the ends of a table by no more than this part of its range are its ends: rounding of 0.1 + 0.1 + 0.1.
+SLACK = 1e-9
+DEGREES = (3, 5)
+
+
+@dataclass(frozen=True, eq=False)
+class TimeTable(Compared):
+    """A spline through values at times: quintic, with continuous jerk, or cubic (`degree` 3); ends not-a-knot.
+
+    With `repeat` it is periodic and goes on after the table's end from the value reached. A table too short for
+    its degree is the one polynomial through it. Outside the table it raises InvalidInput.
+
+    Source: C. de Boor, A Practical Guide to Splines, rev. ed., Springer 2001, chapter XIII.
+
+    >>> table = TimeTable([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 8.0, 27.0])
+    >>> np.round(table.coordinate(2.5, order=3).c, 9).tolist()
+    [15.625, 18.75, 7.5, 1.0]
+    """
+
+    times: Number
+    values: Number
+    degree: int = 5
+    repeat: bool = False
+
+    kind: ClassVar[str] = "time-table"
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("times", "times", "Times in seconds, increasing.", required=True),
+        Key("values", "values", "The value of the coordinate at each time.", required=True),
+        Key("degree", "whole", "Of the spline: 3 or 5.", default=5),
+        Key("repeat", "flag", "Whether it is periodic, going on from the value reached.", default=False),
+    )
+
+    def __post_init__(self) -> None:
+        hold_numbers(self, "times", "values")
+        problem = self._problem()
+        if problem is not None:
+            raise InvalidMechanism(problem)
+
+    def _problem(self) -> Problem | None:
+        t, v = self.times, self.values
+        if np.ndim(t) != 1 or np.shape(t) != np.shape(v):
+            what = f"its times and values have shapes {np.shape(t)} and {np.shape(v)}"
+            return Problem("law", what, "give two lists of one length")
+        if len(t) < 2 or np.any(np.diff(t) <= 0.0):
+            return Problem("law.times", "they do not increase", "give two or more increasing times")
+        if self.degree not in DEGREES:
+            return Problem("law.degree", f"{self.degree!r} is not a degree", "choose 5 (quintic) or 3 (cubic)")
+        if self.repeat and len(t) < self.degree + 2:
+            what = f"a periodic spline of degree {self.degree} needs {self.degree + 2} times or more, not {len(t)}"
+            return Problem("law.times", what, "give more of them")
+        return None
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The first and the last time."""
+        return float(self.times[0]), float(self.times[-1])
+
+    @property
+    def _ramp(self) -> float:
+        """The mean speed of a periodic table: what is left without it ends where it begins."""
+        first, last = self.span
+        return float(self.values[-1] - self.values[0]) / (last - first) if self.repeat else 0.0
+
+    @cached_property
+    def _spline(self) -> Any:
+        from scipy.interpolate import make_interp_spline
+
+        level = self.values - self._ramp * (self.times - self.times[0])
+        if self.repeat:
+            level = np.append(level[:-1], level[0])
+            return make_interp_spline(self.times, level, k=self.degree, bc_type="periodic")
+        return make_interp_spline(self.times, level, k=min(self.degree, len(self.times) - 1))
+
+    def coordinate(self, t: Number, order: int) -> Series:
+        """Value and derivatives at times t (seconds); raises InvalidInput outside the table."""
+        first, last = self.span
+        x = np.asarray(t, dtype=float)
+        if self.repeat:
+            x = first + np.mod(x - first, last - first)
+        else:
+            slack = SLACK * (last - first)
+            outside = x[(x < first - slack) | (x > last + slack)]
+            if outside.size:
+                what = f"{outside.flat[0]:g} s is outside its table, {first:g} to {last:g} s"
+                raise InvalidInput(Problem("law", what, "give times within it, or let it repeat"))
+            x = np.clip(x, first, last)
+        found = [as_number(self._spline(x, nu=k)) for k in range(order + 1)]
+        ramp = taylor((-self._ramp * first, self._ramp), t, order)
+        return from_derivatives(found) + ramp

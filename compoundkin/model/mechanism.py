@@ -1,0 +1,220 @@
+"""A mechanism: links, pairs and drivers, checked as a whole when it is made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from functools import cached_property
+from typing import Any, cast
+
+import numpy as np
+
+from compoundkin.base.display import ShowsPicture
+from compoundkin.base.errors import InvalidMechanism, Problem, UnknownName, nearest
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Number
+from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, real
+from compoundkin.model.geometry import Geometry, fitted_pose, read_off
+from compoundkin.model.pairs import Pair
+from compoundkin.model.validation import misfits_of, problems_of
+
+
+class Mechanism(ShowsPicture):
+    """Links, pairs and drivers, written with the words of this module; checked as a whole when it is made.
+
+    Two links that have a point of the same name are pinned there; the link called "frame" is the frame.
+    `time` holds the times (seconds) at which it is solved unless a call says otherwise.
+    Equality compares what is written, array by array.
+
+    Raises InvalidMechanism, listing every problem with its place.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> four_bar = Mechanism(
+    ...     "Four-bar",
+    ...     link("frame", A=(0, 0), D=(4, 0)),
+    ...     link("crank", A=(0, 0), B=(1, 0)),
+    ...     link("coupler", B=(0, 0), C=(3, 0)),
+    ...     link("rocker", D=(0, 0), C=(3, 0)),
+    ...     drive("crank"),
+    ... )
+    >>> four_bar.pins["B"]
+    ('crank', 'coupler')
+    """
+
+    def __init__(
+        self,
+        title: str,
+        *items: Item,
+        unit: str = "",
+        source: str = "",
+        description: str = "",
+        outputs: Sequence[str] = (),
+        time: Any = None,
+    ) -> None:
+        self.title = title
+        self.unit = unit
+        self.source = source
+        self.description = description
+        self.outputs: tuple[str, ...] = (outputs,) if isinstance(outputs, str) else tuple(outputs)
+        self.time: Number | None = real("time", time)
+        self.items: tuple[Item, ...] = items
+        problems = list(problems_of(self)) or list(misfits_of(self))
+        if problems:
+            raise InvalidMechanism(problems, heading=f"{title!r} cannot be built")
+
+    @cached_property
+    def links(self) -> dict[str, Link]:
+        """The links by name, as written; the frame among them."""
+        return {item.name: item for item in self.items if isinstance(item, Link)}
+
+    @cached_property
+    def written_pairs(self) -> tuple[Pair, ...]:
+        """The pairs that are written out: all but the pins."""
+        letters = {name: item.letters for name, item in self.links.items()}
+        return tuple(item.completed(letters) for item in self.items if isinstance(item, Pair))
+
+    @cached_property
+    def drives(self) -> tuple[Drive, ...]:
+        """The drivers, as written."""
+        return tuple(item for item in self.items if isinstance(item, Drive))
+
+    @cached_property
+    def modes(self) -> tuple[Mode, ...]:
+        """The assembly modes chosen by sign."""
+        return tuple(item for item in self.items if isinstance(item, Mode))
+
+    @cached_property
+    def expectations(self) -> tuple[Expectation, ...]:
+        """The published numbers that come with it."""
+        return tuple(item for item in self.items if isinstance(item, Expectation))
+
+    @cached_property
+    def sketch(self) -> dict[str, Number]:
+        """The points as drawn, in global coordinates."""
+        return {k: v for item in self.items if isinstance(item, Drawn) for k, v in item.points.items()}
+
+    @cached_property
+    def carriers(self) -> dict[str, tuple[str, ...]]:
+        """The links that carry each letter, in the order written."""
+        found: dict[str, list[str]] = {}
+        for name, item in self.links.items():
+            for letter in item.points:
+                found.setdefault(letter, []).append(name)
+        return {letter: tuple(names) for letter, names in found.items()}
+
+    @cached_property
+    def pins(self) -> dict[str, tuple[str, ...]]:
+        """The letters that two links or more share, with those links."""
+        return {letter: names for letter, names in self.carriers.items() if len(names) > 1}
+
+    @cached_property
+    def pins_on(self) -> dict[str, dict[str, None]]:
+        """The letters of the pins on each link, as the keys of a dictionary in the order of `pins`."""
+        found: dict[str, dict[str, None]] = {name: {} for name in self.links}
+        for letter, names in self.pins.items():
+            for name in names:
+                found[name][letter] = None
+        return found
+
+    def pins_between(self, one: str, other: str) -> list[str]:
+        """The letters at which two links, which need not exist, are pinned to each other."""
+        fewer, more = sorted((self.pins_on.get(name, {}) for name in (one, other)), key=len)
+        return [letter for letter in fewer if letter in more and one != other]
+
+    @cached_property
+    def pairs_between(self) -> dict[frozenset[str], list[Pair]]:
+        """The written pairs by the links they join."""
+        found: dict[frozenset[str], list[Pair]] = {}
+        for pair in self.written_pairs:
+            found.setdefault(frozenset(pair.members), []).append(pair)
+        return found
+
+    @cached_property
+    def geometry(self) -> Geometry:
+        """The dimensions as numbers, those of links given as drawn read off the drawing."""
+        points: dict[str, Mapping[str, Number]] = {}
+        poses: dict[str, Pose] = {}
+        fixed = self.links[FRAME].points
+        seen = {**{k: p for k, p in fixed.items() if p is not None}, **self.sketch}
+        for name, item in self.links.items():
+            if name == FRAME:
+                poses[name] = FIXED
+                points[name] = {k: self.sketch[k] if p is None else p for k, p in item.points.items()}
+            elif item.is_drawn:
+                pose, points[name] = read_off(item.letters, self.sketch)
+                if pose is not None:
+                    poses[name] = pose
+            else:
+                points[name] = {k: p for k, p in item.points.items() if p is not None}
+                pose = fitted_pose(points[name], seen) if self.sketch else None
+                if pose is not None:
+                    poses[name] = pose
+        return Geometry(points, poses, frozenset(n for n, i in self.links.items() if i.is_drawn), seen, self._profiles)
+
+    @property
+    def _profiles(self) -> float:
+        """The size of the largest profile."""
+        return max((pair.extent for pair in self.written_pairs), default=0.0)
+
+    def replace(self, *items: Item, **changes: Any) -> Mechanism:
+        """A copy in which each given item takes the place of the one of the same kind and name.
+
+        A word with no counterpart is added; `title`, `unit`, `source`, `description`, `outputs`, `time` by keyword.
+
+        >>> from compoundkin.model.elements import drive, link
+        >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank"))
+        >>> crank.replace(link("crank", A=0, B=2)).links["crank"].points["B"]
+        (2+0j)
+        """
+        keys = {_identity(item): item for item in items}
+        kept = [keys.pop(_identity(item), item) for item in self.items]
+        words = {k: getattr(self, k) for k in ("unit", "source", "description", "outputs", "time")}
+        title = changes.pop("title", self.title)
+        return Mechanism(title, *kept, *keys.values(), **{**words, **changes})
+
+    def link(self, name: str) -> Link:
+        """The link of a name; raises UnknownName."""
+        if name not in self.links:
+            raise UnknownName(Problem(name, "there is no such link", nearest(name, list(self.links))))
+        return self.links[name]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Mechanism) and same(_plain(self), _plain(other))
+
+    def __hash__(self) -> int:
+        return hash((self.title, tuple(self.links)))
+
+    def __repr__(self) -> str:
+        return f"Mechanism({self.title!r}: {len(self.links)} links, {len(self.drives)} drivers)"
+
+
+def same(a: Any, b: Any) -> bool:
+    """Whether two nested values are equal, arrays element by element."""
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        return np.shape(a) == np.shape(b) and bool(np.array_equal(a, b))
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return list(a) == list(b) and all(same(a[k], b[k]) for k in a)
+    if isinstance(a, tuple | list) and isinstance(b, tuple | list):
+        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b, strict=True))
+    return bool(a == b)
+
+
+def _identity(item: Item) -> tuple[Any, ...]:
+    if isinstance(item, Mode):
+        return Mode, frozenset(item.links)
+    if isinstance(item, Drawn):
+        return (Drawn,)
+    return type(item), (item.quantity, item.at) if isinstance(item, Expectation) else item.name
+
+
+def _plain(mechanism: Mechanism) -> list[Any]:
+    """What is written, as nested builtins and arrays, for comparison."""
+    about = [getattr(mechanism, k) for k in ("title", "unit", "source", "description", "outputs", "time")]
+    drawing = [["Drawn", mechanism.sketch]] if mechanism.sketch else []
+    written = [
+        [type(item).__name__, {field.name: getattr(item, field.name) for field in fields(cast("Any", item))}]
+        for item in mechanism.items
+        if not isinstance(item, Drawn)
+    ]
+    # the order between different words says nothing; that within one kind does
+    return [*about, *drawing, *sorted(written, key=lambda entry: str(entry[0]))]

@@ -1,0 +1,238 @@
+"""The cam pair: a knife edge, a pin or a roller of one link runs on the profile of another, or in its curved slot."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.errors import Problem
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series, as_series
+from compoundkin.model.fields import Key
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.arc import ArcSlot
+from compoundkin.model.pairs.contact import Path, Touch, centre_of_curvature, named_problems, outermost, path_of, row
+from compoundkin.model.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
+from compoundkin.model.pairs.profiled import Profiled
+from compoundkin.model.pairs.symbols import Disc, Groove, Mark, Outline, Stud
+from compoundkin.model.profiles import Profile, side_of
+
+# One of so many samples of the profile is enough to find where a path crosses it; Newton does the rest.
+THINNED = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Cam(Profiled):
+    """The point `at` of `link`, or a roller of `radius` about it, runs on the profile of the link `on`.
+
+    A closed profile is touched from outside, or from `inside`; without a radius the point runs on the profile itself,
+    as a knife edge on a cam or a pin in a curved slot. Of several points of the profile the nearest one touches, so
+    that no roller cuts into its cam.
+
+    Held: the distance of the roller from the profile. Free: the profile's parameter at the contact, and the angle.
+    """
+
+    name: str
+    link: str
+    on: str
+    at: str
+    profile: Profile
+    radius: Number = 0.0
+    inside: bool = False
+
+    code: ClassVar[str] = "C"
+    title: ClassVar[str] = "cam pair"
+    free: ClassVar[tuple[str, ...]] = ("parameter", "angle")
+    free_is_angle: ClassVar[bool] = False
+    table: ClassVar[str] = "cams"
+    is_flat: ClassVar[bool] = False
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
+        Key("link", "name", "The link with the point or roller: the follower, or the roller itself.", required=True),
+        Key("on", "name", "The link with the profile.", required=True),
+        Key("at", "name", "The point, or the middle of the roller; may be left out if its link has one point."),
+        Key("profile", "profile", "The profile, in the coordinates of its link.", required=True),
+        Key("radius", "length", "Radius of the roller; none for a knife edge or a pin in a slot.", default=0.0),
+        Key("inside", "flag", "Whether the profile is touched from inside, as that of a ring.", default=False),
+    )
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The point that runs on the profile."""
+        return (self.at,)
+
+    @property
+    def outward(self) -> float:
+        """+1 where the roller is on the side to which the curve's normal points, else -1."""
+        return -side_of(self.curve) if self.inside else side_of(self.curve)
+
+    @property
+    def roller(self) -> float:
+        """The greatest radius."""
+        return float(np.max(self.radius))
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Unknown links and points, a radius that is none, a profile that is none."""
+        members = {"link": self.link, "on": self.on}
+        yield from named_problems(links, where, members, {"at": (self.link, self.at)})
+        if not np.all(np.asarray(self.radius) >= 0):
+            yield Problem(f"{where}.radius", f"{self.radius!r} is not a length", "give a positive number, or none")
+        if not isinstance(self.profile, Profile):
+            what = f"{self.profile!r} is not a profile"
+            yield Problem(f"{where}.profile", what, "write disc(...), profile(points) or one made for a motion")
+        else:
+            yield from self.profile.problems(f"{where}.profile")
+
+    def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
+        """A roller that does not fit into a hollow of the profile that it must run through from inside."""
+        if self.inside and self.profile.circle and not np.all(np.asarray(self.radius) < self.profile.circle[1]):
+            what = f"a roller of radius {self.radius:g} does not fit into a ring of radius {self.profile.circle[1]:g}"
+            yield Problem(f"{where}.radius", what, "take a smaller roller")
+
+    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Cam:
+        """With the only point of its link as the one that runs on the profile, where none is named."""
+        points = links.get(self.link, ())
+        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
+
+    def ends(self, geometry: Geometry) -> Ends:
+        """The profile's frame; the roller's middle with its radius."""
+        return End(0j, 1 + 0j), End(geometry.points[self.link][self.at], None, self.radius)
+
+    def touch(self, ends: Ends, poses: Poses) -> Touch:
+        """At the foot of the roller's middle."""
+        frame, centre, foot = self._foot(ends, poses)
+        place, normal = frame.at(self.curve.at(foot)), frame.u * self.curve.normal(foot) * self.outward
+        return Touch(place, normal, normal.dot(centre - place) - ends[1].measure)
+
+    def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
+        """The middle passes along the profile, by the speed of the parallel curve on which it runs."""
+        frame, centre, foot = self._foot(ends, poses)
+        s = foot.c[0]
+        place, first, _ = self.curve.derivatives(s, 2)
+        along = first / np.abs(first)
+        apart = centre.c[0] - frame.at(place).c[0]
+        normal = frame.u.c[0] * along * -1j
+        distance = apart.real * normal.real + apart.imag * normal.imag
+        speed = np.abs(first) * (1.0 + distance * self.curve.curvature(s))
+        return row(poses, centre.c[0], frame.u.c[0] * along / speed)
+
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
+        """The parameter of the contact."""
+        return self._foot(ends, poses)[2]
+
+    def parameter(self, ends: Ends, poses: Poses) -> Number:
+        """The parameter of the profile at the contact."""
+        return self._foot(ends, poses)[2].c[0]
+
+    def led(self, ends: Ends, poses: Poses) -> Number:
+        """The middle of the roller."""
+        return poses[1].at(ends[1].point).c[0]
+
+    def _foot(self, ends: Ends, poses: Poses) -> tuple[Pose, Series, Series]:
+        """The frame of the profile, the roller's middle, and the parameter of its foot."""
+        side = poses[0].carry(ends[0])
+        frame = Pose(as_series(side.point), side.along)
+        centre = poses[1].at(ends[1].point)
+        return frame, centre, self.curve.foot(frame.u.conj() * (centre - frame.z))
+
+    def upright(self, ends: Ends, poses: Poses) -> Number:
+        """Whether the foot is on the profile, not beyond an end of it."""
+        frame, centre, foot = self._foot(ends, poses)
+        return ~self.curve.beyond(frame.u.conj() * (centre - frame.z), foot)
+
+    def equivalent(self, ends: Ends) -> Equivalent | None:
+        """For a round disc a bar from its middle to that of the roller."""
+        if self.profile.circle is None:
+            return None
+        middle, radius = self.profile.circle
+        reach = radius - ends[1].measure if self.inside else radius + ends[1].measure
+        arc = ArcSlot(self.name, self.link, self.on, self.at, "middle of the disc", reach)
+        return arc.equivalent((End(middle, 1 + 0j, reach), End(ends[1].point)))
+
+    def meetings(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
+        """Where the path of the roller's middle crosses the parallel curve.
+
+        On a slide it is farthest along the guide in mode +1; on a pin most clockwise, as with a bar for the profile.
+        """
+        side = poses[0].carry(ends[0])
+        path = path_of(Pose(as_series(side.point), side.along), poses[1].at(ends[1].point).c[0], own, freedom)
+        middle = complex(np.mean(self._samples[0]))
+
+        def level(at: Sequence[Number], of: Sequence[Number]) -> Number:
+            return Path(path.straight, *at[:3]).level(of[0] + of[1] * at[3])
+
+        def coordinate(at: Sequence[Number], of: Sequence[Number]) -> Number:
+            return Path(path.straight, *at[:3]).coordinate(of[0] + of[1] * at[3], middle)
+
+        numbers = (*path[1:], np.asarray(ends[1].measure) * self.outward)
+        least, greatest = outermost(level, coordinate, numbers, self._samples, self.curve.closed)
+        forward = (freedom.sense > 0) == path.straight
+        return np.where(forward, least, greatest), np.where(forward, greatest, least)
+
+    def lost(self) -> str:
+        """The path does not meet the profile."""
+        between = "" if self.curve.closed else " between its ends"
+        return f"on its way {self.at} does not meet the profile of {self.on}{between}"
+
+    @cached_property
+    def _samples(self) -> tuple[Number, Number]:
+        """Points of the profile and its normals there."""
+        s = self.curve.samples.s[::THINNED]
+        s = s if self.curve.closed else np.append(s, self.curve.high)
+        place, first = self.curve.derivatives(s, 1)
+        return place, -1j * first / np.abs(first)
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation:
+        """The profile's centre of curvature, and the middle of the roller."""
+        frame, centre, foot = self._foot(ends, poses)
+        place, normal = frame.at(self.curve.at(foot.c[0])).c[0], self.touch(ends, poses).normal.c[0]
+        return Osculation(centre_of_curvature(self.curve, foot.c[0], place, frame.u.c[0]), centre.c[0], normal)
+
+    def generic(self, rng: np.random.Generator) -> Ends:
+        """The profile in a random direction, the roller somewhere on it."""
+        angle, s = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(self.curve.low, self.curve.high)
+        u, z = complex(np.cos(angle), np.sin(angle)), complex(*rng.standard_normal(2))
+        place = self.curve.at(s) + self.curve.normal(s) * self.outward * float(np.ravel(self.radius)[0])
+        return End(z, u), End(z + u * place.c[0], None, float(np.ravel(self.radius)[0]))
+
+    @property
+    def make_up(self) -> Hashable:
+        """A cam holds one distance, whatever its profile."""
+        return type(self)
+
+    def round_at(self, link: str) -> str | None:
+        """A roller may turn about its middle."""
+        return self.at if link == self.link else None
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The profile, as a groove where a pin runs in an open one; the roller, the pin or the edge."""
+        line = self.curve.at(self.curve.samples.s).c[0]
+        if ends[1].measure > 0:
+            return Outline(0, line, self.curve.closed, self.inside), Disc(1, ends[1].point, ends[1].measure)
+        edge = Stud(1, ends[1].point)
+        return (Outline(0, line, True, self.inside) if self.curve.closed else Groove(0, line)), edge
+
+
+def cam(
+    link: str,
+    *,
+    on: str,
+    profile: Profile,
+    at: str = "",
+    radius: Number = 0.0,
+    inside: bool = False,
+    name: str = "",
+) -> Cam:
+    """A cam pair: the point `at` of `link`, or a roller of `radius` about it, runs on the `profile` of the link `on`.
+
+    `profile` is one of `disc`, `profile`, `formula`, `synthesise`. See `Cam`.
+
+    >>> from compoundkin.model.profiles import disc
+    >>> cam("follower", on="cam", at="P", profile=disc(20, (5, 0)), radius=8).name
+    'follower/cam'
+    """
+    return Cam(name or f"{link}/{on}", link, on, at, profile, radius, inside)

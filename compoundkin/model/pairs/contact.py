@@ -1,0 +1,197 @@
+"""What pins in slots, cams and other contacts have in common: two links touch, and slide and roll on each other."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import ClassVar, NamedTuple, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.curves import Curve
+from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.model.pairs.contract import Ends, Freedom, Line, Pair, Poses, table
+
+
+class Touch(NamedTuple):
+    """Where two links touch or would touch, in the world: a point of their common normal, and their distance there.
+
+    `normal` is a unit vector from the profile's link to the other; `gap` is zero where they touch.
+    """
+
+    place: Series
+    normal: Series
+    gap: Series
+
+
+class Contact(Pair):
+    """A higher pair that holds one coordinate, the distance along a common normal: first the link with the profile."""
+
+    held: ClassVar[int] = 1
+
+    link: str
+    on: str
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The link that carries the profile and the one that runs on it."""
+        return self.on, self.link
+
+    @abstractmethod
+    def touch(self, ends: Ends, poses: Poses) -> Touch:
+        """Where the two links touch; away from contact, where they are nearest."""
+
+    @abstractmethod
+    def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
+        """The derivatives of the coordinate by each link's x, y, theta: a row of the Jacobian."""
+
+    def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
+        """The distance along the common normal."""
+        return (self.touch(ends, poses).gap,)
+
+    def jacobian(self, ends: Ends, poses: Poses) -> Number:
+        """Rows of the distance and of the sliding."""
+        place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
+        return table(row(poses, place, normal), self.sliding(ends, poses))
+
+    def centre(self, ends: Ends, poses: Poses) -> Line:
+        """On the common normal."""
+        place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
+        return Line(-normal.imag, normal.real, place.real * normal.imag - place.imag * normal.real)
+
+
+def centre_of_curvature(curve: Curve, s: Number, place: Number, u: Number) -> Number:
+    """The centre of curvature of a profile at a parameter, whose point is at a place of the world; inf if straight."""
+    along = curve.tangent(s).c[0] * u
+    return place + 1j * along / curve.curvature(s)
+
+
+class Path(NamedTuple):
+    """The way of a point past a profile as a body's coordinate grows, in the profile's frame.
+
+    It starts at `start` and turns about `centre`; or, where it is `straight`, goes in the direction `centre`. `sense`
+    is how it goes there as the coordinate grows. All but `straight` are numbers or arrays.
+    """
+
+    straight: bool
+    start: Number
+    centre: Number
+    sense: Number
+
+    def level(self, place: Number) -> Number:
+        """What is zero where a place is on the way."""
+        if self.straight:
+            gap = place - self.start
+            return self.centre.real * gap.imag - self.centre.imag * gap.real
+        gap, arm = place - self.centre, self.start - self.centre
+        return (gap.real**2 + gap.imag**2) - (arm.real**2 + arm.imag**2)
+
+    def coordinate(self, place: Number, middle: complex) -> Number:
+        """The coordinate at a place on the way; an angle is within half a turn of that of the `middle`."""
+        if self.straight:
+            gap = place - self.start
+            return self.sense * (self.centre.real * gap.real + self.centre.imag * gap.imag)
+        arm = self.start - self.centre
+        return self.sense * nearest_angle((place - self.centre) / arm, (middle - self.centre) / arm)
+
+
+def nearest_angle(of: Number, middle: Number) -> Number:
+    """The angle of a vector, within half a turn of that of another one."""
+    return np.angle(of / middle) + np.angle(middle)
+
+
+def path_of(frame: Pose, point: Number, own: int, freedom: Freedom) -> Path:
+    """The way of a point of the world past a profile's frame, as its body moves (own 1) or that of the profile (0)."""
+    back = np.conjugate(frame.u.c[0])
+    straight = freedom.about is None
+    centre = back * (freedom.along if straight else freedom.about - frame.z.c[0])
+    return Path(straight, back * (point - frame.z.c[0]), centre, freedom.sense if own else -freedom.sense)
+
+
+# Poses times samples that are looked at together: their arrays stay in a second-level cache.
+TOGETHER = 1 << 17
+
+# A function of numbers at poses and of samples of a profile, broadcast together.
+Look: TypeAlias = Callable[[Sequence[Number], Sequence[Number]], Number]
+
+
+def outermost(
+    level: Look, coordinate: Look, numbers: Sequence[Number], samples: Sequence[Number], closed: bool
+) -> tuple[Number, Number]:
+    """The least and the greatest coordinate at which a level passes zero between two samples.
+
+    Where none does, those of the samples beside the one nearest to it: what passes between two samples only, near a
+    limit position, is found from there.
+
+    `numbers` are arrays of the poses' shape, `samples` what belongs to each sample of the profile.
+    """
+    shape = np.broadcast_shapes(*(np.shape(v) for v in numbers))
+    flat = [np.broadcast_to(v, shape).ravel() for v in numbers]
+    around = [np.append(v, v[:1]) if closed else v for v in samples]
+    least: Number = np.full(flat[0].size, np.inf)
+    greatest: Number = np.full(flat[0].size, -np.inf)
+    step = max(1, TOGETHER // around[0].size)
+    for first in range(0, least.size, step):
+        found = level([v[first : first + step, None] for v in flat], [v[None] for v in around])
+        pose, side = np.nonzero((found[:, :-1] <= 0) != (found[:, 1:] <= 0))
+        before, after = found[pose, side], found[pose, side + 1]
+        share = before / (before - after)
+        pose = pose + first
+        at = coordinate([v[pose] for v in flat], [v[side] + share * (v[side + 1] - v[side]) for v in around])
+        np.minimum.at(least, pose, at)
+        np.maximum.at(greatest, pose, at)
+        lost = first + np.setdiff1d(np.arange(len(found)), pose - first)
+        both = _beside(np.abs(found[lost - first]), lost, coordinate, flat, around, closed)
+        least[lost], greatest[lost] = np.fmin(*both), np.fmax(*both)
+    least, greatest = (np.where(np.isfinite(v), v, np.nan).reshape(shape) for v in (least, greatest))
+    return least, greatest
+
+
+def _beside(
+    found: Number, pose: Number, coordinate: Look, flat: Sequence[Number], around: Sequence[Number], closed: bool
+) -> tuple[Number, Number]:
+    """The coordinates of the samples before and after that with the smallest level, for some poses."""
+    nearest, last = np.argmin(found, axis=1), found.shape[1] - 1
+    before = np.where(nearest > 0, nearest - 1, last - 1 if closed else 0)
+    after = np.where(nearest < last, nearest + 1, 1 if closed else last)
+    at = [v[pose] for v in flat]
+    return coordinate(at, [v[before] for v in around]), coordinate(at, [v[after] for v in around])
+
+
+def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
+    """By how much the second link passes the first one at a place, in a direction, by each link's x, y, theta.
+
+    `along` is a unit vector, or one whose length is a factor.
+    """
+    first, second = (along.real * arm.real + along.imag * arm.imag for arm in _arms(poses, place))
+    return -along.real, -along.imag, -first, along.real, along.imag, second
+
+
+def _arms(poses: Sequence[Pose], place: Number) -> tuple[Number, ...]:
+    return tuple(1j * (place - pose.z.c[0]) for pose in poses)
+
+
+def named_problems(
+    links: Mapping[str, tuple[str, ...]], where: str, members: Mapping[str, str], points: Mapping[str, tuple[str, str]]
+) -> Iterator[Problem]:
+    """Links that there are not, one link twice, and points that their link does not have.
+
+    `members` are links by the key that names them, `points` (link, letter) by theirs.
+    """
+    missing = [(key, name) for key, name in members.items() if name not in links]
+    for key, name in missing:
+        yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, list(links)))
+    if missing:
+        return
+    if len(set(members.values())) < len(members):
+        key, name = list(members.items())[-1]
+        yield Problem(f"{where}.{key}", f"{name!r} cannot run on itself", "name two links")
+    for key, (link, letter) in points.items():
+        if not letter:
+            choice = f"name the one that is meant: {', '.join(links[link])}"
+            yield Problem(f"{where}.{key}", f"link {link!r} has several points", choice)
+        elif letter not in links[link]:
+            remedy = nearest(letter, list(links[link]))
+            yield Problem(f"{where}.{key}", f"link {link!r} has no point {letter!r}", remedy)

@@ -1,0 +1,256 @@
+"""The flat-faced cam pair: a straight face of one link rests on the profile of another."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.errors import Problem
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series, as_series, dot
+from compoundkin.model.fields import Key
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contact import (
+    Touch,
+    centre_of_curvature,
+    named_problems,
+    nearest_angle,
+    outermost,
+    path_of,
+    row,
+)
+from compoundkin.model.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
+from compoundkin.model.pairs.prismatic import Prismatic
+from compoundkin.model.pairs.profiled import Profiled
+from compoundkin.model.pairs.revolute import Revolute
+from compoundkin.model.pairs.symbols import Mark, Outline, Track, reach
+from compoundkin.model.profiles import Profile, side_of
+
+# One of so many samples of the profile is enough to find where a face touches it; Newton does the rest.
+THINNED = 4
+# A sample is one that a face can touch if the face with its normal touches within this part of the size.
+NEAR = 1e-6
+# A face within this angle (radians) of its own guide never comes nearer to a profile.
+ALONG = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Face(Profiled):
+    """A flat face of `link` rests on the profile of the link `on`.
+
+    The face is the line through the point `at` of `link` in the direction `angle` (radians, from its x axis); the
+    profile lies to the left of that direction, or to the right for a `side` of -1. It touches where the profile reaches
+    farthest, so that a hollow of the profile is bridged.
+
+    Held: the distance of the face from the profile. Free: the displacement of the contact along the face from `at`, and
+    the angle.
+    """
+
+    name: str
+    link: str
+    on: str
+    at: str
+    profile: Profile
+    angle: Number = 0.0
+    side: int = 1
+
+    code: ClassVar[str] = "F"
+    title: ClassVar[str] = "flat-faced cam pair"
+    free: ClassVar[tuple[str, ...]] = ("displacement", "angle")
+    free_is_angle: ClassVar[bool] = False
+    table: ClassVar[str] = "faces"
+    is_flat: ClassVar[bool] = True
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
+        Key("link", "name", "The link with the flat face: the follower.", required=True),
+        Key("on", "name", "The link with the profile.", required=True),
+        Key("at", "name", "A point of the face; may be left out if its link has one point."),
+        Key("profile", "profile", "The profile, in the coordinates of its link.", required=True),
+        Key("angle", "angle", "Direction of the face from the x axis of its link.", default=0.0),
+        Key("side", "sign", "1 where the profile lies to the left of that direction, -1 to the right.", default=1),
+    )
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The point of the face."""
+        return (self.at,)
+
+    @property
+    def outward(self) -> float:
+        """+1 where the curve's normal points out of the profile, else -1."""
+        return side_of(self.curve)
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Unknown links and points, a profile that is none."""
+        members = {"link": self.link, "on": self.on}
+        yield from named_problems(links, where, members, {"at": (self.link, self.at)})
+        if self.side not in (1, -1):
+            yield Problem(f"{where}.side", f"{self.side!r} is not a side", "write 1 (left) or -1 (right)")
+        if not isinstance(self.profile, Profile):
+            what = f"{self.profile!r} is not a profile"
+            yield Problem(f"{where}.profile", what, "write disc(...), profile(points) or one made for a motion")
+        else:
+            yield from self.profile.problems(f"{where}.profile")
+
+    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Face:
+        """With the only point of its link as that of the face, where none is named."""
+        points = links.get(self.link, ())
+        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
+
+    def ends(self, geometry: Geometry) -> Ends:
+        """The profile's frame; point and direction of the face."""
+        return End(0j, 1 + 0j), End(geometry.points[self.link][self.at], np.cos(self.angle) + 1j * np.sin(self.angle))
+
+    def touch(self, ends: Ends, poses: Poses) -> Touch:
+        """Where the profile reaches farthest toward the face."""
+        frame, face = self._sides(ends, poses)
+        place = frame.at(self.curve.at(self._support(frame, face)))
+        normal = self._normal(face)
+        return Touch(place, normal, normal.dot(face.point - place))
+
+    def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
+        """The contact falls behind by the sliding, and rolls on by the radius of curvature times the relative turn."""
+        frame, face = self._sides(ends, poses)
+        s = self._support(frame, face).c[0]
+        rolled = self.side / np.abs(self.curve.curvature(s))
+        passed = row(poses, frame.at(self.curve.at(s)).c[0], face.along.c[0])
+        return tuple(rolled * turn - p for turn, p in zip((0.0, 0.0, -1.0, 0.0, 0.0, 1.0), passed, strict=True))
+
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
+        """How far along the face the contact is."""
+        _, face = self._sides(ends, poses)
+        return face.along.dot(self.touch(ends, poses).place - face.point)
+
+    def upright(self, ends: Ends, poses: Poses) -> Number:
+        """Whether the contact is not at an end of an open profile."""
+        s = self._support(*self._sides(ends, poses)).c[0]
+        return self.curve.closed | ((s > self.curve.low) & (s < self.curve.high))
+
+    def equivalent(self, ends: Ends) -> Equivalent | None:
+        """For a round disc a block on the face, pinned at the middle of the disc."""
+        if self.profile.circle is None:
+            return None
+        middle, radius = self.profile.circle
+        block = f"{self.name} (block)"
+        pairs = (
+            Revolute(f"{self.name} (pin)", "middle of the disc", self.on, block),
+            Prismatic(f"{self.name} (slide)", block, self.link, "middle of the disc", self.at),
+        )
+        along = ends[1].along.c[0]
+        track = End(ends[1].point + 1j * self.side * radius * along, along)
+        sides: dict[str, Ends] = {pairs[0].name: (End(middle), End(0j)), pairs[1].name: (track, End(0j, 1 + 0j))}
+        return Equivalent(block, pairs, sides)
+
+    def meetings(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
+        """On a slide the face's direction tells the contact; on a pin the face also touches a circle about it.
+
+        On a pin the contact may lie in the direction of the face (mode +1) or against it, as with a block on it.
+        """
+        frame, face = self._sides(ends, poses)
+        normal, start = self._normal(face).c[0], face.point.c[0]
+        path = path_of(frame, start, own, freedom)
+        facing = np.conjugate(frame.u.c[0]) * normal
+        if path.straight:
+            reach = self.curve.at(self._support(frame, face).c[0]).c[0] - path.start
+            rise = dot(facing, path.centre)
+            found = path.sense * dot(facing, reach) / np.where(np.abs(rise) < ALONG, np.nan, rise)
+            return found, found
+        middle = complex(np.mean(self._samples[0]))
+
+        def level(at: Sequence[Number], of: Sequence[Number]) -> Number:
+            return dot(of[1], of[0] - at[0]) - at[1]
+
+        def coordinate(at: Sequence[Number], of: Sequence[Number]) -> Number:
+            # seen from the pin the two tangents are on either side of the profile's middle
+            return nearest_angle(of[1] / at[2], (at[0] - middle) / at[2])
+
+        numbers = (path.centre, dot(facing, path.start - path.centre), facing)
+        right, left = outermost(level, coordinate, numbers, self._samples, self.curve.closed)
+        against, along = (right, left) if self.side > 0 else (left, right)
+        return path.sense * against, path.sense * along
+
+    def lost(self) -> str:
+        """The face does not reach the profile."""
+        return f"the face of {self.link} does not meet the profile of {self.on}, or lies along its own guide"
+
+    @cached_property
+    def _samples(self) -> tuple[Number, Number]:
+        """Points of the profile and its outward normals, those that a face can touch."""
+        s = self.curve.samples.s[::THINNED]
+        place, first = self.curve.derivatives(s, 1)
+        normal = -1j * side_of(self.curve) * first / np.abs(first)
+        touched = self.curve.at(self.curve.support(normal)).c[0]
+        on_hull = np.abs(touched - place) < NEAR * self.curve.size
+        return place[on_hull], normal[on_hull]
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation:
+        """The profile's centre of curvature; the face is straight."""
+        frame, face = self._sides(ends, poses)
+        s = self._support(frame, face).c[0]
+        place = frame.at(self.curve.at(s)).c[0]
+        return Osculation(centre_of_curvature(self.curve, s, place, frame.u.c[0]), None, self._normal(face).c[0])
+
+    def generic(self, rng: np.random.Generator) -> Ends:
+        """The profile in a random direction, the face somewhere on it."""
+        angle, turned = rng.uniform(0.0, 2.0 * np.pi, 2)
+        u, along = complex(np.cos(angle), np.sin(angle)), complex(np.cos(turned), np.sin(turned))
+        z = complex(*rng.standard_normal(2))
+        s = self.curve.support(np.conjugate(u) * along * (-1j * self.side))
+        return End(z, u), End(z + u * self.curve.at(s).c[0] + along * rng.standard_normal(), along)
+
+    @property
+    def make_up(self) -> Hashable:
+        """A face holds one distance, whatever the profile."""
+        return type(self)
+
+    def parameter(self, ends: Ends, poses: Poses) -> Number:
+        """The parameter of the profile at the contact."""
+        return self._support(*self._sides(ends, poses)).c[0]
+
+    def led(self, ends: Ends, poses: Poses) -> Number:
+        """The contact."""
+        return self.touch(ends, poses).place.c[0]
+
+    def _sides(self, ends: Ends, poses: Poses) -> tuple[Pose, End]:
+        """The frame of the profile, and the face in the world."""
+        side, face = poses[0].carry(ends[0]), poses[1].carry(ends[1])
+        return Pose(as_series(side.point), side.along), face
+
+    def _support(self, frame: Pose, face: End) -> Series:
+        return self.curve.support(frame.u.conj() * self._normal(face))
+
+    def _normal(self, face: End) -> Series:
+        """From the profile to the face."""
+        return face.along * (-1j * self.side)
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The profile, and the part of the face that it touches."""
+        line = self.curve.at(self.curve.samples.s).c[0]
+        travel = reach(self.coordinate(ends, poses).c[0])
+        track = Track(1, ends[1].point, ends[1].along.c[0], *travel, float(self.side))
+        return Outline(0, line, self.curve.closed), track
+
+
+def face(
+    link: str,
+    *,
+    on: str,
+    profile: Profile,
+    at: str = "",
+    angle: Number = 0.0,
+    side: int = 1,
+    name: str = "",
+) -> Face:
+    """A flat-faced cam pair: the face of `link` through its point `at` rests on the `profile` of the link `on`.
+
+    `angle` (radians) is the direction of the face; the profile lies to its left, or right for `side=-1`. See `Face`.
+
+    >>> from compoundkin.model.profiles import disc
+    >>> face("follower", on="cam", at="P", profile=disc(20, (5, 0)), side=-1).letters
+    ('P',)
+    """
+    return Face(name or f"{link}/{on}", link, on, at, profile, angle, side)

@@ -1,0 +1,118 @@
+"""The gear pair: two gears in mesh, external or internal, whose axes a carrier holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from compoundkin.base.errors import Problem
+from compoundkin.base.series import Number
+from compoundkin.model.fields import Key
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.geared import Geared, check_distance, two_of
+from compoundkin.model.pairs.symbols import Disc, Mark
+
+# The pressure angle of standard involute teeth; it shows in the equivalent linkage only, not in any motion.
+PRESSURE_ANGLE = np.deg2rad(20.0)
+
+# How many teeth the smaller gear shows where only radii are known.
+UNCOUNTED = 18
+
+
+@dataclass(frozen=True, eq=False)
+class Gear(Geared):
+    """Two gears in mesh; `internal` where the second is an internal gear (a ring) around the first.
+
+    With a `module`, or with radii, the pitch circles must fit the distance of the axes; by teeth alone they take it.
+    See `Geared` for the rest.
+    """
+
+    internal: bool = False
+    module: Number | None = None
+
+    code: ClassVar[str] = "G"
+    title: ClassVar[str] = "gear pair"
+    table: ClassVar[str] = "gears"
+    keys: ClassVar[tuple[Key, ...]] = (
+        *Geared.keys,
+        Key("internal", "flag", "Whether the second is an internal gear (a ring) around the first.", default=False),
+        Key("module", "length", "Pitch diameter by number of teeth; checked against the axes.", default=None),
+    )
+
+    @property
+    def turns_alike(self) -> bool:
+        """A gear and the ring around it do."""
+        return self.internal
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Also a ring that is not larger than the gear in it, and a module without teeth."""
+        yield from super().problems(links, where)
+        for key, sizes in (("teeth", self.teeth), ("radii", self.radii)):
+            if self.internal and sizes is not None and not np.all(np.asarray(sizes[1]) > np.asarray(sizes[0])):
+                what = "an internal gear is not larger than the pinion in it"
+                yield Problem(f"{where}.{key}", what, "name the pinion first and the ring second")
+        if self.module is not None and not np.all(np.asarray(self.module) > 0):
+            yield Problem(f"{where}.module", f"{self.module!r} is not a positive length", "give a positive number")
+        if self.module is not None and self.teeth is None:
+            yield Problem(f"{where}.module", "a module says nothing without teeth", "give teeth = (20, 40)")
+
+    def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
+        """Axes that coincide; pitch circles that do not fit the distance of the axes."""
+        if not np.all(self.distance(geometry) > 0):
+            what = f"{self.first_at} and {self.second_at} are at one place on {self.carrier!r}"
+            yield Problem(f"{where}.carrier", what, "gears in mesh have two axes")
+            return
+        sign = -1.0 if self.internal else 1.0
+        if self.module is not None and self.teeth is not None:
+            wanted = np.abs(np.asarray(self.teeth[1]) + sign * np.asarray(self.teeth[0])) * self.module / 2.0
+            yield from check_distance(
+                self, geometry, f"{where}.teeth", wanted, "teeth and module ask for a distance of"
+            )
+        elif self.radii is not None:
+            wanted = np.abs(np.asarray(self.radii[1]) + sign * np.asarray(self.radii[0]))
+            yield from check_distance(self, geometry, f"{where}.radii", wanted, "pitch circles ask for a distance of")
+
+    def reach(self, one: Number, two: Number, distance: Number) -> Number:
+        """From teeth or radii to base circles."""
+        return distance / (one + two) * np.cos(PRESSURE_ANGLE)
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The pitch circles."""
+        one, two = (abs(float(end.measure)) for end in ends[:2])
+        unit = self.apart(ends, poses) / (two - one if self.internal else two + one)
+        tooth = 1.0 if self.teeth is not None else min(one, two) / UNCOUNTED
+        return (
+            Disc(0, ends[0].point, one * unit, round(one / tooth)),
+            Disc(1, ends[1].point, two * unit, round(two / tooth), self.internal),
+        )
+
+
+def gear(
+    first: str,
+    second: str,
+    *,
+    carrier: str = "frame",
+    teeth: Any = None,
+    radii: Any = None,
+    internal: bool = False,
+    module: Number | None = None,
+    phase: Number | None = None,
+    first_at: str = "",
+    second_at: str = "",
+    name: str = "",
+) -> Gear:
+    """A gear pair: `first` and `second` mesh, their axes carried by `carrier`; two `teeth` or two `radii`.
+
+    `internal=True` where the second is a ring around the first; `phase` in radians. See `Gear`.
+
+    >>> gear("sun", "planet", carrier="arm", teeth=(20, 40)).name
+    'sun/planet'
+    """
+    sizes = two_of("teeth", teeth), two_of("radii", radii)
+    return Gear(
+        name or f"{first}/{second}", first, second, carrier, *sizes, phase, first_at, second_at, internal, module
+    )

@@ -1,0 +1,265 @@
+"""What gears, belts and chains have in common: two links turn on a common carrier in a fixed ratio."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.poses import End
+from compoundkin.base.series import Number, Series
+from compoundkin.model.fields import Key
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contract import Ends, Osculation, Pair, Point, Poses, table
+
+Two = tuple[Number, Number]
+
+# Radii fit a centre distance that they meet to this part of it: drawings are given to some five digits.
+FITS = 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class Geared(Pair):
+    """The link `first` and the link `second` turn about their axes on the link `carrier` in a fixed ratio.
+
+    An axis is the point that a link shares with the carrier; `first_at` and `second_at` name it where there are
+    several. The ratio is that of `teeth` or of `radii`, numbers for first and second. With both angles taken from
+    the carrier, ``second = phase - ratio * first`` where `ratio` is `sizes` one over the other, negative for wheels
+    that turn alike; `phase` (radians) is read off the drawing where it is not stated, or zero.
+
+    Held: that sum of angles. Free: the angle of the first from the carrier. Source: e.g. R. L. Norton, Design of
+    Machinery, chapter 9 (gear trains by Willis's equation).
+    """
+
+    name: str
+    first: str
+    second: str
+    carrier: str = "frame"
+    teeth: Two | None = None
+    radii: Two | None = None
+    phase: Number | None = None
+    first_at: str = ""
+    second_at: str = ""
+
+    held: ClassVar[int] = 1
+    free: ClassVar[tuple[str, ...]] = ("angle",)
+    free_is_angle: ClassVar[bool] = True
+    counts_turns: ClassVar[bool] = True
+    adds_angles: ClassVar[bool] = True
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("name", "name", "What the pair is called in reports; FIRST/SECOND where it is left out."),
+        Key("first", "name", "The link with the first wheel.", required=True),
+        Key("second", "name", "The link with the second wheel.", required=True),
+        Key("carrier", "name", "The link that carries both axes.", default="frame"),
+        Key("teeth", "two", "Numbers of teeth of the two wheels.", default=None),
+        Key("radii", "two", "Radii of the two wheels, of pitch circles for gears.", default=None),
+        Key("phase", "angle", "Angle of the second from the carrier where that of the first is zero.", default=None),
+        Key("first_at", "name", "The axis of the first link, where it shares several points with the carrier."),
+        Key("second_at", "name", "The axis of the second link, where it shares several points with the carrier."),
+    )  # fmt: skip
+
+    @property
+    def turns_alike(self) -> bool:
+        """Whether, seen from the carrier, both wheels turn in one direction."""
+        raise NotImplementedError
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The two wheels and their carrier."""
+        return self.first, self.second, self.carrier
+
+    @property
+    def called(self) -> str:
+        """The two wheels."""
+        return f"{self.first}/{self.second}"
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The axes of the two wheels."""
+        return self.first_at, self.second_at
+
+    @property
+    def sizes(self) -> Two:
+        """The two numbers whose ratio counts, the second negative for wheels that turn alike."""
+        one, two = self.teeth or self.radii or (1.0, 1.0)
+        return one, -two if self.turns_alike else two
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Unknown links, one link twice, an axis that the carrier does not carry, sizes that are none."""
+        named = (("first", self.first), ("second", self.second), ("carrier", self.carrier))
+        missing = [(key, name) for key, name in named if name not in links]
+        for key, name in missing:
+            yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, list(links)))
+        if not missing and len({name for _, name in named}) < len(named):
+            yield Problem(where, "the two wheels and their carrier are not three different links", "name three links")
+        elif not missing:
+            for key, name, axis in (("first", self.first, self.first_at), ("second", self.second, self.second_at)):
+                yield from self._axis_problems(links, where, key, name, axis)
+        yield from self._size_problems(where)
+
+    def _axis_problems(
+        self, links: Mapping[str, tuple[str, ...]], where: str, key: str, name: str, axis: str
+    ) -> Iterator[Problem]:
+        shared = [letter for letter in links[name] if letter in links[self.carrier]]
+        if axis and axis not in shared:
+            what = f"{name!r} and {self.carrier!r} do not share the point {axis!r}"
+            yield Problem(f"{where}.{key}_at", what, nearest(axis, shared))
+        elif not shared:
+            what = f"{self.carrier!r} does not carry the axis of {name!r}: they share no point"
+            yield Problem(f"{where}.carrier", what, "give both a point of one letter, or name another carrier")
+        elif not axis:
+            what = f"{name!r} and {self.carrier!r} share several points"
+            yield Problem(f"{where}.{key}_at", what, f"name the axis: {', '.join(shared)}")
+
+    def _size_problems(self, where: str) -> Iterator[Problem]:
+        if self.teeth is None and self.radii is None:
+            yield Problem(where, "it has no sizes", "give teeth = (20, 40) or radii = (10, 20)")
+        for key, sizes in (("teeth", self.teeth), ("radii", self.radii)):
+            if sizes is None:
+                continue
+            if not all(np.all(np.asarray(size) > 0) for size in sizes):
+                yield Problem(f"{where}.{key}", f"{_shown(sizes)} are not two positive numbers")
+            elif key == "teeth" and not all(np.all(np.asarray(size) == np.round(size)) for size in sizes):
+                yield Problem(f"{where}.{key}", f"{_shown(sizes)} are not whole numbers", "give radii instead")
+        if self.teeth is not None and self.radii is not None and not _proportional(self.teeth, self.radii):
+            what = f"teeth {_shown(self.teeth)} and radii {_shown(self.radii)} have different ratios"
+            yield Problem(where, what, "leave one of them out")
+
+    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Geared:
+        """With the only point that each wheel shares with the carrier as its axis, where none is named."""
+        found: dict[str, Any] = {}
+        for key, name in (("first_at", self.first), ("second_at", self.second)):
+            shared = [letter for letter in links.get(name, ()) if letter in links.get(self.carrier, ())]
+            if not getattr(self, key) and len(shared) == 1:
+                found[key] = shared[0]
+        return replace(self, **found) if found else self
+
+    def distance(self, geometry: Geometry) -> Number:
+        """The distance between the two axes on the carrier."""
+        axes = geometry.points[self.carrier]
+        return np.abs(axes[self.second_at] - axes[self.first_at])
+
+    def ends(self, geometry: Geometry) -> Ends:
+        """Axis and size on each wheel; the phase on the carrier, read off a drawing that shows all three links."""
+        one, two = self.sizes
+        first = End(geometry.points[self.first][self.first_at], None, one)
+        second = End(geometry.points[self.second][self.second_at], None, two)
+        return first, second, End(geometry.points[self.carrier][self.first_at], None, self._phase(geometry))
+
+    def _phase(self, geometry: Geometry) -> Number:
+        if self.phase is not None or any(name not in geometry.drawn for name in self.members):
+            return 0.0 if self.phase is None else self.phase
+        first, second, carrier = (geometry.drawn[name].angle.c[0] for name in self.members)
+        one, two = self.sizes
+        return (second - carrier) + (first - carrier) * (one / two)
+
+    def turned(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+        """A phase that the drawing gave follows the turns of wheels and carrier since."""
+        if self.phase is not None or any(name not in geometry.drawn for name in self.members):
+            return ends
+        one, two, carrier = turns
+        ahead = 2.0 * np.pi * ((two - carrier) + (one - carrier) * ratio(ends))
+        return *ends[:2], ends[2]._replace(measure=ends[2].measure + ahead)
+
+    def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
+        """The angle by which the second wheel is ahead of where the first one turns it."""
+        first, second, carrier = (pose.angle for pose in poses)
+        return ((second - carrier) + (first - carrier) * ratio(ends) - ends[2].measure,)
+
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
+        """The angle of the first wheel from the carrier."""
+        return poses[0].angle - poses[2].angle
+
+    def jacobian(self, ends: Ends, poses: Poses) -> Number:
+        """Rows of the sum of angles and of the first angle."""
+        turned = ratio(ends)
+        return table(
+            (0.0, 0.0, turned, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 - turned),
+            (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0),
+        )
+
+    def centre(self, ends: Ends, poses: Poses) -> Point:
+        """The pitch point: it divides the line of the axes; at infinity for equal wheels that turn alike."""
+        one, two = ends[0].measure, ends[1].measure
+        first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
+        place = first * two + second * one
+        return Point(-place.real / two, -place.imag / two, -(one + two) / two)
+
+    def reach(self, one: Number, two: Number, distance: Number) -> Number:
+        """What the sizes are to be multiplied with to be radii of the circles that the line of action touches."""
+        return distance / (2.0 * (np.abs(one) + np.abs(two)))
+
+    def osculation(self, ends: Ends, poses: Poses) -> Osculation:
+        """Where the line of action, of involutes or of a belt, touches the circles about both axes."""
+        first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
+        distance = np.abs(second - first)
+        one, two = ends[0].measure, ends[1].measure
+        reach = self.reach(one, two, distance)
+        one, two = one * reach, two * reach
+        cosine = (one + two) / distance
+        across = (second - first) / distance * (cosine + 1j * np.sqrt(1.0 - cosine**2))
+        return Osculation(first + one * across, second - two * across, across * 1j)
+
+    def is_affine(self, lower: Pair, own: int) -> bool:
+        """On a pin, any of the three turns in proportion."""
+        return lower.free_is_angle
+
+    def generic(self, rng: np.random.Generator) -> Ends:
+        """Axes at random places, the ratio as it is: it may make a train lock."""
+        one, two = (float(np.ravel(size)[0]) for size in self.sizes)
+        places = (complex(*rng.standard_normal(2)) for _ in range(2))
+        return *(End(place, None, size) for place, size in zip(places, (one, two), strict=True)), End(0j, None, 0.0)
+
+    @property
+    def make_up(self) -> Hashable:
+        """The kind and the ratio."""
+        one, two = (float(np.ravel(size)[0]) for size in self.sizes)
+        return type(self), one / two
+
+    def apart(self, ends: Ends, poses: Poses) -> float:
+        """The distance of the axes at the first pose."""
+        first, second = (np.ravel(pose.at(end.point).c[0])[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
+        return float(abs(second - first))
+
+
+def two_of(key: str, value: Any) -> Two | None:
+    """Two sizes as numbers or arrays; raises InvalidMechanism naming the key for anything else.
+
+    >>> two_of("teeth", (20, 40))
+    (20.0, 40.0)
+    """
+    if value is None:
+        return None
+    try:
+        one, two = (np.asarray(size, dtype=float) for size in value)
+    except (TypeError, ValueError):
+        what = f"{value!r} are not two numbers"
+        raise InvalidMechanism(Problem(key, what, f"write {key}=(20, 40)")) from None
+    return one.item() if one.ndim == 0 else one, two.item() if two.ndim == 0 else two
+
+
+def ratio(ends: Ends) -> Number:
+    """How far the second wheel turns back for a turn of the first, both seen from the carrier."""
+    return ends[0].measure / ends[1].measure
+
+
+def check_distance(pair: Geared, geometry: Geometry, where: str, wanted: Number, said: str) -> Iterator[Problem]:
+    """The problem of wheels whose sizes do not fit the distance of their axes on the carrier."""
+    distance = pair.distance(geometry)
+    off = np.abs(wanted - distance) > FITS * np.abs(distance)
+    if np.any(off):
+        at = int(np.argmax(np.ravel(np.broadcast_to(off, np.shape(off)))))
+        a, b = (np.ravel(np.broadcast_to(value, np.shape(off)))[at] for value in (wanted, distance))
+        what = f"{said} {a:.6g}, but {pair.first_at} and {pair.second_at} on {pair.carrier!r} are {b:.6g} apart"
+        yield Problem(where, what, "change the sizes or move an axis; give teeth alone for a distance as it is")
+
+
+def _proportional(one: Two, two: Two) -> bool:
+    return bool(np.all(np.abs(one[0] * two[1] - one[1] * two[0]) <= FITS * np.abs(one[0] * two[1])))
+
+
+def _shown(sizes: Two) -> str:
+    return " and ".join(f"{size:g}" if np.ndim(size) == 0 else str(np.asarray(size).tolist()) for size in sizes)

@@ -1,0 +1,192 @@
+"""What racks and wheels on a straight line have in common: no slip between a wheel and a line of another link."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.errors import Problem
+from compoundkin.base.poses import End
+from compoundkin.base.series import Number, Series, cross
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contact import named_problems
+from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses
+from compoundkin.model.pairs.symbols import Disc, Mark, Track, reach
+
+# A radius fits a drawn distance that it meets to this part of it: drawings are given to some five digits.
+FITS = 1e-5
+TURN = 2.0 * np.pi
+
+Row = tuple[Number, ...]
+
+
+class OnLine(Pair):
+    """A wheel of a radius that rolls along a straight line of another link; first the link with the line."""
+
+    free: ClassVar[tuple[str, ...]] = ("displacement",)
+    free_is_angle: ClassVar[bool] = False
+    counts_turns: ClassVar[bool] = True
+
+    at: str
+    through: str
+    angle: Number
+    toward: str | None
+    side: int
+    phase: Number | None
+
+    @property
+    @abstractmethod
+    def size(self) -> Number:
+        """The radius of the wheel."""
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The axis of the wheel and the points that fix the line."""
+        return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
+
+    def line_problems(
+        self, links: Mapping[str, tuple[str, ...]], where: str, names: Mapping[str, str]
+    ) -> Iterator[Problem]:
+        """Unknown links and points, a line without direction, a side that is none; `names` are the links by key."""
+        line, wheel = self.members
+        points = {"at": (wheel, self.at), "through": (line, self.through)}
+        if self.toward is not None:
+            points["toward"] = (line, self.toward)
+        yield from named_problems(links, where, names, points)
+        if self.toward == self.through:
+            yield Problem(f"{where}.toward", f"a line from {self.through!r} to itself has no direction")
+        if self.side not in (1, -1):
+            what = f"{self.side!r} is not a side of the line"
+            yield Problem(f"{where}.side", what, "write 1 for the left of its direction, -1 for the right")
+
+    def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
+        """Two points of the line at one place; a radius that does not fit a drawing which gives all dimensions."""
+        line, _ = self.members
+        points = geometry.points[line]
+        if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
+            what = f"{self.through!r} and {self.toward!r} are at one place, so that the line has no direction"
+            yield Problem(f"{where}.toward", what, "name another point or give an angle")
+            return
+        seen = self._seen(geometry)
+        if seen is None or not all(name in geometry.as_drawn or name == "frame" for name in geometry.points):
+            return
+        away = self.side * (np.conjugate(seen[1]) * seen[0]).imag
+        off = np.abs(away - self.size) > FITS * np.abs(self.size)
+        if np.any(off):
+            at = int(np.argmax(np.ravel(off)))
+            a, b = (np.ravel(np.broadcast_to(value, np.shape(off)))[at] for value in (self.size, away))
+            what = f"the radius is {a:.6g}, but {self.at} is drawn {b:.6g} from the line"
+            remedy = "change the radius or move the axis" + ("; or is it on the other side?" if b < 0 else "")
+            yield Problem(f"{where}.radius", what, remedy)
+
+    def ends(self, geometry: Geometry) -> Ends:
+        """A point and the direction of the line with the phase; the axis with the radius, negative to the right."""
+        start, along = self._line(geometry)
+        across = self.side * self.size
+        axis = geometry.points[self.members[1]][self.at]
+        return End(start, along, self._phase(geometry, across)), End(axis, None, across)
+
+    def _line(self, geometry: Geometry) -> tuple[Number, Number]:
+        points = geometry.points[self.members[0]]
+        start = points[self.through]
+        if self.toward is None:
+            return start, np.cos(self.angle) + 1j * np.sin(self.angle)
+        return start, (points[self.toward] - start) / np.abs(points[self.toward] - start)
+
+    def _seen(self, geometry: Geometry) -> tuple[Number, Number] | None:
+        """The way from the line's point to the axis, and the line's direction, in the drawing; None if not shown."""
+        line, wheel = self.members
+        if line not in geometry.drawn:
+            return None
+        if wheel in geometry.drawn:
+            axis = geometry.drawn[wheel].at(geometry.points[wheel][self.at]).c[0]
+        elif self.at in geometry.sketch:
+            axis = geometry.sketch[self.at]
+        else:
+            return None
+        start, along = self._line(geometry)
+        return axis - geometry.drawn[line].at(start).c[0], geometry.drawn[line].u.c[0] * along
+
+    def _phase(self, geometry: Geometry, across: Number) -> Number:
+        """The phase of the drawing; one that is stated is brought within half a turn of it; or zero."""
+        seen = self._seen(geometry)
+        if seen is None or self.members[1] not in geometry.drawn:
+            return 0.0 if self.phase is None else self.phase
+        line, wheel = (geometry.drawn[name].angle.c[0] for name in self.members)
+        drawn = (np.conjugate(seen[1]) * seen[0]).real + across * (wheel - line)
+        if self.phase is None:
+            return drawn
+        # a phase by a turn of the wheel farther on is the same mechanism, its angle counted from another turn
+        return self.phase + TURN * across * np.round((drawn - self.phase) / (TURN * across))
+
+    def turned(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+        """A phase that the drawing gave follows the turns of line and wheel since."""
+        if any(name not in geometry.drawn for name in self.members):
+            return ends
+        line, wheel = ends
+        return line._replace(measure=line.measure + wheel.measure * TURN * (turns[1] - turns[0])), wheel
+
+    def slip(self, ends: Ends, poses: Poses) -> Series:
+        """By how much the axis is ahead of where the wheel rolls it; zero where there is no slip."""
+        turned = poses[1].angle - poses[0].angle
+        slip: Series = self.coordinate(ends, poses) + turned * ends[1].measure - ends[0].measure
+        return slip
+
+    def distance(self, ends: Ends, poses: Poses) -> Series:
+        """By how much the axis is farther from the line than the radius."""
+        line, axis = poses[0].carry(ends[0]), poses[1].at(ends[1].point)
+        farther: Series = line.along.cross(axis - line.point) - ends[1].measure
+        return farther
+
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
+        """The displacement of the axis along the line."""
+        line, axis = poses[0].carry(ends[0]), poses[1].at(ends[1].point)
+        return line.along.dot(axis - line.point)
+
+    def rows(self, ends: Ends, poses: Poses) -> tuple[Row, Row, Row]:
+        """The derivatives of distance, slip and displacement."""
+        e = poses[0].carry(ends[0]).along.c[0]
+        away = poses[1].at(ends[1].point).c[0] - poses[0].z.c[0]
+        arm = poses[1].at(ends[1].point).c[0] - poses[1].z.c[0]
+        along = (-e.real, -e.imag, -cross(away, e), e.real, e.imag, cross(arm, e))
+        across = (e.imag, -e.real, -cross(away, 1j * e), -e.imag, e.real, cross(arm, 1j * e))
+        m = ends[1].measure
+        return across, (*along[:2], along[2] - m, *along[3:5], along[5] + m), along
+
+    def centre(self, ends: Ends, poses: Poses) -> Point:
+        """The pitch point, where the wheel touches the line."""
+        m = ends[1].measure
+        place = poses[1].at(ends[1].point).c[0] - 1j * poses[0].carry(ends[0]).along.c[0] * m
+        return Point(-place.real / m, -place.imag / m, -1.0 / m)
+
+    def generic(self, rng: np.random.Generator) -> Ends:
+        """A line in a random direction with a wheel somewhere on it."""
+        angle = rng.uniform(0.0, TURN)
+        along = complex(np.cos(angle), np.sin(angle))
+        start, travel = complex(*rng.standard_normal(2)), rng.standard_normal()
+        across = self.side * rng.uniform(0.5, 2.0)
+        return End(start, along, travel), End(start + along * (travel + 1j * across), None, across)
+
+    @property
+    def pitch(self) -> float:
+        """The distance of teeth along the line; 0 where there are none."""
+        return 0.0
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The part of the line on which the wheel rolls, and the wheel."""
+        line, wheel = ends
+        low, high = reach(self.coordinate(ends, poses).c[0])
+        radius = abs(float(wheel.measure))
+        track = Track(0, line.point, line.along.c[0], low, high, float(self.side), self.pitch)
+        teeth = round(2.0 * np.pi * radius / self.pitch) if self.pitch else 0
+        return track, Disc(1, wheel.point, radius, teeth)
+
+
+def radius_problems(where: str, key: str, radius: Number | None) -> Iterator[Problem]:
+    """The problem of a radius, or another length or number, that is not positive."""
+    if radius is not None and not np.all(np.asarray(radius) > 0):
+        shown = f"{radius:g}" if np.ndim(radius) == 0 else str(np.asarray(radius).tolist())
+        yield Problem(f"{where}.{key}", f"{shown} is not positive", "give the size of the wheel")

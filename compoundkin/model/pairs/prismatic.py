@@ -1,0 +1,216 @@
+"""The prismatic pair: a block that slides along a straight guide without turning in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series, cross, dot
+from compoundkin.model.fields import Key
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.model.pairs.symbols import Mark, Sliding, reach
+
+
+@dataclass(frozen=True, eq=False)
+class Prismatic(Pair):
+    """The link `link` slides on the link `on`: its point `at` runs along a guide.
+
+    The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x
+    axis of `on`) or toward the point `toward`, moved `offset` to the left of that direction. The x axis of
+    the block is turned by `turn` from the guide. Where both links are given as drawn, `offset` and `turn`
+    are read off the drawing unless they are stated (`turn` only where the block shows two points).
+
+    Held: the distance of `at` from the guide; the sine of the angle between block and guide. Free: the
+    displacement from `through` to `at` along the guide.
+    """
+
+    name: str
+    link: str
+    on: str
+    at: str
+    through: str
+    angle: Number = 0.0
+    toward: str | None = None
+    offset: Number | None = None
+    turn: Number | None = None
+
+    code: ClassVar[str] = "P"
+    title: ClassVar[str] = "prismatic pair"
+    held: ClassVar[int] = 2
+    free: ClassVar[tuple[str, ...]] = ("displacement",)
+    free_is_angle: ClassVar[bool] = False
+    is_simple: ClassVar[bool] = True
+    table: ClassVar[str] = "slides"
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
+        Key("link", "name", "The link that slides (the block).", required=True),
+        Key("on", "name", "The link that carries the guide.", required=True),
+        Key(
+            "at",
+            "name",
+            "The point of the sliding link that runs along the guide; may be left out if the link has one point.",
+        ),
+        Key("through", "name", "A point of the guiding link on the guide.", required=True),
+        Key("angle", "angle", "Direction of the guide from the x axis of the guiding link.", default=0.0),
+        Key("toward", "name", "A second point of the guiding link on the guide, instead of an angle."),
+        Key("offset", "length", "Distance by which the guide lies to the left of `through`.", default=None),
+        Key("turn", "angle", "Angle from the guide to the x axis of the sliding link.", default=None),
+    )
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The guiding link and the sliding link."""
+        return self.on, self.link
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The point that slides and those that fix the guide."""
+        return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Unknown links and points, a link that slides on itself or is pinned to its guide."""
+        missing = [(key, name) for key, name in (("link", self.link), ("on", self.on)) if name not in links]
+        for key, name in missing:
+            yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, list(links)))
+        if missing:
+            return
+        if self.link == self.on:
+            yield Problem(
+                f"{where}.on", f"{self.link!r} cannot slide on itself", "name the link that carries the guide"
+            )
+        wanted = [("at", self.link, self.at), ("through", self.on, self.through)]
+        if self.toward is not None:
+            wanted.append(("toward", self.on, self.toward))
+        for key, link, point in wanted:
+            if not point:
+                yield Problem(
+                    f"{where}.{key}",
+                    f"link {link!r} has several points",
+                    f"name the one that slides: {', '.join(links[link])}",
+                )
+            elif point not in links[link]:
+                yield Problem(
+                    f"{where}.{key}", f"link {link!r} has no point {point!r}", nearest(point, list(links[link]))
+                )
+        if self.toward is not None and self.toward == self.through:
+            yield Problem(f"{where}.toward", f"a guide from {self.through!r} to itself has no direction")
+
+    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Prismatic:
+        """With the block's only point as the one that slides, where none is named."""
+        points = links.get(self.link, ())
+        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
+
+    def ends(self, geometry: Geometry) -> Ends:
+        """Guide point and direction on each link; the two directions are parallel when the pair is closed."""
+        start = geometry.points[self.on][self.through]
+        if self.toward is None:
+            guide = np.cos(self.angle) + 1j * np.sin(self.angle)
+        else:
+            line = geometry.points[self.on][self.toward] - start
+            if not np.all(np.abs(line) > 0):
+                what = f"{self.through!r} and {self.toward!r} are at one place, so that the guide has no direction"
+                raise InvalidMechanism(Problem(f"{self.name}.toward", what, "name another point or give an angle"))
+            guide = line / np.abs(line)
+        point = geometry.points[self.link][self.at]
+        offset, turn = self.offset, self.turn
+        along: Number = 1 + 0j if turn is None else np.cos(turn) - 1j * np.sin(turn)
+        if {self.on, self.link} <= geometry.as_drawn and self.on in geometry.drawn:
+            seen = geometry.drawn[self.on].u.c[0] * guide
+            if turn is None and self.link in geometry.drawn:
+                along = np.conjugate(geometry.drawn[self.link].u.c[0]) * seen
+            if offset is None:
+                offset = (np.conjugate(seen) * (geometry.sketch[self.at] - geometry.sketch[self.through])).imag
+        if offset is not None:
+            start = start + 1j * guide * offset
+        return End(start, guide), End(point, along)
+
+    def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
+        """Distance from the guide, sine of the angle to it."""
+        guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
+        return guide.along.cross(block.point - guide.point), guide.along.cross(block.along)
+
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
+        """The displacement along the guide."""
+        guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
+        return guide.along.dot(block.point - guide.point)
+
+    def drawn_coordinate(self, sketch: Mapping[str, Number]) -> Number | None:
+        """The displacement from `through` to `at`, taken to be forward along the guide."""
+        if self.at not in sketch or self.through not in sketch:
+            return None
+        across = 0.0 if self.offset is None else self.offset
+        return np.sqrt(np.maximum(np.abs(sketch[self.at] - sketch[self.through]) ** 2 - across**2, 0.0))
+
+    def jacobian(self, ends: Ends, poses: Poses) -> Number:
+        """Rows of distance, angle and displacement."""
+        guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
+        e = guide.along.c[0]
+        gap = (block.point - guide.point).c[0]
+        arm0 = (poses[0].u * ends[0].point).c[0]
+        arm1 = (poses[1].u * ends[1].point).c[0]
+        # d(gap)/d(theta of the guide) = -i arm0, d(e)/d(theta of the guide) = i e
+        across = cross(1j * e, gap) + cross(e, -1j * arm0)
+        along = dot(1j * e, gap) + dot(e, -1j * arm0)
+        aligned = dot(e, block.along.c[0])
+        return table(
+            (e.imag, -e.real, across, -e.imag, e.real, cross(e, 1j * arm1)),
+            (0.0, 0.0, -aligned, 0.0, 0.0, aligned),
+            (-e.real, -e.imag, along, e.real, e.imag, dot(e, 1j * arm1)),
+        )
+
+    def centre(self, ends: Ends, poses: Poses) -> Point:
+        """At infinity, at right angles to the guide."""
+        guide = poses[0].carry(ends[0]).along.c[0]
+        return Point(-guide.imag, guide.real, 0.0)
+
+    def placed(self, ends: Ends, free: Series) -> Pose:
+        """The block moved along the guide by the given displacement."""
+        guide, block = ends
+        u = guide.along * block.along.conj()
+        return Pose(free * guide.along + guide.point - u * block.point, u, u.angle())
+
+    def generic(self, rng: np.random.Generator) -> Ends:
+        """A guide in a random direction with the block somewhere along it."""
+        angle = rng.uniform(0.0, 2.0 * np.pi)
+        guide = complex(np.cos(angle), np.sin(angle))
+        start = complex(*rng.standard_normal(2))
+        return End(start, guide), End(start + guide * rng.standard_normal(), guide)
+
+    def upright(self, ends: Ends, poses: Poses) -> Number:
+        """Whether the guide does not lie in its block the wrong way round, which the sine alone does not see."""
+        guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
+        return guide.along.dot(block.along).c[0] > 0
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """A block on the part of its guide that it uses."""
+        guide, block = ends
+        low, high = reach(self.coordinate(ends, poses).c[0])
+        return (Sliding(guide.point, guide.along.c[0], low, high, block.point, block.along.c[0]),)
+
+
+def slide(
+    link: str,
+    *,
+    on: str,
+    through: str,
+    at: str = "",
+    angle: Number = 0.0,
+    toward: str | None = None,
+    offset: Number | None = None,
+    turn: Number | None = None,
+    name: str = "",
+) -> Prismatic:
+    """A prismatic pair: the point `at` of `link` runs along a straight guide on the link `on`.
+
+    `angle` and `turn` in radians, `offset` a length; numbers or arrays. See `Prismatic` for their meaning.
+
+    >>> slide("block", on="bar", at="C", through="F").name
+    'block/bar'
+    """
+    return Prismatic(name or f"{link}/{on}", link, on, at, through, angle, toward, offset, turn)

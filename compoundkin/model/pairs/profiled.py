@@ -1,0 +1,110 @@
+"""What cam pairs have in common: a profile that leads a roller, a knife edge or a flat face."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.curves import Curve
+from compoundkin.base.curves.undercut import spans
+from compoundkin.base.series import Number
+from compoundkin.model.pairs.contact import Contact
+from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.profiles import Profile
+
+# A roller that cuts into the profile elsewhere by this part of the profile's size would touch there first; less is
+# rounding where it touches twice.
+CUTS = 1e-7
+
+
+class Profiled(Contact):
+    """A contact with a profile of the link `on`."""
+
+    leads: ClassVar[bool] = True
+    is_flat: ClassVar[bool]  # whether a flat face touches, which has no pitch curve
+
+    profile: Profile
+
+    @property
+    def curve(self) -> Curve:
+        """The profile as a curve."""
+        return self.profile.curve
+
+    @property
+    def outward(self) -> float:
+        """+1 where the follower is on the side to which the curve's normal points, else -1."""
+        raise NotImplementedError
+
+    @property
+    def spread(self) -> float:
+        """The size of the profile for a displacement along a face; else the part of the parameter for a radian."""
+        return self.curve.size if self.is_flat else (self.curve.high - self.curve.low) / (2.0 * np.pi)
+
+    @property
+    def has_ends(self) -> bool:
+        """Whether the profile is open."""
+        return not self.curve.closed
+
+    @property
+    def extent(self) -> float:
+        """The diagonal of the box around the profile."""
+        return self.curve.size
+
+    @property
+    def roller(self) -> float:
+        """The radius of the roller, of several designs the greatest; 0 without one."""
+        return 0.0
+
+    @abstractmethod
+    def parameter(self, ends: Ends, poses: Poses) -> Number:
+        """The parameter of the profile at the contact."""
+
+    @abstractmethod
+    def led(self, ends: Ends, poses: Poses) -> Number:
+        """The point of the follower that is led: the roller's middle or the edge; of a flat face the contact."""
+
+    @cached_property
+    def hollows(self) -> tuple[tuple[float, float], ...]:
+        """The spans of the parameter where a hollow is narrower than the roller, or under a flat face."""
+        curve = self.curve
+        if self.is_flat:
+            return spans(curve.samples, curve.low, curve.high, lambda s: CUTS + self._bend(s))
+        return curve.undercut(self.outward * self.roller) if self.roller else ()
+
+    @cached_property
+    def bridged(self) -> tuple[tuple[float, float], ...]:
+        """The spans of the parameter that are not touched, because the follower touches before and behind them."""
+        curve = self.curve
+        if self.is_flat:
+            return spans(curve.samples, curve.low, curve.high, self._above_face)
+        return spans(curve.samples, curve.low, curve.high, self._beside_roller) if self.roller else ()
+
+    def stretch(self, ends: Ends, poses: Poses) -> Number:
+        """Between which of the places where the profile's derivatives jump, or the contact leaps, it is."""
+        return self.curve.stretch(self.parameter(ends, poses), self._leaps)
+
+    @cached_property
+    def _leaps(self) -> tuple[float, ...]:
+        """Parameters that the contact leaps over."""
+        return tuple(float(self.curve.wrapped(0.5 * (a + b))) for a, b in self.bridged)
+
+    def _bend(self, s: Number) -> Number:
+        """The curvature by the profile's size, negative in a hollow."""
+        return self.outward * self.curve.curvature(s) * self.curve.size
+
+    def _above_face(self, s: Number) -> Number:
+        """How little a face that touched here would cut into the profile elsewhere."""
+        curve = self.curve
+        normal = curve.normal(s).c[0] * self.outward
+        farther = curve.at(curve.support(normal)).c[0] - curve.at(s).c[0]
+        return CUTS * curve.size - (farther.real * normal.real + farther.imag * normal.imag)
+
+    def _beside_roller(self, s: Number) -> Number:
+        """How little a roller that touched here would cut into the profile elsewhere."""
+        curve = self.curve
+        middle = curve.at(s).c[0] + curve.normal(s).c[0] * self.outward * self.roller
+        nearer = np.abs(middle - curve.at(curve.foot(middle).c[0]).c[0])
+        return CUTS * curve.size - (self.roller - nearer)

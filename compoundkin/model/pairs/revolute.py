@@ -1,0 +1,98 @@
+"""The revolute pair: two links pinned at a point that both carry under the same letter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.errors import Problem
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series, as_series
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.model.pairs.symbols import Mark, Pin
+
+
+@dataclass(frozen=True)
+class Revolute(Pair):
+    """A pin at the letter `at` between the links `first` and `second`.
+
+    Held: the distance in x and in y between the two sides of the pin. Free: the angle from first to second.
+    """
+
+    name: str
+    at: str
+    first: str
+    second: str
+
+    code: ClassVar[str] = "R"
+    title: ClassVar[str] = "revolute pair"
+    held: ClassVar[int] = 2
+    free: ClassVar[tuple[str, ...]] = ("angle",)
+    free_is_angle: ClassVar[bool] = True
+    is_simple: ClassVar[bool] = True
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The two links."""
+        return self.first, self.second
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The letter of the pin."""
+        return (self.at,)
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Nothing can be wrong: a pin exists only where two links share a letter."""
+        return iter(())
+
+    def ends(self, geometry: Geometry) -> Ends:
+        """The pin on each link."""
+        return End(geometry.points[self.first][self.at]), End(geometry.points[self.second][self.at])
+
+    def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
+        """Gap in x, gap in y."""
+        gap = poses[1].at(ends[1].point) - poses[0].at(ends[0].point)
+        return gap.real, gap.imag
+
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
+        """The angle from the first link to the second."""
+        first, second = poses
+        if first.theta is not None and second.theta is not None:
+            return second.theta - first.theta
+        return (second.u * first.u.conj()).angle()
+
+    def jacobian(self, ends: Ends, poses: Poses) -> Number:
+        """Rows of gap x, gap y and angle."""
+        arm = [(pose.u * end.point).c[0] for pose, end in zip(poses, ends, strict=True)]
+        return table(
+            (-1.0, 0.0, arm[0].imag, 1.0, 0.0, -arm[1].imag),
+            (0.0, -1.0, -arm[0].real, 0.0, 1.0, arm[1].real),
+            (0.0, 0.0, -1.0, 0.0, 0.0, 1.0),
+        )
+
+    def centre(self, ends: Ends, poses: Poses) -> Point:
+        """The pin."""
+        pin = poses[0].at(ends[0].point).c[0]
+        return Point(pin.real, pin.imag, 1.0)
+
+    def placed(self, ends: Ends, free: Series) -> Pose:
+        """The second link turned about the pin by the given angle."""
+        u = free.turn()
+        return Pose(Pose(as_series(ends[0].point), u).at(-ends[1].point), u, free)
+
+    def generic(self, rng: np.random.Generator) -> Ends:
+        """A pin at a random place."""
+        pin = complex(*rng.standard_normal(2))
+        return End(pin), End(pin)
+
+    def driven_by(self, link: str) -> int:
+        """The angle of the driven link from the other one."""
+        return 1 if link == self.second else -1
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """A pin."""
+        return (Pin(0, ends[0].point),)

@@ -1,0 +1,116 @@
+"""The rolling pair: a wheel that rolls without slip on a straight line of another link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from compoundkin.base.errors import Problem
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.model.fields import Key
+from compoundkin.model.pairs.contract import Ends, Poses, table
+from compoundkin.model.pairs.pitch_line import OnLine, radius_problems
+
+
+@dataclass(frozen=True, eq=False)
+class Rolling(OnLine):
+    """The link `link`, a wheel about its point `at`, rolls without slip along a straight line of the link `on`.
+
+    The line runs through the point `through` of `on`, in the direction `angle` (radians, from the x axis of `on`) or
+    toward the point `toward`; the wheel is to its left where `side` is +1, to its right where it is -1. `phase` is the
+    displacement from `through` where the wheel's angle from `on` is zero; it is read off a drawing that shows both
+    links, or zero.
+
+    Held: the distance of the wheel's middle from the line; ``displacement + side * radius * angle - phase``. Free: the
+    displacement of the middle along the line. Points of the wheel run on cycloids: e.g. E. A. Lockwood, A Book of
+    Curves, chapter 9.
+    """
+
+    name: str
+    link: str
+    on: str
+    through: str
+    at: str = ""
+    angle: Number = 0.0
+    toward: str | None = None
+    radius: Number = 1.0
+    side: int = 1
+    phase: Number | None = None
+
+    code: ClassVar[str] = "L"
+    title: ClassVar[str] = "rolling pair"
+    held: ClassVar[int] = 2
+    table: ClassVar[str] = "rollings"
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
+        Key("link", "name", "The link with the wheel.", required=True),
+        Key("on", "name", "The link with the line.", required=True),
+        Key("through", "name", "A point of the link `on` on the line.", required=True),
+        Key("at", "name", "The middle of the wheel; may be left out if its link has one point."),
+        Key("angle", "angle", "Direction of the line from the x axis of its link.", default=0.0),
+        Key("toward", "name", "A second point of the line, instead of an angle."),
+        Key("radius", "length", "Radius of the wheel.", required=True),
+        Key("side", "sign", "1 where the wheel is to the left of the line, -1 to the right.", default=1),
+        Key("phase", "length", "Displacement where the wheel's angle is zero.", default=None),
+    )
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The link with the line and the wheel."""
+        return self.on, self.link
+
+    @property
+    def size(self) -> Number:
+        """The radius."""
+        return self.radius
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Unknown links and points, a radius that is none."""
+        yield from self.line_problems(links, where, {"link": self.link, "on": self.on})
+        yield from radius_problems(where, "radius", self.radius)
+
+    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Rolling:
+        """With the only point of the wheel as its middle, where none is named."""
+        points = links.get(self.link, ())
+        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
+
+    def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
+        """The distance from the line but for the radius, and the slip."""
+        return self.distance(ends, poses), self.slip(ends, poses)
+
+    def jacobian(self, ends: Ends, poses: Poses) -> Number:
+        """Rows of distance, slip and displacement."""
+        return table(*self.rows(ends, poses))
+
+    def placed(self, ends: Ends, free: Series) -> Pose:
+        """The wheel's middle moved along the line by the given displacement, and turned as it rolls."""
+        line, wheel = ends
+        across = wheel.measure
+        theta = (line.measure - free) / across
+        u = theta.turn()
+        return Pose(free * line.along + (line.point + 1j * line.along * across) - u * wheel.point, u, theta)
+
+
+def roll(
+    link: str,
+    *,
+    on: str,
+    through: str,
+    radius: Number,
+    at: str = "",
+    angle: Number = 0.0,
+    toward: str | None = None,
+    side: int = 1,
+    phase: Number | None = None,
+    name: str = "",
+) -> Rolling:
+    """A rolling pair: the wheel `link`, about its point `at`, rolls along a straight line of the link `on`.
+
+    `angle` in radians, `radius` and `phase` lengths; numbers or arrays. See `Rolling` for their meaning.
+
+    >>> roll("wheel", on="frame", through="O", at="C", radius=2).name
+    'wheel/frame'
+    """
+    return Rolling(name or f"{link}/{on}", link, on, through, at, angle, toward, radius, side, phase)

@@ -1,0 +1,203 @@
+"""The circular rolling pair: a wheel that rolls without slip outside or inside a circle of another link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from compoundkin.base.errors import Problem
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.model.fields import Key
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contact import named_problems
+from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.model.pairs.pitch_line import TURN, radius_problems
+from compoundkin.model.pairs.symbols import Disc, Mark
+
+
+@dataclass(frozen=True, eq=False)
+class RollingOnCircle(Pair):
+    """The link `link`, a wheel about its point `at`, rolls without slip on a circle of the link `on`.
+
+    The circle is that of radius `circle` about the point `centre_at` of `on`; the wheel rolls outside it, or `inside`
+    where it is a ring. With the direction of the line of centres and the wheel's angle both taken from `on`,
+    ``angle = k * direction + phase`` where k is ``1 + circle / radius`` outside, ``1 - circle / radius`` inside;
+    `phase` is read off a drawing that shows both links, or zero.
+
+    Held: the gap, in x and y, between the wheel's middle and where its angle puts it. Free: the direction of the line
+    of centres. Points of the wheel run on epi- and hypocycloids: e.g. E. A. Lockwood, A Book of Curves, chapter 17.
+    """
+
+    name: str
+    link: str
+    on: str
+    centre_at: str
+    at: str = ""
+    circle: Number = 2.0
+    radius: Number = 1.0
+    inside: bool = False
+    phase: Number | None = None
+
+    code: ClassVar[str] = "O"
+    title: ClassVar[str] = "circular rolling pair"
+    held: ClassVar[int] = 2
+    free: ClassVar[tuple[str, ...]] = ("direction",)
+    free_is_angle: ClassVar[bool] = True
+    counts_turns: ClassVar[bool] = True
+    table: ClassVar[str] = "circular_rollings"
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
+        Key("link", "name", "The link with the wheel.", required=True),
+        Key("on", "name", "The link with the circle.", required=True),
+        Key("centre_at", "name", "The point of the link `on` about which the circle is.", required=True),
+        Key("at", "name", "The middle of the wheel; may be left out if its link has one point."),
+        Key("circle", "length", "Radius of the circle on which the wheel rolls.", required=True),
+        Key("radius", "length", "Radius of the wheel.", required=True),
+        Key("inside", "flag", "Whether the wheel rolls inside the circle.", default=False),
+        Key("phase", "angle", "Angle of the wheel where the direction of the line of centres is zero.", default=None),
+    )
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The link with the circle and the wheel."""
+        return self.on, self.link
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The middles of wheel and circle."""
+        return self.at, self.centre_at
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Unknown links and points, radii that are none, a wheel that is not smaller than the ring around it."""
+        points = {"at": (self.link, self.at), "centre_at": (self.on, self.centre_at)}
+        yield from named_problems(links, where, {"link": self.link, "on": self.on}, points)
+        for key in ("circle", "radius"):
+            yield from radius_problems(where, key, getattr(self, key))
+        if self.inside and not np.all(np.asarray(self.radius) < np.asarray(self.circle)):
+            what = "a wheel inside a circle is not smaller than it"
+            yield Problem(f"{where}.radius", what, "make it smaller, or leave `inside` out")
+
+    def completed(self, links: Mapping[str, tuple[str, ...]]) -> RollingOnCircle:
+        """With the only point of the wheel as its middle, where none is named."""
+        points = links.get(self.link, ())
+        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
+
+    @property
+    def _turns(self) -> Number:
+        """How far the wheel turns for a turn of the line of centres."""
+        return 1.0 + self.circle / (-self.radius if self.inside else self.radius)
+
+    def ends(self, geometry: Geometry) -> Ends:
+        """The circle's middle, with the way from there to the wheel's at direction zero, and the phase; the wheel."""
+        distance = self.circle + (-self.radius if self.inside else self.radius)
+        wheel = End(geometry.points[self.link][self.at], None, self._turns)
+        return End(geometry.points[self.on][self.centre_at], distance + 0j, self._phase(geometry)), wheel
+
+    def _phase(self, geometry: Geometry) -> Number:
+        """The phase of the drawing; one that is stated is brought within half a turn of it; or zero."""
+        if any(name not in geometry.drawn for name in self.members):
+            return 0.0 if self.phase is None else self.phase
+        on, wheel = (geometry.drawn[name] for name in self.members)
+        line = wheel.at(geometry.points[self.link][self.at]) - on.at(geometry.points[self.on][self.centre_at])
+        turned = (wheel.angle - on.angle).c[0]
+        drawn = turned - self._turns * np.angle((line * on.u.conj()).c[0])
+        return drawn if self.phase is None else self.phase + TURN * np.round((drawn - self.phase) / TURN)
+
+    def turned(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+        """A phase that the drawing gave follows the turns of circle and wheel since."""
+        if any(name not in geometry.drawn for name in self.members):
+            return ends
+        return ends[0]._replace(measure=ends[0].measure + TURN * (turns[1] - turns[0])), ends[1]
+
+    def rounded(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
+        """A phase that the drawing gave belongs to the line of centres after the turns it has made."""
+        if self.phase is not None or any(name not in geometry.drawn for name in self.members):
+            return ends
+        return ends[0]._replace(measure=ends[0].measure - TURN * turns * ends[1].measure), ends[1]
+
+    def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
+        """The gap in x and y between the wheel's middle and where its angle puts it."""
+        on = poses[0].carry(ends[0])
+        gap = poses[1].at(ends[1].point) - on.point - on.along * self.coordinate(ends, poses).turn()
+        return gap.real, gap.imag
+
+    def coordinate(self, ends: Ends, poses: Poses) -> Series:
+        """The direction of the line of centres that the wheel's angle tells, full turns counted."""
+        turned: Series = poses[1].angle - poses[0].angle - ends[0].measure
+        direction: Series = turned / ends[1].measure
+        return direction
+
+    def jacobian(self, ends: Ends, poses: Poses) -> Number:
+        """Rows of the gap in x and y, and of the direction."""
+        line = self._line(ends, poses)
+        arms = [pose.at(end.point).c[0] - pose.z.c[0] for pose, end in zip(poses, ends, strict=True)]
+        slow = 1.0 / ends[1].measure
+        first, second = -1j * arms[0] - 1j * line * (1.0 - slow), 1j * arms[1] - 1j * line * slow
+        return table(
+            (-1.0, 0.0, first.real, 1.0, 0.0, second.real),
+            (0.0, -1.0, first.imag, 0.0, 1.0, second.imag),
+            (0.0, 0.0, -slow, 0.0, 0.0, slow),
+        )
+
+    def _line(self, ends: Ends, poses: Poses) -> Number:
+        """The way from the middle of the circle to where the wheel's angle puts its own."""
+        turn: Number = self.coordinate(ends, poses).turn().c[0]
+        return poses[0].carry(ends[0]).along.c[0] * turn
+
+    def centre(self, ends: Ends, poses: Poses) -> Point:
+        """Where the wheel touches the circle."""
+        k = ends[1].measure
+        # between the middles where they are, so that it does not take turns counted
+        middle, axis = (pose.at(end.point).c[0] for pose, end in zip(poses, ends, strict=True))
+        place = middle / k + axis * (1.0 - 1.0 / k)
+        return Point(place.real * k, place.imag * k, k)
+
+    def placed(self, ends: Ends, free: Series) -> Pose:
+        """The wheel where the line of centres has the given direction."""
+        on, wheel = ends
+        theta = free * wheel.measure + on.measure
+        u = theta.turn()
+        return Pose(free.turn() * on.along + on.point - u * wheel.point, u, theta)
+
+    def generic(self, rng: np.random.Generator) -> Ends:
+        """A random circle and wheel."""
+        middle, line = complex(*rng.standard_normal(2)), complex(*rng.standard_normal(2))
+        return End(middle, line, 0.0), End(middle + line, None, rng.uniform(1.5, 4.0))
+
+    def driven_by(self, link: str) -> int:
+        """The direction as seen from the link that does not have the driver."""
+        return 1 if link == self.link else -1
+
+    def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
+        """The circle, as a ring where the wheel is inside, and the wheel."""
+        distance, turns = float(abs(ends[0].along.c[0])), float(ends[1].measure)
+        # turns = 1 + circle / radius, negative radius inside; the distance is their sum
+        radius = distance / turns
+        circle = Disc(0, ends[0].point, distance - radius, 0, self.inside)
+        return circle, Disc(1, ends[1].point, abs(radius))
+
+
+def roll_around(
+    link: str,
+    *,
+    on: str,
+    centre_at: str,
+    circle: Number,
+    radius: Number,
+    at: str = "",
+    inside: bool = False,
+    phase: Number | None = None,
+    name: str = "",
+) -> RollingOnCircle:
+    """A circular rolling pair: the wheel `link` rolls on the circle of radius `circle` about a point of `on`.
+
+    `inside=True` where the circle is a ring around the wheel; `phase` in radians. See `RollingOnCircle`.
+
+    >>> roll_around("planet", on="frame", centre_at="O", at="P", circle=4, radius=2, inside=True).letters
+    ('P', 'O')
+    """
+    return RollingOnCircle(name or f"{link}/{on}", link, on, centre_at, at, circle, radius, inside, phase)

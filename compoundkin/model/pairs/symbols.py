@@ -1,0 +1,134 @@
+"""What a pair is drawn as: marks on its members, in the members' own frames, without any size on paper.
+
+A pair tells what there is to see of it (`Pair.glyph`); `drawing/` decides what that looks like.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.series import Number
+
+# A circle is given by so many points: its chords are then within 0.1 % of its radius.
+AROUND = 72
+
+
+class Pin(NamedTuple):
+    """A pin at a point of a member."""
+
+    member: int
+    at: Number
+
+
+class Stud(NamedTuple):
+    """A pin that runs in a groove, or a knife edge on a profile."""
+
+    member: int
+    at: Number
+
+
+class Sliding(NamedTuple):
+    """A straight guide on the first member, used from `low` to `high` as seen from `at`; a block on the second one.
+
+    `turn` is the direction of the guide as the sliding member carries it.
+    """
+
+    at: Number
+    along: Number
+    low: float
+    high: float
+    block: Number
+    turn: Number
+
+
+class Groove(NamedTuple):
+    """The middle line of a groove in a member, an array of points."""
+
+    member: int
+    line: Number
+
+
+class Disc(NamedTuple):
+    """A wheel, a pulley, a roller; one with `teeth` is a gear and shows its pitch circle, `is_ring` an internal one."""
+
+    member: int
+    at: Number
+    radius: Number
+    teeth: int = 0
+    is_ring: bool = False
+
+
+class Track(NamedTuple):
+    """A straight side of a member, used from `low` to `high` as seen from `at`: a rack, a road, a flat face.
+
+    What runs on it is to the left of `along` where `side` is +1. `pitch` is the distance of teeth, 0 if there are none.
+    """
+
+    member: int
+    at: Number
+    along: Number
+    low: float
+    high: float
+    side: float
+    pitch: float = 0.0
+
+
+class Strap(NamedTuple):
+    """A belt, chain or cable as a closed line, in a member's frame."""
+
+    member: int
+    line: Number
+
+
+class Outline(NamedTuple):
+    """A profile of a member, an array of points; a hollow one has its material outside, as a ring."""
+
+    member: int
+    line: Number
+    closed: bool
+    is_hollow: bool = False
+
+
+Mark: TypeAlias = Pin | Stud | Sliding | Groove | Disc | Track | Strap | Outline
+
+
+def reach(values: Number) -> tuple[float, float]:
+    """The least and the greatest of the values that are known; zeros where none is.
+
+    >>> reach(np.array([2.0, np.nan, 1.0]))
+    (1.0, 2.0)
+    """
+    known = np.ravel(values)
+    known = known[np.isfinite(known)]
+    return (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
+
+
+def arc_line(centre: Number, radius: Number, start: float, stop: float) -> Number:
+    """Points of an arc between two angles (radians), counterclockwise where stop is the greater one.
+
+    >>> arc_line(0j, 1.0, 0.0, np.pi).round(6)[[0, -1]].tolist()
+    [(1+0j), (-1+0j)]
+    """
+    count = max(2, int(np.ceil(abs(stop - start) / (2.0 * np.pi) * AROUND)) + 1)
+    return centre + radius * np.exp(1j * np.linspace(start, stop, count))
+
+
+def strap_line(centres: tuple[complex, complex], radii: tuple[float, float], crossed: bool) -> Number:
+    """A belt around two pulleys: the common tangents, the inner ones where it is crossed, and the arcs between them.
+
+    >>> strap_line((0j, 4 + 0j), (1.0, 1.0), False).imag.max().round(6)
+    np.float64(1.0)
+    """
+    line = centres[1] - centres[0]
+    toward = float(np.angle(line))
+    cosine = (radii[0] + radii[1] if crossed else radii[0] - radii[1]) / abs(line)
+    half = float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    around = arc_line(centres[0], radii[0], toward + half, toward + 2.0 * np.pi - half)
+    if crossed:
+        # from the lower side of the first pulley to the upper side of the second, and around it clockwise
+        other = arc_line(centres[1], radii[1], toward + np.pi - half, toward - np.pi + half)
+    else:
+        other = arc_line(centres[1], radii[1], toward - half, toward + half)
+    return np.concatenate([around, other, around[:1]])

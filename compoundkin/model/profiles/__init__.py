@@ -1,0 +1,20 @@
+"""Profiles of cams and curved slots as they are written, one file per kind.
+
+Coordinates are those of the link that carries the profile. What they have in common is their `curve`.
+"""
+
+from compoundkin.model.profiles.contract import Profile, side_of
+from compoundkin.model.profiles.disc import Disc, disc
+from compoundkin.model.profiles.formula import Formula, formula
+from compoundkin.model.profiles.points import Points, profile
+from compoundkin.model.profiles.synthesised import Synthesised, synthesise
+
+KINDS: tuple[type[Profile], ...] = (Disc, Points, Formula, Synthesised)
+
+# Those that a mechanism file can hold, by their name there.
+WRITTEN: dict[str, type[Profile]] = {kind.kind: kind for kind in KINDS if kind.keys}
+
+__all__ = [
+    "KINDS", "WRITTEN", "Disc", "Formula", "Points", "Profile", "Synthesised",
+    "disc", "formula", "profile", "side_of", "synthesise",
+]  # fmt: skip

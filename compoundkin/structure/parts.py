@@ -1,0 +1,186 @@
+"""What `decompose` finds: composite links, Assur groups in solving order, mobility, loops and faults."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from compoundkin.base.display import ShowsPicture
+from compoundkin.base.poses import Pose
+from compoundkin.model.elements import Drive
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+    from compoundkin.structure.loops import Loop
+    from compoundkin.structure.mobility import Mobility
+    from compoundkin.synthesis.chains import ChainName
+
+# So many groups are named where a structure is printed.
+SHOWN_GROUPS = 12
+
+
+@dataclass(frozen=True)
+class DrivenPair:
+    """One driven pair inside a composite link: `link` is placed from `parent` by the driver's value.
+
+    A passive freedom, such as the spin of a roller, is held at zero as by a driver that nobody wrote: `is_passive`.
+    """
+
+    drive: Drive
+    pair: Pair
+    parent: str
+    link: str
+    is_passive: bool = False
+
+
+@dataclass(frozen=True)
+class Body:
+    """A composite link: links joined by driven pairs, `links[0]` the base, `driven` leading out from it.
+
+    Most bodies are a single link.
+    """
+
+    links: tuple[str, ...]
+    driven: tuple[DrivenPair, ...] = ()
+
+
+@dataclass(frozen=True)
+class Group:
+    """An Assur group: its bodies, its inner pairs and the outer pairs that attach it to what is solved.
+
+    `name` is the pairs' letters (RRR, RRP ...; inner and outer letters for a larger group). A dyad's
+    `bodies[k]` carries `outer[k]`. A pair's members are links; an outer pair has one member in the group.
+    """
+
+    bodies: tuple[Body, ...]
+    inner: tuple[Pair, ...]
+    outer: tuple[Pair, ...]
+    name: str
+    class_: int
+    order: int
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """All its links."""
+        return tuple(link for body in self.bodies for link in body.links)
+
+    @property
+    def uses(self) -> tuple[str, ...]:
+        """The links outside that it is attached to, in the order of its outer pairs."""
+        own = set(self.links)
+        known = [link for pair in (*self.outer, *self.inner) for link in pair.members if link not in own]
+        return tuple(dict.fromkeys(known))
+
+
+@dataclass(frozen=True)
+class Passive:
+    """A freedom that moves nothing else: `link` may turn about the pin `at` on the link `on`, as a roller does."""
+
+    link: str
+    on: str
+    at: str
+
+    def __str__(self) -> str:
+        return f"{self.link} may turn about {self.at} on {self.on} without moving anything else"
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A part that is over- or under-constrained: which links, by how much, and what to add or remove."""
+
+    kind: str  # "over", "under"
+    links: tuple[str, ...]
+    amount: int
+    text: str
+    remedy: str
+
+
+@dataclass(frozen=True)
+class Dropped:
+    """Part of a pair that is left out when a mechanism is solved, since the other pairs hold it already.
+
+    `name` is the letter of a pin, taken off there are the links `off`, all of one body; or the name of a written
+    pair. What it still holds is the pair `kept`, None where that is nothing; `freed` says in words what is left out.
+    """
+
+    name: str
+    off: tuple[str, ...]
+    kept: Pair | None
+    freed: str
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.freed}"
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """What is dropped of a mechanism that moves though it is overconstrained; an assembled pose by points and links.
+
+    The pose is the drawn one made exact, or one that was found where nothing is drawn.
+    """
+
+    dropped: tuple[Dropped, ...]
+    places: Mapping[str, complex] = field(default_factory=dict)
+    poses: Mapping[str, Pose] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Structure(ShowsPicture):
+    """A mechanism taken apart: the frame with its driven links, then the Assur groups in solving order.
+
+    `pairs` lists every pair, a multiple pin of k links as k - 1 of them. Where `faults` is not empty the
+    mechanism cannot be solved, and `groups` holds what could be decomposed. Where there is a `relaxation`, part of
+    some pairs is left out in the groups.
+    """
+
+    mechanism: Mechanism
+    pairs: tuple[Pair, ...]
+    ground: Body
+    groups: tuple[Group, ...]
+    mobility: Mobility
+    faults: tuple[Fault, ...]
+    passive: tuple[Passive, ...] = ()
+    relaxation: Relaxation | None = None
+
+    @cached_property
+    def redundant(self) -> tuple[Pair, ...]:
+        """The pairs that no driver and no group uses as they are: the others hold what they hold."""
+        if self.relaxation is None:
+            return ()
+        bodies = (self.ground, *(body for group in self.groups for body in group.bodies))
+        used = {step.pair.name for body in bodies for step in body.driven}
+        used.update(pair.name for group in self.groups for pair in (*group.inner, *group.outer))
+        return tuple(pair for pair in self.pairs if pair.name not in used)
+
+    @cached_property
+    def graph(self) -> nx.MultiGraph:
+        """The kinematic graph: links are nodes, pairs are edges keyed by their names."""
+        from compoundkin.structure.graph import kinematic_graph
+
+        return kinematic_graph(self)
+
+    @cached_property
+    def name(self) -> ChainName:
+        """What it is called by its graph, frame and drivers: "Stephenson III"."""
+        from compoundkin.synthesis.chains import structure_name
+
+        return structure_name(self)
+
+    @cached_property
+    def loops(self) -> tuple[Loop, ...]:
+        """A short basis of independent loops."""
+        from compoundkin.structure.loops import independent_loops
+
+        return independent_loops(self)
+
+    def __repr__(self) -> str:
+        groups = ", ".join(group.name for group in self.groups[:SHOWN_GROUPS])
+        more = f" and {len(self.groups) - SHOWN_GROUPS} more" if len(self.groups) > SHOWN_GROUPS else ""
+        faults = f", {len(self.faults)} faults" if self.faults else ""
+        found = f"groups {groups}{more}" if groups else "no groups"
+        return f"Structure({self.mechanism.title!r}: mobility {self.mobility.freedoms}, {found}{faults})"

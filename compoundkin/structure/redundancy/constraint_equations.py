@@ -1,0 +1,223 @@
+"""What all pairs of a mechanism hold, as equations in the poses of all moving links; drivers are free."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from compoundkin.base.poses import FIXED, End, Pose
+from compoundkin.base.series import constant
+from compoundkin.model.elements import FRAME
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.structure.composites import driven_pair
+from compoundkin.structure.pins import Pins
+from compoundkin.structure.system import LINK_FREEDOMS
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+_SEED = 20260101
+
+
+class Tolerance(NamedTuple):
+    """What counts as closed (residuals in parts of the size), and as dependent (singular values, of the largest)."""
+
+    closed: float
+    rank: float
+
+
+# Rounding of exact dimensions.
+STRICT = Tolerance(1e-9, 1e-9)
+# Dimensions given to some five digits, as in print: pairs that ought to close open by as much, and what ought to be
+# dependent is so nearly.
+ROUNDED = Tolerance(1e-5, 1e-4)
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Some rows of a Jacobian: which pair they are of, and where they begin and end."""
+
+    pair: Pair
+    first: int
+    last: int
+
+
+@dataclass(frozen=True)
+class Equations:
+    """The equations of a mechanism: first what its pairs hold, then the drivers' coordinates.
+
+    A state holds x, y (in parts of `size`) and theta (radians) of every moving link, in the order of the mechanism. A
+    multiple pin is a star of pairs around the first of its links. Rows are scaled to the length 1.
+    """
+
+    mechanism: Mechanism
+    tolerance: Tolerance = STRICT
+
+    @cached_property
+    def links(self) -> tuple[str, ...]:
+        """The moving links."""
+        return tuple(name for name in self.mechanism.links if name != FRAME)
+
+    @cached_property
+    def pairs(self) -> tuple[Pair, ...]:
+        """Every pair, the pins first."""
+        return (*self.pins, *self.mechanism.written_pairs)
+
+    @cached_property
+    def pins(self) -> tuple[Pair, ...]:
+        """The pairs at pins."""
+        pins = Pins(self.mechanism)
+        named = self.mechanism.pins.items()
+        return tuple(pins.pair(letter, names[0], name) for letter, names in named for name in names[1:])
+
+    @cached_property
+    def driven(self) -> tuple[Pair, ...]:
+        """The pair of every driver."""
+        pins = Pins(self.mechanism)
+        return tuple(driven_pair(pins, drive) for drive in self.mechanism.drives)
+
+    def is_bar(self, link: str, one: str, two: str) -> bool:
+        """Whether a link has no pairs but two pins, neither of them driven: the force in it is along it."""
+        on_it = [pair for pair in self.mechanism.written_pairs if link in pair.members]
+        driven = [drive for drive in self.mechanism.drives if link in (drive.link, drive.on)]
+        pinned = [letter for letter, names in self.mechanism.pins.items() if link in names]
+        return not on_it and not driven and sorted(pinned) == sorted((one, two))
+
+    @cached_property
+    def size(self) -> float:
+        """The mechanism's length scale."""
+        return self.mechanism.geometry.size
+
+    @cached_property
+    def rows(self) -> tuple[Rows, ...]:
+        """The rows of each pair."""
+        found, first = [], 0
+        for pair in self.pairs:
+            found.append(Rows(pair, first, first + pair.held))
+            first += pair.held
+        return tuple(found)
+
+    @property
+    def held(self) -> int:
+        """How many coordinates the pairs hold."""
+        return self.rows[-1].last if self.rows else 0
+
+    @property
+    def width(self) -> int:
+        """How many numbers a state has."""
+        return LINK_FREEDOMS * len(self.links)
+
+    @cached_property
+    def column(self) -> dict[str, int]:
+        """The first column of every moving link."""
+        return {name: LINK_FREEDOMS * k for k, name in enumerate(self.links)}
+
+    @cached_property
+    def ends(self) -> dict[str, Ends]:
+        """The dimensions of every pair; of several designs those of the first, at the first pose."""
+        geometry = self.mechanism.geometry
+        return {p.name: tuple(map(_first, p.ends(geometry))) for p in (*self.pairs, *self.driven)}
+
+    def state(self, poses: Mapping[str, Pose]) -> Array:
+        """The state in which the links have the given poses."""
+        placed = (poses[name] for name in self.links)
+        parts = [(p.z.c[0].real / self.size, p.z.c[0].imag / self.size, p.angle.c[0]) for p in placed]
+        return np.array(parts, dtype=float).ravel()
+
+    def poses(self, state: Array) -> dict[str, Pose]:
+        """The poses of all links in a state."""
+        found = {FRAME: FIXED}
+        for name, k in self.column.items():
+            angle = constant(float(state[k + 2]))
+            found[name] = Pose(constant(complex(state[k], state[k + 1]) * self.size), angle.turn(), angle)
+        return found
+
+    def place(self, poses: dict[str, Pose], link: str, letter: str) -> complex:
+        """Where a point of a link is."""
+        return complex(poses[link].at(_number(self.mechanism.geometry.points[link][letter])).c[0])
+
+    def closures(self, state: Array) -> Array:
+        """By how much every held coordinate is open, lengths in the user's unit."""
+        poses = self.poses(state)
+        return np.array(
+            [
+                float(np.real(c.c[0]))
+                for pair in self.pairs
+                for c in pair.closure(self.ends[pair.name], _of(pair, poses))
+            ]
+        )
+
+    def coordinates(self, state: Array) -> Array:
+        """The drivers' coordinates, as the drivers count them."""
+        poses = self.poses(state)
+        found = []
+        for drive, pair in zip(self.mechanism.drives, self.driven, strict=True):
+            value = pair.coordinate(self.ends[pair.name], _of(pair, poses)).c[0]
+            found.append(float(np.real(value)) * pair.driven_by(drive.link))
+        return np.array(found)
+
+    def is_upright(self, state: Array) -> bool:
+        """Whether every closed pair is in the way that is meant."""
+        poses = self.poses(state)
+        return all(bool(np.all(pair.upright(self.ends[pair.name], _of(pair, poses)))) for pair in self.pairs)
+
+    def jacobian(self, state: Array) -> tuple[Array, Array]:
+        """The rows of all pairs by the state, each of the length 1; and by what each was divided."""
+        poses = self.poses(state)
+        tables = ((pair, pair.jacobian(self.ends[pair.name], _of(pair, poses))) for pair in self.pairs)
+        return self._scaled(self._filled((pair, table[..., : pair.held, :]) for pair, table in tables), self.size)
+
+    def driving(self, state: Array) -> Array:
+        """The rows of the drivers' coordinates by the state, each of the length 1."""
+        poses = self.poses(state)
+        tables = ((pair, pair.jacobian(self.ends[pair.name], _of(pair, poses))) for pair in self.driven)
+        coordinate = ((pair, table[..., pair.held : pair.held + 1, :]) for pair, table in tables)
+        return self._scaled(self._filled(coordinate), self.size)[0]
+
+    @cached_property
+    def generic(self) -> Array:
+        """The rows of all pairs at random geometry: the same kinds of pairs between the same links."""
+        rng = np.random.default_rng(_SEED)
+        places: dict[str, Ends] = {}
+        tables = []
+        for number, pair in enumerate(self.pairs):
+            # all links on a pin share its one place
+            at = f"pin {pair.letters[0]}" if number < len(self.pins) else f"pair {pair.name}"
+            ends = places.setdefault(at, pair.generic(rng))
+            tables.append((pair, pair.jacobian(ends, (FIXED,) * len(ends))[..., : pair.held, :]))
+        return self._scaled(self._filled(iter(tables)), 1.0)[0]
+
+    def _filled(self, tables: Iterator[tuple[Pair, Any]]) -> Array:
+        blocks = []
+        for pair, table in tables:
+            table = np.asarray(table, dtype=float).reshape(-1, LINK_FREEDOMS * len(pair.members))
+            block = np.zeros((len(table), self.width))
+            for side, name in enumerate(pair.members):
+                if name in self.column:
+                    part = table[:, LINK_FREEDOMS * side : LINK_FREEDOMS * (side + 1)]
+                    block[:, self.column[name] : self.column[name] + LINK_FREEDOMS] += part
+            blocks.append(block)
+        return np.vstack(blocks) if blocks else np.zeros((0, self.width))
+
+    def _scaled(self, matrix: Array, size: float) -> tuple[Array, Array]:
+        matrix = matrix * np.tile([size, size, 1.0], len(self.links))
+        lengths = np.linalg.norm(matrix, axis=1)
+        lengths = np.where(lengths > 0.0, lengths, 1.0)
+        return matrix / lengths[:, None], lengths
+
+
+def _of(pair: Pair, poses: dict[str, Pose]) -> tuple[Pose, ...]:
+    return tuple(poses[name] for name in pair.members)
+
+
+def _first(end: End) -> End:
+    return End(*(None if value is None else _number(value) for value in end))
+
+
+def _number(value: Any) -> Any:
+    return value if np.ndim(value) == 0 else np.ravel(value)[0].item()

@@ -1,0 +1,236 @@
+"""A kinematic chain of links and revolute pairs, each pair between two links: its count, its symmetry, its parts.
+
+Links are numbered from 0; no link is the frame before one is chosen (an inversion of the chain).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from compoundkin.synthesis.chains.canonical_code import Canonical, Coloured, Permutation, canonical, orbits
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+# graph6 writes numbers of up to six bits as printable characters (B. D. McKay, the formats graph6 and sparse6).
+_SIX, _PRINTABLE = 6, 63
+_ORDINALS = ("", "singular", "binary", "ternary", "quaternary", "quinary", "senary", "septenary", "octonary")
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A chain: how many links, and between which two of them each pair is.
+
+    >>> four_bar = Chain.of(4, [(0, 1), (1, 2), (2, 3), (3, 0)])
+    >>> four_bar.mobility, four_bar.loops, four_bar.assortment_text, four_bar.symmetries
+    (1, 1, '4 binary', 8)
+    """
+
+    links: int
+    pairs: tuple[tuple[int, int], ...]
+
+    @classmethod
+    def of(cls, links: int, pairs: Iterable[tuple[int, int]]) -> Chain:
+        """The chain with these pairs, whichever link of a pair and whichever pair is named first."""
+        return cls(links, tuple(sorted((min(pair), max(pair)) for pair in pairs)))
+
+    @classmethod
+    def from_code(cls, code: str) -> Chain:
+        """The chain that a graph6 text stands for, at most 62 links.
+
+        >>> Chain.from_code("Bw").pairs
+        ((0, 1), (0, 2), (1, 2))
+        """
+        links = ord(code[0]) - _PRINTABLE
+        bits = "".join(f"{ord(letter) - _PRINTABLE:06b}" for letter in code[1:])
+        places = ((row, column) for column in range(links) for row in range(column))
+        return cls.of(links, (place for place, bit in zip(places, bits, strict=False) if bit == "1"))
+
+    @property
+    def mobility(self) -> int:
+        """The mobility F = 3 (n - 1) - 2 p."""
+        return 3 * (self.links - 1) - 2 * len(self.pairs)
+
+    @property
+    def loops(self) -> int:
+        """The number of independent loops L = p - n + 1 of a connected chain."""
+        return len(self.pairs) - self.links + 1
+
+    @property
+    def is_loop(self) -> bool:
+        """Whether all its links form one loop."""
+        return set(self.degrees) == {2} and self.is_connected
+
+    @cached_property
+    def is_connected(self) -> bool:
+        """Whether every link can be reached from every other."""
+        reached, waiting = {0}, [0]
+        while waiting:
+            onward = [link for link in self.neighbours[waiting.pop()] if link not in reached]
+            reached.update(onward)
+            waiting += onward
+        return len(reached) == self.links
+
+    @cached_property
+    def degrees(self) -> tuple[int, ...]:
+        """How many pairs each link has."""
+        return tuple(len(neighbours) for neighbours in self.neighbours)
+
+    @cached_property
+    def assortment(self) -> tuple[int, ...]:
+        """How many links are binary, ternary, quaternary and so on.
+
+        >>> Chain.from_code("DFw").assortment
+        (3, 2)
+        """
+        return tuple(self.degrees.count(degree) for degree in range(2, max(self.degrees, default=1) + 1))
+
+    @property
+    def assortment_text(self) -> str:
+        """The link assortment in words.
+
+        >>> Chain.from_code("DFw").assortment_text
+        '3 binary, 2 ternary'
+        """
+        numbers = ((degree, self.degrees.count(degree)) for degree in sorted(set(self.degrees)))
+        return ", ".join(f"{number} {ordinal(degree)}" for degree, number in numbers)
+
+    @cached_property
+    def neighbours(self) -> tuple[tuple[int, ...], ...]:
+        """The links that each link is joined to, in their order."""
+        found: list[list[int]] = [[] for _ in range(self.links)]
+        for first, second in self.pairs:
+            found[first].append(second)
+            found[second].append(first)
+        return tuple(tuple(sorted(links)) for links in found)
+
+    @cached_property
+    def canonical(self) -> Canonical:
+        """The canonical form of the chain as a graph of one colour."""
+        return canonical(Coloured.of([""] * self.links, self.pairs))
+
+    @cached_property
+    def code(self) -> str:
+        """The graph6 text of the canonical form: equal exactly for chains that are the same but for their numbering.
+
+        >>> Chain.of(3, [(0, 1), (1, 2)]).code == Chain.of(3, [(1, 0), (0, 2)]).code
+        True
+        """
+        return _graph6(self.links, self.canonical.adjacency)
+
+    @property
+    def graph6(self) -> str:
+        """The graph6 text of the chain as its links are numbered.
+
+        >>> Chain.of(3, [(0, 1), (1, 2)]).graph6
+        'Bg'
+        """
+        places = [(row, column) for column in range(self.links) for row in range(column)]
+        return _graph6(self.links, sum(1 << k for k, place in enumerate(reversed(places)) if place in self.pairs))
+
+    @property
+    def symmetries(self) -> int:
+        """The order of the automorphism group: in how many ways the chain can be laid upon itself."""
+        return self.canonical.symmetries
+
+    @property
+    def inversions(self) -> tuple[tuple[int, ...], ...]:
+        """Classes of equivalent links: fixing either of two links of one class gives the same mechanism.
+
+        >>> len(Chain.from_code("DFw").inversions)
+        2
+        """
+        return self.canonical.orbits
+
+    def equivalent_pairs(self, frame: int | None = None) -> tuple[tuple[tuple[int, int], ...], ...]:
+        """Classes of pairs that symmetries carry into each other; with a frame, those that leave it where it is.
+
+        With a frame the classes are the essentially different places for a driver.
+
+        >>> watt = Chain.of(6, [(0, 1), (0, 2), (2, 3), (3, 1), (0, 4), (4, 5), (5, 1)])
+        >>> [len(pairs) for pairs in watt.equivalent_pairs()], len(watt.equivalent_pairs(frame=2))
+        ([1, 4, 2], 7)
+        """
+        place = {pair: k for k, pair in enumerate(self.pairs)}
+        moved = [tuple(place[min(g[a], g[b]), max(g[a], g[b])] for a, b in self.pairs) for g in self._generators(frame)]
+        return tuple(tuple(self.pairs[k] for k in members) for members in orbits(len(self.pairs), moved))
+
+    def _generators(self, frame: int | None) -> tuple[Permutation, ...]:
+        if frame is None:
+            return self.canonical.generators
+        colours = ["frame" if link == frame else "" for link in range(self.links)]
+        return canonical(Coloured.of(colours, self.pairs)).generators
+
+    @cached_property
+    def joints_of_parts(self) -> tuple[int, ...]:
+        """The links at which a fractionated chain falls apart into chains that move on their own.
+
+        >>> Chain.of(7, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (4, 5), (5, 6), (6, 0)]).joints_of_parts
+        (0,)
+        """
+        import networkx
+
+        return tuple(sorted(networkx.articulation_points(self.graph())))
+
+    @property
+    def is_fractionated(self) -> bool:
+        """Whether taking one link away leaves parts that are not joined."""
+        return bool(self.joints_of_parts)
+
+    @cached_property
+    def variety(self) -> int:
+        """The degree of variety: by how much the least mobility of a part with a loop is below the chain's.
+
+        In a chain of variety 0 no driver can be without effect on any loop.
+        Source: C. R. Tischler, A. E. Samuel and K. H. Hunt, Kinematic chains for robot hands I, Mechanism and
+        Machine Theory 30 (1995) 1193. The work doubles with each link.
+
+        >>> Chain.of(5, [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0)]).variety
+        0
+        """
+        return self.mobility - min((m for m, _ in self._parts_with_loops()), default=self.mobility)
+
+    @property
+    def has_rigid_part(self) -> bool:
+        """Whether some of its links hold each other so that they cannot move among themselves."""
+        return any(mobility < 1 for mobility, _ in self._parts_with_loops())
+
+    def _parts_with_loops(self) -> Iterable[tuple[int, tuple[int, ...]]]:
+        """The mobility of every set of links with at least as many pairs as links, and the set."""
+        for size in range(2, self.links + 1):
+            for chosen in combinations(range(self.links), size):
+                members = frozenset(chosen)
+                inside = sum(first in members and second in members for first, second in self.pairs)
+                if inside >= size:
+                    yield 3 * (size - 1) - 2 * inside, chosen
+
+    def graph(self) -> nx.Graph:
+        """The chain as NetworkX has it: links are nodes, pairs are edges with the attribute `code`."""
+        import networkx
+
+        graph = networkx.MultiGraph()
+        graph.add_nodes_from(range(self.links))
+        graph.add_edges_from(self.pairs, code="R")
+        return graph
+
+
+def _graph6(links: int, adjacency: int) -> str:
+    """The text for a number whose bits are the adjacency matrix above its diagonal, column by column."""
+    places = links * (links - 1) // 2
+    filled = places + -places % _SIX
+    number = adjacency << (filled - places)
+    shifts = range(filled - _SIX, -1, -_SIX)
+    return chr(_PRINTABLE + links) + "".join(chr(_PRINTABLE + (number >> shift) % 2**_SIX) for shift in shifts)
+
+
+def ordinal(degree: int) -> str:
+    """What a link with so many pairs is called.
+
+    >>> ordinal(3), ordinal(9)
+    ('ternary', 'of 9 pairs')
+    """
+    return _ORDINALS[degree] if degree < len(_ORDINALS) else f"of {degree} pairs"

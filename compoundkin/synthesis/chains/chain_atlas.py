@@ -1,0 +1,200 @@
+"""The shipped lists of chains and trusses; inversions and Assur groups from them.
+
+A chain is known by its place in the list of chains with as many links and the same mobility: "8-link chain 7".
+The lists are made by `compoundkin.synthesis.chains.shipped_lists`; their order is part of the names and stays.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.synthesis.chains.canonical_code import Coloured, canonical
+from compoundkin.synthesis.chains.chain import Chain
+from compoundkin.synthesis.chains.generation import chains_of
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+FILE = Path(__file__).with_name("data") / "chains.txt"
+COMMENT = "#"
+# Larger chains are made where they are asked for: twelve links take half a minute.
+MOST_LINKS = 10
+_GROUP = re.compile(r"(\d+)-link group (\d+)")
+_GROUP_LINKS = (2, 4, 6, 8)
+# The groups that books call by a name.
+_OWN_GROUPS = {"dyad": "2-link group 1", "triad": "4-link group 2", "class iii triad": "4-link group 2"}
+
+
+@dataclass(frozen=True)
+class AssurGroup:
+    """A Baranov truss without one of its links: what was joined to it are the outer pairs.
+
+    >>> triad = assur_groups(4)[1]
+    >>> triad.links, triad.outer, triad.inner
+    (4, 3, 3)
+    """
+
+    truss: Chain
+    removed: int
+
+    @property
+    def links(self) -> int:
+        """How many links the group has."""
+        return self.truss.links - 1
+
+    @property
+    def outer(self) -> int:
+        """How many pairs attach the group: its order."""
+        return self.truss.degrees[self.removed]
+
+    @property
+    def inner(self) -> int:
+        """How many pairs its links have among themselves."""
+        return len(self.truss.pairs) - self.outer
+
+    @property
+    def code(self) -> str:
+        """A code equal exactly for groups that are the same but for the numbering of their links."""
+        colours = ["outside" if link == self.removed else "link" for link in range(self.truss.links)]
+        return canonical(Coloured.of(colours, self.truss.pairs)).code
+
+    def graph(self) -> nx.MultiGraph:
+        """The group as NetworkX has it; the attribute `outer` of a link says how many outer pairs it has."""
+        graph = self.truss.graph()
+        outside = self.truss.neighbours[self.removed]
+        graph.remove_node(self.removed)
+        for link in graph:
+            graph.nodes[link]["outer"] = int(link in outside)
+        return graph
+
+
+@dataclass(frozen=True)
+class Inversion:
+    """A chain with one of its links as the frame: the first of those that are equivalent to it."""
+
+    chain: Chain
+    frame: int
+
+
+def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
+    """All chains with so many links, in the order that numbers them; those of mobility 3 with a bridging pair too.
+
+    >>> [len(chains(links)) for links in (4, 6, 8, 10)]
+    [1, 2, 16, 230]
+    >>> len(chains(9, mobility=2)), len(chains(10, mobility=3))
+    (40, 98)
+    """
+    return _listed().get((links, mobility)) or _made(links, mobility)
+
+
+def trusses(links: int) -> tuple[Chain, ...]:
+    """All Baranov trusses with so many links: no mobility, but every part of them has.
+
+    >>> [len(trusses(links)) for links in (3, 5, 7, 9)]
+    [1, 1, 3, 28]
+    """
+    return chains(links, mobility=0)
+
+
+def inversions(links: int, mobility: int = 1) -> tuple[Inversion, ...]:
+    """All mechanisms that fixing one link of a chain gives, equivalent links once.
+
+    >>> [len(inversions(links)) for links in (4, 6, 8, 10)]
+    [1, 5, 71, 1834]
+    """
+    return tuple(Inversion(chain, alike[0]) for chain in chains(links, mobility) for alike in chain.inversions)
+
+
+def assur_groups(links: int) -> tuple[AssurGroup, ...]:
+    """All Assur groups of revolute pairs with so many links: every truss without one link, equivalent ones once.
+
+    Source: E. E. Peisakh, Structural analysis of planar jointed mechanisms: current state and problems,
+    J. Machinery Manufacture and Reliability 37 (2008) 207.
+
+    >>> [len(assur_groups(links)) for links in (2, 4, 6, 8)]
+    [1, 2, 10, 173]
+    """
+    return tuple(AssurGroup(truss, alike[0]) for truss in trusses(links + 1) for alike in truss.inversions)
+
+
+def assur_group(name: str, also: Iterable[str] = ()) -> AssurGroup:
+    """A group of revolute pairs by its name: "4-link group 2", or "triad" for that one, the class III group of order 3.
+
+    The number is its place in `assur_groups`. Raises UnknownName; `also` are names that the caller knows.
+
+    >>> assur_group("triad").outer, assur_group("4-link group 1").outer
+    (3, 2)
+    """
+    found = _GROUP.fullmatch(_OWN_GROUPS.get(name.strip().lower(), name.strip()))
+    if found and int(found[1]) in _GROUP_LINKS and 1 <= int(found[2]) <= len(assur_groups(int(found[1]))):
+        return assur_groups(int(found[1]))[int(found[2]) - 1]
+    known = [
+        *also,
+        *_OWN_GROUPS,
+        "2-link group 1",
+        "4-link group 1 or 2",
+        "6-link group 1 to 10",
+        "8-link group 1 to 173",
+    ]
+    raise UnknownName(Problem(name, "there is no such Assur group", nearest(name, known)))
+
+
+def group_name(group: AssurGroup) -> str:
+    """The name of a group by its place in the list of those with as many links; "" where it is in none.
+
+    >>> group_name(assur_group("triad"))
+    '4-link group 2'
+    """
+    codes = _group_codes(group.links) if group.links in _GROUP_LINKS else ()
+    return f"{group.links}-link group {codes.index(group.code) + 1}" if group.code in codes else ""
+
+
+@cache
+def _group_codes(links: int) -> tuple[str, ...]:
+    return tuple(group.code for group in assur_groups(links))
+
+
+def number_of(chain: Chain) -> int | None:
+    """The place of a chain in its list, from 1; None if its list is not shipped or does not hold it.
+
+    >>> number_of(Chain.of(4, [(0, 1), (1, 2), (2, 3), (3, 0)]))
+    1
+    >>> number_of(Chain.of(3, [(0, 1), (1, 2)]))
+    """
+    return _numbers().get((chain.mobility, chain.code)) if chain.links <= MOST_LINKS else None
+
+
+def read(lines: Iterable[str]) -> dict[tuple[int, int], tuple[Chain, ...]]:
+    """The chains of a list by links and mobility: a line "links mobility code" each, other lines are comments.
+
+    >>> [chain.links for chain in read(["# a comment", "3 0 Bw"])[3, 0]]
+    [3]
+    """
+    found: dict[tuple[int, int], list[Chain]] = {}
+    for line in lines:
+        if line.strip() and not line.startswith(COMMENT):
+            links, mobility, code = line.split()
+            found.setdefault((int(links), int(mobility)), []).append(Chain.from_code(code))
+    return {key: tuple(listed) for key, listed in found.items()}
+
+
+@cache
+def _listed() -> dict[tuple[int, int], tuple[Chain, ...]]:
+    return read(FILE.read_text(encoding="ascii").splitlines())
+
+
+@cache
+def _made(links: int, mobility: int) -> tuple[Chain, ...]:
+    return chains_of(links, mobility, bridged=True)
+
+
+@cache
+def _numbers() -> dict[tuple[int, str], int]:
+    # the lists hold canonical forms, so that their own numbering gives the code
+    return {(m, chain.graph6): k for (_, m), listed in _listed().items() for k, chain in enumerate(listed, 1)}

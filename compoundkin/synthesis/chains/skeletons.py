@@ -1,0 +1,102 @@
+"""A drawn mechanism to start from, made of a chain: one of its links the frame, drivers at some of its pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from string import ascii_uppercase
+from typing import TypeAlias
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName
+from compoundkin.model.elements import FRAME, Drive, Item, drawn, drive, link
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure import decompose
+from compoundkin.synthesis.chains.chain import Chain
+from compoundkin.synthesis.chains.chain_layout import layout
+from compoundkin.synthesis.chains.chain_names import chain_name
+
+# A driver: a link that is driven on the frame, or two links, the second one driven on the first.
+Driver: TypeAlias = int | tuple[int, int]
+
+
+def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = "") -> Mechanism:
+    """A mechanism with the structure of a chain and generic dimensions, as drawn: pins A, B, C, ...
+
+    Link k of the chain is "link k", but for the frame. A driver is a link that is joined to the frame, or two joined
+    links; without any, the first that determine the motion are taken, those on the frame if possible. They hold the
+    drawn pose, which assembles whatever the chain; how far they may move is a matter of dimensions.
+
+    Raises UnknownName for a link that the chain does not have, InvalidInput for drivers between links that are not
+    joined, or where no drivers determine the motion.
+
+    >>> from compoundkin.synthesis.chains.chain_atlas import chains
+    >>> mechanism = mechanism_from(chains(6)[0], 0, 4)
+    >>> mechanism.title, [drive.link for drive in mechanism.drives]
+    ('Stephenson I', ['link 4'])
+    """
+    _known(chain, frame, drivers)
+    letters = lettered(len(chain.pairs))
+    pins = dict(zip(chain.pairs, letters, strict=True))
+    carried = [[k for k, pair in enumerate(chain.pairs) if number in pair] for number in range(chain.links)]
+    places = dict(zip(letters, layout(len(letters), carried), strict=True))
+    names = [FRAME if number == frame else f"link {number}" for number in range(chain.links)]
+    order = [frame, *(number for number in range(chain.links) if number != frame)]
+    items: list[Item] = [link(names[n], *(letters[k] for k in carried[n])) for n in order]
+    items.append(drawn(**places))
+    title = title or chain_name(chain, frame) or f"{chain.links}-link mechanism"
+    if drivers:
+        driven = [_drive(items, names, *_between(chain, frame, driver)) for driver in drivers]
+        return Mechanism(title, *items, *driven)
+    for chosen in combinations(sorted(pins, key=lambda pair: frame not in pair), max(chain.mobility, 0)):
+        driven = [_drive(items, names, *(pair if pair[0] == frame else pair[::-1])) for pair in chosen]
+        mechanism = Mechanism(title, *items, *driven)
+        if not decompose(mechanism).faults:
+            return mechanism
+    what = f"no drivers determine a chain of mobility {chain.mobility} with a part that is rigid or joined to nothing"
+    raise InvalidInput(Problem("chain", what, "take a chain whose every part has a mobility of one at least"))
+
+
+def lettered(number: int) -> list[str]:
+    """So many names for points: A to Z, then A2 to Z2 and so on.
+
+    >>> lettered(28)[-3:]
+    ['Z', 'A2', 'B2']
+    """
+    rounds = [f"{turn}" if turn > 1 else "" for turn in range(1, number // len(ascii_uppercase) + 2)]
+    return [f"{letter}{turn}" for turn in rounds for letter in ascii_uppercase][:number]
+
+
+def _between(chain: Chain, frame: int, driver: Driver) -> tuple[int, int]:
+    return (frame, driver) if isinstance(driver, int) else driver
+
+
+def _known(chain: Chain, frame: int, drivers: Sequence[Driver]) -> None:
+    for number in (frame, *(k for driver in drivers for k in _between(chain, frame, driver))):
+        if not 0 <= number < chain.links:
+            raise UnknownName(Problem(f"link {number}", "the chain has no such link", f"known: 0 to {chain.links - 1}"))
+    for driver in drivers:
+        pair = _between(chain, frame, driver)
+        if tuple(sorted(pair)) not in chain.pairs:
+            near = ", ".join(map(str, chain.neighbours[pair[0]]))
+            what = f"links {pair[0]} and {pair[1]} are not joined, so that no driver can be between them"
+            raise InvalidInput(Problem("drivers", what, f"link {pair[0]} is joined to {near}"))
+
+
+def _drive(items: Sequence[Item], names: Sequence[str], on: int, driven: int) -> Drive:
+    """A driver at the drawn angle."""
+    drawing = Mechanism("as drawn", *items).geometry.drawn
+    angle = [float(drawing[names[k]].angle.c[0]) for k in (on, driven)]
+    middle = float(np.angle(np.exp(1j * (angle[1] - angle[0]))))
+    return drive(names[driven], on=names[on], values=middle)
+
+
+def symmetric_drivers(chain: Chain, frame: int) -> Iterator[tuple[int, int]]:
+    """The essentially different places for one driver, each once: on which link, and which is driven.
+
+    >>> len(list(symmetric_drivers(Chain.of(4, [(0, 1), (1, 2), (2, 3), (3, 0)]), 0)))
+    2
+    """
+    for (first, second), *_ in chain.equivalent_pairs(frame):
+        yield (second, first) if second == frame else (first, second)

@@ -1,0 +1,241 @@
+"""The same mechanism with another link as its frame, or driven elsewhere: all dimensions are kept.
+
+Source: F. Reuleaux, The Kinematics of Machinery, 1876, section 3: inversion changes no relative motion.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, UnassembledPoses, UnknownName, nearest
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.approach import column
+from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.structure import Structure, decompose
+
+OLD_FRAME = "old frame"
+# Which of the poses is drawn, as a part of them: links are often in line, and modes meet, at the ends or half way.
+WITHIN = 0.382
+# Points that keep the old frame's axes where it was given as drawn: its origin, and one on its x axis.
+_AXES = {"old origin": 0j, "old x": 1 + 0j}
+
+
+def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
+    """The inversion of a mechanism in which `link` is the frame; the frame moves as the link "old frame".
+
+    Dimensions, drivers and thus all relative motions are kept, and the assembly: modes chosen by sign are replaced by
+    a drawing. Published numbers are left out. The world's axes are those of the new frame.
+
+    Raises UnknownName for a link that there is not.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> inverted = with_frame(load_named("slider-crank"), "crank")
+    >>> list(inverted.links), decompose(inverted).name.title
+    (['frame', 'old frame', 'rod', 'piston'], 'inverted slider-crank with turning or oscillating guide')
+    """
+    mechanism.link(link)
+    if link == FRAME:
+        return mechanism
+    names = _renamed(mechanism, link)
+    points = _seen_from(mechanism, link)
+    items = [_new(item, names) for item in mechanism.items if not isinstance(item, Mode | Drawn | Expectation)]
+    items = [_with_axes(mechanism, item) if isinstance(item, Link) and item.name == names[FRAME] else item
+             for item in items]  # fmt: skip
+    if points:
+        carried = {letter for item in items if isinstance(item, Link) for letter in item.points}
+        items.append(drawn(**{k: p for k, p in points.items() if k in carried}))
+    # the frame first, as one writes it
+    items.sort(key=lambda item: not (isinstance(item, Link) and item.name == FRAME))
+    outputs = [".".join([names.get(name.partition(".")[0], name.partition(".")[0]), *name.split(".")[1:]])
+               for name in mechanism.outputs]  # fmt: skip
+    return _written(mechanism, f"{mechanism.title}, {link} fixed", items, outputs)
+
+
+def with_driver(
+    mechanism: Mechanism, link: str, on: str = FRAME, *, pair: str = "", instead: str = "", **words: Any
+) -> Mechanism:
+    """A mechanism driven elsewhere: `link` on the link `on`, in place of its driver, or of the one called `instead`.
+
+    `words` are those of `drive`, such as `values`; without values a pin makes a full turn, a slide stays.
+    Dimensions and assembly are kept, published numbers are left out.
+
+    Raises UnknownName for a link or driver that there is not, InvalidInput where it is not said which driver is meant,
+    InvalidMechanism where the two links have no pair to drive.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> driven = with_driver(load_named("four-bar-norton"), "rocker")
+    >>> [drive.name for drive in driven.drives]
+    ['rocker']
+    """
+    for name in (link, on):
+        mechanism.link(name)
+    old = _replaced(mechanism, instead)
+    new = drive(link, on=on, pair=pair, **words)
+    kept = [item for item in mechanism.items if not isinstance(item, Mode | Expectation) and item is not old]
+    if not any(item.is_drawn for item in mechanism.links.values()):
+        kept = [item for item in kept if not isinstance(item, Drawn)]
+        if points := _assembled(mechanism):
+            kept.append(drawn(**points))
+    known = [*mechanism.carriers, *mechanism.links, *(p.name for p in mechanism.written_pairs)]
+    drives = [item.name for item in kept if isinstance(item, Drive)]
+    owners = [name.split("(")[0].split(".")[0] for name in mechanism.outputs]
+    outputs = [name for name, owner in zip(mechanism.outputs, owners, strict=True) if owner in (*known, *drives)]
+    made = _written(mechanism, f"{mechanism.title}, {link} driven", [*kept, new], outputs)
+    return _standing(made, new) if new.values is None and new.law is None else made
+
+
+def _replaced(mechanism: Mechanism, instead: str) -> Drive | None:
+    """The driver that gives way; None where there is none."""
+    names = [item.name for item in mechanism.drives]
+    if instead:
+        if instead not in names:
+            raise UnknownName(Problem(instead, "there is no such driver", nearest(instead, names)))
+        return mechanism.drives[names.index(instead)]
+    if len(names) > 1:
+        what = "there are several drivers, and it is not said which one gives way"
+        raise InvalidInput(Problem("instead", what, f"name one: {', '.join(names)}"))
+    return mechanism.drives[0] if names else None
+
+
+def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
+    """With the drawn value for a driver that is no angle, which cannot make a full turn."""
+    structure = decompose(mechanism)
+    pair = _driven(structure, new)
+    if pair is None or pair.free_is_angle:
+        return mechanism
+    geometry = mechanism.geometry
+    if all(name in geometry.drawn for name in pair.members):
+        poses = tuple(column(geometry.drawn[name]) for name in pair.members)
+        value = pair.coordinate(pair.ends(geometry), poses).c[0] * pair.driven_by(new.link)
+    else:
+        value = pair.drawn_coordinate(mechanism.sketch)
+    if value is None:
+        return mechanism
+    return mechanism.replace(replace(new, values=float(value) if np.ndim(value) == 0 else value))
+
+
+def _driven(structure: Structure, new: Drive) -> Pair | None:
+    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
+    return next((step.pair for body in bodies for step in body.driven if step.drive.name == new.name), None)
+
+
+def _written(mechanism: Mechanism, title: str, items: list[Item], outputs: list[str]) -> Mechanism:
+    told = {key: getattr(mechanism, key) for key in ("unit", "source", "description", "time")}
+    return Mechanism(title, *items, outputs=outputs, **told)
+
+
+def _renamed(mechanism: Mechanism, link: str) -> dict[str, str]:
+    """New names of the two links that change places; not one that a link or a point has already."""
+    taken = (*mechanism.links, *mechanism.carriers)
+    number = next(k for k in range(1, len(taken) + 2) if f"{OLD_FRAME}{k if k > 1 else ''}" not in taken)
+    return {link: FRAME, FRAME: f"{OLD_FRAME}{number if number > 1 else ''}"}
+
+
+def _new(item: Item, names: Mapping[str, str]) -> Item:
+    """A word with links renamed; drivers and pairs keep their own names."""
+    if isinstance(item, Link):
+        return replace(item, name=names.get(item.name, item.name))
+    if isinstance(item, Drive):
+        return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
+    return renamed_pair(item, names) if isinstance(item, Pair) else item
+
+
+def renamed_pair(pair: Pair, names: Mapping[str, str]) -> Pair:
+    """A written pair between renamed links, under its own name.
+
+    >>> from compoundkin.model.pairs import slide
+    >>> renamed_pair(slide("block", on="frame", at="C", through="F"), {"frame": "bar"}).members
+    ('bar', 'block')
+    """
+    fields = [key.name for key in pair.keys if key.kind == "name" and key.name != "name"]
+    told = {field: getattr(pair, field) for field in fields}
+    changed = {field: names[name] for field, name in told.items() if name in pair.members and name in names}
+    renamed: Pair = replace(pair, **changed)  # type: ignore[type-var]
+    return renamed
+
+
+def _with_axes(mechanism: Mechanism, link: Link) -> Link:
+    """The old frame with two points that keep its axes, where it was drawn and a pair or driver counts from them."""
+    counted = [name for pair in mechanism.written_pairs for name in pair.members]
+    counted += [name for item in mechanism.drives for name in (item.link, item.on)]
+    if not link.is_drawn or FRAME not in counted:
+        return link
+    return replace(link, points={**dict.fromkeys(_AXES), **link.points})
+
+
+def _seen_from(mechanism: Mechanism, link: str) -> dict[str, Number]:
+    """Where all points are in one pose, as seen from a link; none where nothing shows it."""
+    if not any(item.is_drawn for item in mechanism.links.values()):
+        points, pose = _assembled(mechanism), None
+        if points:
+            pose = _pose_of(mechanism, link)
+    else:
+        points = {**_AXES, **mechanism.geometry.sketch}
+        pose = mechanism.geometry.drawn.get(link)
+        pose = Pose.of(points[mechanism.links[link].letters[0]], 1 + 0j) if pose is None else pose
+    if pose is None:
+        return {}
+    back = pose.inverse()
+    return {letter: back.at(p).c[0] for letter, p in points.items()}
+
+
+def _assembled(mechanism: Mechanism) -> dict[str, Number]:
+    """Where all points are at some pose that assembles; none where there is none."""
+    found = _some_pose(mechanism)
+    return (
+        {} if found is None else {letter: _at(motion.position, found[1]) for letter, motion in found[0].points.items()}
+    )
+
+
+def _pose_of(mechanism: Mechanism, link: str) -> Pose | None:
+    """The pose of a link where `_assembled` has its points."""
+    found = _some_pose(mechanism)
+    if found is None:
+        return None
+    angle = _at(found[0].links[link].angle, found[1])
+    return Pose.of(_at(found[0].links[link].origin.position, found[1]), np.exp(1j * angle))
+
+
+def _some_pose(mechanism: Mechanism) -> Any:
+    """The motion and the index of a pose that assembles in all designs, or None: not one of the first or last ones."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UnassembledPoses)
+            motion = solve(mechanism, order=0)
+    except CompoundkinError:
+        return None
+    assembled = np.asarray(motion.assembled)
+    whole = np.all(assembled.reshape(-1, assembled.shape[-1]), axis=0) if assembled.ndim else assembled[None]
+    found = np.flatnonzero(whole)
+    return (motion, _clear(motion, found)) if len(found) else None
+
+
+def _clear(motion: Motion, found: Number) -> int:
+    """Which of some poses a drawing shows without doubt, where links of one point show no angle."""
+    for item in motion.mechanism.drives:
+        if any(len(motion.mechanism.links[name].points) == 1 for name in (item.link, item.on)):
+            pair = _driven(motion.structure, item)
+            if pair is None or pair.free_is_angle:
+                # taken for the first pose
+                return int(found[0])
+            # taken to be forward along the guide
+            value = np.broadcast_to(motion.pairs[pair.name].value, motion.assembled.shape)
+            return int(found[np.argmax(value.reshape(-1, value.shape[-1])[0][found])])
+    return int(found[int(WITHIN * len(found))])
+
+
+def _at(values: Number, k: int) -> Number:
+    """Values at one pose: a number, or of several designs an array (designs, 1)."""
+    array = np.asarray(values)
+    if array.ndim == 0:
+        return array.item()
+    return array[k].item() if array.ndim == 1 else array[..., k : k + 1]

@@ -1,0 +1,1 @@
+"""What people see: sketches, plots, animations, pages, reports, notebooks."""

@@ -1,0 +1,202 @@
+"""What objects show of themselves in notebooks: pictures and tables as HTML, on light and on dark pages alike."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from functools import singledispatch
+
+from compoundkin.analysis.cam_analysis import CamAnalysis
+from compoundkin.analysis.centres import Centres
+from compoundkin.analysis.checks import Check
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
+from compoundkin.configurations import AllConfigurations, Circuits
+from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.quantities import degrees
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure import Structure, decompose, roman
+from compoundkin.structure.redundancy import MobilityAnalysis
+from compoundkin.view.page.markup import safe
+from compoundkin.view.page.plain_blocks import block_html, sections_html, table_html
+from compoundkin.view.page.player import framed
+from compoundkin.view.report.cams_section import cam_blocks
+from compoundkin.view.report.centres_section import centre_blocks
+from compoundkin.view.report.configurations_section import circuits_report, configurations_section
+from compoundkin.view.report.links_and_pairs import links_section
+from compoundkin.view.report.mobility_section import analysis_blocks
+from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, Report, Table
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.wording import counted, listed
+from compoundkin.view.sketch import draw, draw_structure
+
+# Pictures of more links than these take more than a second: they are drawn where they are asked for.
+MOST_LINKS = 30
+FITTED = "max-width:100%;height:auto;"
+
+
+def html_of(what: object) -> str | None:
+    """What a notebook shows of an object; None where there is nothing to show, so that it shows the text instead.
+
+    It never raises: an object that was made without an error is not to end in one because a cell ends with it.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> html_of(crank)[:7]
+    '<figure'
+    """
+    try:
+        return unguarded(what)
+    except Exception:
+        return None
+
+
+def svg_of(what: Mechanism | Structure | Motion) -> str | None:
+    """The picture of a mechanism, or of one taken apart; None where there is none, or where it would take long."""
+    mechanism = what if isinstance(what, Mechanism) else what.mechanism
+    if len(mechanism.links) > MOST_LINKS:
+        return None
+    try:
+        return _pictured(what)
+    except CompoundkinError:
+        return None
+
+
+def _pictured(what: Mechanism | Structure | Motion) -> str | None:
+    if isinstance(what, Motion):
+        return draw(what).svg
+    return _apart(what) if isinstance(what, Structure) else _drawn(what)
+
+
+def _drawn(mechanism: Mechanism) -> str | None:
+    """The sketch; none where a pose would have to be searched that is not likely to exist, which takes seconds."""
+    return None if decompose(mechanism).faults and not mechanism.sketch else draw(mechanism).svg
+
+
+def _apart(structure: Structure) -> str:
+    """The groups; the graph of what cannot be taken apart."""
+    return draw_structure(structure, "graph" if structure.faults else "groups").svg
+
+
+def unguarded(what: object) -> str:
+    """What `html_of` gives, errors and all; numbers that are not defined everywhere are no reason for a warning."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return "\n".join(_parts(what))
+
+
+@singledispatch
+def _parts(what: object) -> Iterator[str]:
+    raise TypeError(f"{type(what).__name__} shows nothing of its own")
+
+
+@_parts.register
+def _(what: Mechanism) -> Iterator[str]:
+    structure = decompose(what)
+    pairs = " + ".join(f"{count.number} {count.code}" for count in structure.mobility.pairs)
+    facts = [counted(len(what.links), "link"), f"pairs {pairs}" if pairs else "no pairs"]
+    facts.append(f"driven: {listed(drive.name for drive in what.drives)}" if what.drives else "no driver")
+    facts += [f"lengths in {what.unit}"] if what.unit else []
+    caption = f"<strong>{safe(what.title)}</strong>: {safe('; '.join(facts))}"
+    if picture := what._repr_svg_():
+        yield _figure(picture, caption)
+    else:
+        yield f"<p>{caption}</p>"
+        yield from map(block_html, links_section(structure).blocks)
+
+
+@_parts.register
+def _(what: Structure) -> Iterator[str]:
+    said = f"{what.mobility.formula}; {what.mobility.verdict}"
+    caption = f"<strong>{safe(what.mechanism.title)}</strong>: {safe(said)}"
+    picture = what._repr_svg_()
+    yield _figure(picture, caption) if picture else f"<p>{caption}</p>"
+    yield from (block_html(Alert(f"{fault.text[:1].upper()}{fault.text[1:]}.", fault.remedy)) for fault in what.faults)
+    dropped = what.relaxation.dropped if what.relaxation else ()
+    told = [*(f"Passive: {one}." for one in what.passive), *(f"Left out: {one}." for one in dropped)]
+    yield from (block_html(Paragraph(text)) for text in told)
+    yield table_html(_groups(what), "Groups in solving order")
+
+
+def _groups(structure: Structure) -> Table:
+    """The frame with its driven links, then each group: what it is, its links, what it is attached to."""
+    columns = (Column("no.", style="each"), Column("group"), Column("class"), Column("order", style="each"),
+               Column("links"), Column("uses"))  # fmt: skip
+    name = "frame and driver" if len(structure.ground.driven) == 1 else "frame and drivers"
+    first = (0, name if structure.ground.driven else "frame", None, None, ", ".join(structure.ground.links), None)
+    rows: list[tuple[Cell, ...]] = [first]
+    for k, group in enumerate(structure.groups, start=1):
+        rows.append((k, group.name, roman(group.class_), group.order, ", ".join(group.links), ", ".join(group.uses)))
+    return Table(columns, tuple(rows))
+
+
+@_parts.register
+def _(what: Motion) -> Iterator[str]:
+    if len(what.mechanism.links) > MOST_LINKS or what.inputs.poses < 2:
+        raise InvalidInput(Problem("motion", "it has one pose, or is too large to be shown unasked", "draw() it"))
+    yield framed(what)
+
+
+@_parts.register
+def _(what: Report) -> Iterator[str]:
+    yield f"<h3>{safe(what.title)}</h3>"
+    yield from sections_html(what.sections)
+
+
+@_parts.register
+def _(what: Check) -> Iterator[str]:
+    columns = (Column("check"), Column("worst", style="brief"), Column("limit", style="brief"), Column("at"),
+               Column("", style="passed"))  # fmt: skip
+    rows = tuple((f.name, f.value, f.limit, _where(f.pair, f.pose), f.passed) for f in what.findings)
+    failed = [finding.name for finding in what.findings if not finding.passed]
+    verdict = f"failed: {listed(failed)}" if failed else "all passed" if what.passed else "nothing to check"
+    singular = f", {what.singular} of them without rates" if what.singular else ""
+    yield table_html(Table(columns, rows), f"Checks of {counted(what.poses, 'pose')}{singular}: {verdict}")
+
+
+def _where(name: str, pose: tuple[int, ...]) -> str:
+    return f"{name}, pose {', '.join(map(str, pose))}" if name and pose else name
+
+
+@_parts.register
+def _(what: Circuits) -> Iterator[str]:
+    yield from sections_html(circuits_report(what).sections)
+
+
+@_parts.register
+def _(what: AllConfigurations) -> Iterator[str]:
+    yield from sections_html([configurations_section(what)])
+
+
+@_parts.register
+def _(what: Configuration) -> Iterator[str]:
+    mechanism = what.structure.mechanism
+    caption = f"<strong>{safe(what.name)}</strong>: {safe(mechanism.title)}"
+    if len(mechanism.links) <= MOST_LINKS:
+        yield _figure(draw(solve(what.structure, what.values, modes=what, order=0)).svg, caption)
+    else:
+        yield f"<p>{caption}</p>"
+    columns = Column("link"), Column("angle", "deg", "fixed", floor=1e-9)
+    rows = tuple((name, float(degrees(angle))) for name, angle in what.angles.items())
+    yield table_html(Table(columns, rows), "Angles of the links")
+
+
+@_parts.register
+def _(what: Centres) -> Iterator[str]:
+    yield from map(block_html, centre_blocks(what))
+
+
+@_parts.register
+def _(what: MobilityAnalysis) -> Iterator[str]:
+    yield from map(block_html, analysis_blocks(what))
+
+
+@_parts.register
+def _(what: CamAnalysis) -> Iterator[str]:
+    yield from map(block_html, cam_blocks(Sample(what.motion), what))
+
+
+def _figure(svg: str, caption: str) -> str:
+    """A picture, not wider than the page, with what stands below it."""
+    fitted = svg.replace('style="', f'style="{FITTED}', 1)
+    return f'<figure style="margin:0 0 .5em">\n{fitted}<figcaption>{caption}</figcaption>\n</figure>'

@@ -1,0 +1,114 @@
+"""The blocks and sections of a report as HTML."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import singledispatchmethod
+
+from compoundkin.view.page.html_tables import Shown, table_html
+from compoundkin.view.page.link_names import Names
+from compoundkin.view.page.markup import element, hidden, lines, safe
+from compoundkin.view.page.mathml import Unread, mathml
+from compoundkin.view.report.report_data import Alert, Block, Formula, Paragraph, Report, Section, Step, Table
+from compoundkin.view.sketch.svg import link_names
+
+# The section that stands in the head of the page, and the one whose steps are the groups.
+ABOUT, GROUPS = "about", "groups"
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Writes a report as HTML.
+
+    `names` tell which links a row is about, `figures` are pictures at the head of sections, by the key of the section,
+    and `poses` are the poses of the rows of a section's first table.
+    """
+
+    names: Names = field(default_factory=Names)
+    figures: Mapping[str, str] = field(default_factory=dict)
+    poses: Mapping[str, Sequence[int]] = field(default_factory=dict)
+
+    def sections(self, report: Report) -> Iterator[str]:
+        """All sections but the one in the head."""
+        return (self.section(section) for section in report.sections if section.key != ABOUT)
+
+    def section(self, section: Section) -> str:
+        """A section with its heading, its pictures and its blocks.
+
+        >>> print(Blocks().section(Section("notes", "Notes", (Paragraph("a < b"),))))
+        <section id="notes" aria-labelledby="notes-title">
+        <h2 id="notes-title">Notes</h2>
+        <p>a &lt; b</p>
+        </section>
+        """
+        heading = element("h2", safe(section.title or "Report"), id=f"{section.key}-title")
+        body = lines([heading, self.figures.get(section.key, ""), *self._blocks(section)])
+        return element("section", f"\n{body}\n", id=section.key, aria_labelledby=f"{section.key}-title")
+
+    def about(self, report: Report) -> str:
+        """What stands in the head of the page: the paragraphs of the section about the whole."""
+        section = report.section(ABOUT)
+        return lines(self._blocks(section)) if section else ""
+
+    def _blocks(self, section: Section) -> Iterator[str]:
+        tables = steps = 0
+        for k, block in enumerate(section.blocks):
+            if isinstance(block, Table):
+                tables += 1
+                yield self._table(section, block, k, tables)
+            elif isinstance(block, Step):
+                yield self._step(section, block, steps)
+                steps += 1
+            else:
+                yield self._block(block)
+
+    def _table(self, section: Section, table: Table, k: int, number: int) -> str:
+        """The table; what introduces it with a colon is its name, or else the section."""
+        before = section.blocks[k - 1] if k else None
+        caption = f"{section.title or 'Report'}{f', {number}' if number > 1 else ''}"
+        if isinstance(before, Paragraph) and before.text.endswith(":"):
+            caption = before.text.rpartition(". ")[2].removesuffix(":")
+        poses = self.poses.get(section.key, ()) if number == 1 else ()
+        return table_html(Shown(table, f"{section.key}-table-{number}", caption, self.names, poses))
+
+    def _step(self, section: Section, step: Step, k: int) -> str:
+        """A step; those in solving order are about the links of their groups."""
+        links = self.names.members[k] if section.key == GROUPS and k < len(self.names.members) else ()
+        title = safe(step.title)
+        if links:
+            swatch = f'<i class="swatch g{self.names.colour(links)}"></i>'
+            title = element("button", swatch + title, type="button", class_="who", aria_pressed="false")
+        facts = lines(f"<div><dt>{safe(term)}</dt><dd>{safe(fact)}</dd></div>" for term, fact in step.facts)
+        tag = f' data-links="{link_names(links)}"' if links else ""
+        return f'<div class="step"{tag}>\n<h3>{title}</h3>\n<dl>\n{facts}\n</dl>\n</div>'
+
+    @singledispatchmethod
+    def _block(self, block: Block) -> str:
+        raise TypeError(f"{type(block).__name__} is not a part of a report")
+
+    @_block.register
+    def _(self, block: Paragraph) -> str:
+        return element("p", safe(block.text))
+
+    @_block.register
+    def _(self, block: Formula) -> str:
+        return _formula(block)
+
+    @_block.register
+    def _(self, block: Alert) -> str:
+        remedy = f"\n<p><b>Remedy:</b> {safe(block.remedy)}.</p>" if block.remedy else ""
+        return element(
+            "div", f"<p><strong>{hidden('Warning:')} {safe(block.text)}</strong></p>{remedy}", class_="alert"
+        )
+
+
+def _formula(block: Formula) -> str:
+    """A formula as mathematics where it comes as such, read out as its text; else as it is written."""
+    written = element("code", safe(block.text))
+    if block.latex:
+        with suppress(Unread):
+            shown = element("span", mathml(block.latex), aria_hidden="true", class_="maths")
+            return element("p", f"{shown}{hidden(block.text)}", class_="formula")
+    return element("p", written, class_="formula")

@@ -1,0 +1,127 @@
+"""The whole document: head, the moving sketch, sections, scripts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from compoundkin.view.page.asset_files import asset, vendored
+from compoundkin.view.page.markup import element, hidden, lines, safe
+from compoundkin.view.page.page_palette import palette
+from compoundkin.view.report.report_data import Outcome, Report
+from compoundkin.view.sketch.sketch_style import page_css
+
+# The page asks for nothing from anywhere, whatever gets into it. Source: W3C, Content Security Policy Level 3.
+POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; "
+    "base-uri 'none'; form-action 'none'"
+)
+ICON = (
+    "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'%3E"
+    "%3Cpath d='M3 12L6 4L13 7' fill='none' stroke='%230067b1' stroke-width='2'/%3E"
+    "%3Ccircle cx='3' cy='12' r='2'/%3E%3Ccircle cx='6' cy='4' r='2'/%3E%3Ccircle cx='13' cy='7' r='2'/%3E%3C/svg%3E"
+)
+SCRIPTS = ("tables.js", "light.js")
+THEMES = {"auto": "Auto", "light": "Light", "dark": "Dark"}
+
+
+@dataclass(frozen=True)
+class Document:
+    """What a page is made of: markup, safe already, but for the report, of which titles and outcome are used.
+
+    `viewer` is what stands beside the text: the moving sketch and its plots. `styles` and `scripts` are what it needs
+    besides those of every page, and `data` elements with data for scripts.
+    """
+
+    report: Report
+    about: str
+    sections: tuple[str, ...]
+    version: str
+    viewer: str = ""
+    styles: tuple[str, ...] = ()
+    scripts: tuple[str, ...] = ()
+    data: tuple[str, ...] = ()
+    before: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def html(self) -> str:
+        """The document as one text, the same every time."""
+        body = lines(("<body>", *self._body(), *self.data, *map(_script, self._scripts()), "</body>"))
+        head = element("head", f"\n{lines(self._head())}\n")
+        return f'<!DOCTYPE html>\n<html lang="en">\n{head}\n{body}\n</html>\n'
+
+    def _head(self) -> Iterator[str]:
+        yield '<meta charset="utf-8">'
+        yield f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
+        yield '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        yield '<meta name="color-scheme" content="light dark">'
+        yield f'<meta name="generator" content="compoundkin {safe(self.version)}">'
+        yield element("title", safe(self.report.title))
+        yield f'<link rel="icon" href="{ICON}">'
+        yield from (f"<style>\n{text}\n</style>" for text in (palette(), asset("page.css"), page_css(), *self.styles))
+        # before anything is painted, so that no page flashes in the other theme
+        yield _script(asset("theme.js"))
+
+    def _scripts(self) -> Iterator[str]:
+        yield asset("page.js")
+        yield vendored("sortable.min.js", "sortable.LICENSE.txt")
+        yield from map(asset, SCRIPTS)
+        yield from self.scripts
+
+    def _body(self) -> Iterator[str]:
+        yield '<a class="skip" href="#content">Skip to the report</a>'
+        yield element("header", f"\n{lines(self._header())}\n", class_="top")
+        yield _contents([*self.before, *((section.key, section.title) for section in self.report.sections)])
+        kind = "columns" if self.viewer else "single"
+        viewer = element("div", f"\n{self.viewer}\n", class_="stage", id="stage") if self.viewer else ""
+        about = element("section", f"\n{self.about}\n", id="about", aria_label="About") if self.about else ""
+        text = element("div", f"\n{lines([about, *self.sections])}\n", class_="text")
+        yield element("main", lines([viewer, text]), id="content", class_=kind, tabindex="-1")
+        yield element("footer", f"<p>Made by compoundkin {safe(self.version)}.</p>")
+        yield '<div id="said" class="unseen" role="status" aria-live="polite"></div>'
+
+    def _header(self) -> Iterator[str]:
+        yield f'<div class="title"><h1>{safe(self.report.title)}</h1>{_theme()}</div>'
+        badges = lines(element("li", badge) for badge in _badges(self.report.outcome))
+        yield element("ul", badges, class_="badges", aria_label="Outcome") if badges else ""
+
+
+def _script(text: str) -> str:
+    return f"<script>\n{text}\n</script>"
+
+
+def _theme() -> str:
+    """The switch between light and dark, shown by scripts."""
+    options = lines(
+        f'<label><input type="radio" name="theme" value="{key}"{" checked" if key == "auto" else ""}>'
+        f"<span>{text}</span></label>"
+        for key, text in THEMES.items()
+    )
+    return element("fieldset", f'<legend class="unseen">Colours</legend>\n{options}', class_="theme")
+
+
+def _contents(sections: Iterable[tuple[str, str]]) -> str:
+    """Links to all sections that have a title."""
+    items = lines(f'<li><a href="#{safe(key)}">{safe(title)}</a></li>' for key, title in sections if title)
+    return element("nav", element("ul", f"\n{items}\n"), aria_label="Sections", class_="contents") if items else ""
+
+
+def _badges(outcome: Outcome) -> Iterator[str]:
+    """What the report comes to: a mark and words each."""
+    if not outcome.solvable:
+        yield _badge(False, "cannot be solved")
+    for done, total, what in _results(outcome):
+        if total:
+            yield _badge(done == total, f"{done:,} of {total:,} {what}")
+
+
+def _results(outcome: Outcome) -> Iterable[tuple[int, int, str]]:
+    yield outcome.assembled, outcome.poses, "poses assembled" if outcome.poses != 1 else "pose assembled"
+    yield outcome.checks_passed, outcome.checks, "checks passed"
+    yield outcome.published_passed, outcome.published, "published numbers reproduced"
+
+
+def _badge(good: bool, text: str) -> str:
+    mark = f'<span aria-hidden="true">{"✓" if good else "✗"}</span>'
+    missing = "" if good else hidden("Attention:")
+    return element("span", f"{mark} {missing}{safe(text)}", class_=f"badge {'good' if good else 'bad'}")

@@ -1,0 +1,143 @@
+"""A table of a report as HTML: sorted and copied by full precision, read out by its heads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from compoundkin.view.page.link_names import Names
+from compoundkin.view.page.markup import broken, element, hidden, lines, safe
+from compoundkin.view.report.digits import written
+from compoundkin.view.report.report_data import Cell, Column, Table
+from compoundkin.view.sketch.svg import link_names
+
+RESULTS = {True: ("good", "✓", "pass"), False: ("bad", "✗", "FAIL")}
+# Cells with more letters than this are broken into lines, and get room for them.
+LONG = 24
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A table with its name on the page, what it is called, and the poses of its rows, if they are poses."""
+
+    table: Table
+    key: str
+    caption: str
+    names: Names
+    poses: Sequence[int] = ()
+
+
+def table_html(shown: Shown) -> str:
+    """The table in a box of its own that scrolls, with its buttons."""
+    parts = [element("caption", safe(shown.caption), class_="unseen"), _head(shown), _body(shown)]
+    grid = element("table", lines(parts), class_="sortable asc n-last", id=shown.key)
+    box = element("div", grid, class_="scroll", role="region", aria_label=f"Table: {shown.caption}", tabindex="0")
+    return element("div", f"{_tools(shown)}\n{box}", class_="grid")
+
+
+def _tools(shown: Shown) -> str:
+    """The buttons of a table; those that only scripts serve are shown by scripts."""
+    total, folded = len(shown.table.rows), shown.table.shown is not None
+    buttons = []
+    if folded:
+        more = f"Show all {total:,} rows"
+        buttons.append(
+            _button("more", more, shown, aria_expanded="false", data_more=more, data_fewer="Show fewer rows")
+        )
+    buttons.append(_button("copy", "Copy", shown))
+    return element("div", lines(buttons), class_="tools")
+
+
+def _button(kind: str, text: str, shown: Shown, **more: str) -> str:
+    inside = f"{safe(text)} {hidden(f'table {shown.caption}')}" if kind == "copy" else safe(text)
+    return element("button", inside, type="button", class_=kind, aria_controls=shown.key, **more)
+
+
+def _head(shown: Shown) -> str:
+    return element("thead", element("tr", lines(_heading(column, shown.names) for column in shown.table.columns)))
+
+
+def _heading(column: Column, names: Names) -> str:
+    name = broken(column.name) if column.name else hidden("result")
+    unit = f' <span class="unit">[{safe(column.unit)}]</span>' if column.unit else ""
+    button = element("button", f"{name}{unit}", type="button", class_="sort")
+    kind = "number" if column.is_number else None
+    return f'<th scope="col"{_of(kind)}{_links(names.about(column.name))}>{button}</th>'
+
+
+def _body(shown: Shown) -> str:
+    table = shown.table
+    texts = [written(column, [row[k] for row in table.rows], "\n") for k, column in enumerate(table.columns)]
+    needed = None if table.shown is None else set(table.shown)
+    rows = (_row(shown, k, [column[k] for column in texts], needed) for k in range(len(table.rows)))
+    return element("tbody", lines(rows))
+
+
+def _row(shown: Shown, k: int, texts: Sequence[str], needed: set[int] | None) -> str:
+    table, row = shown.table, shown.table.rows[k]
+    links = _of_row(shown, row)
+    kind = "more" if needed is not None and k not in needed else None
+    pose = f' data-pose="{shown.poses[k]}"' if shown.poses else ""
+    cells = [_cell(column, cell, text) for column, cell, text in zip(table.columns, row, texts, strict=True)]
+    cells[0] = _first(shown, row[0], texts[0], links) or cells[0]
+    return f"<tr{_of(kind)}{_links(links)}{pose}>{''.join(cells)}</tr>"
+
+
+def _of_row(shown: Shown, row: Sequence[Cell]) -> tuple[str, ...]:
+    """The links that a row is about: what its first words name."""
+    for cell in row:
+        if isinstance(cell, str) and (links := shown.names.about(cell)):
+            return links
+        if isinstance(cell, str) and cell:
+            break
+    return ()
+
+
+def _first(shown: Shown, cell: Cell, text: str, links: tuple[str, ...]) -> str:
+    """The head of a row: the cell of its name, a button where it names links."""
+    if not isinstance(cell, str) or not cell:
+        return ""
+    inside = broken(text)
+    if links:
+        number = shown.names.colour(links)
+        swatch = f'<i class="swatch g{number}"></i>' if number is not None else ""
+        inside = element("button", f"{swatch}<span>{inside}</span>", type="button", class_="who", aria_pressed="false")
+    return f'<th scope="row">{inside}</th>'
+
+
+def _cell(column: Column, cell: Cell, text: str) -> str:
+    if isinstance(cell, bool):
+        result, mark, word = RESULTS[cell]
+        inside = f'<span class="{result}"><span aria-hidden="true">{mark}</span> {word}</span>'
+        return f'<td data-sort="{int(cell)}" data-copy="{word}">{inside}</td>'
+    kind = "number" if column.is_number else "long" if len(text) > LONG else None
+    inside = "<br>".join(map(safe, text.split("\n")))
+    return f"<td{_of(kind)}{''.join(_exact(column, cell, text))}>{inside}</td>"
+
+
+def _exact(column: Column, cell: Cell, text: str) -> Iterator[str]:
+    """What a number is sorted by and copied as, where that is not what is shown: every digit of it."""
+    if not column.is_number and not isinstance(cell, tuple):
+        return
+    digits = [_digits(column, value) for value in (cell if isinstance(cell, tuple) else (cell,))]
+    if digits[0] != text:
+        yield f' data-sort="{digits[0]}"'
+    if len(digits) > 1:
+        yield f' data-copy="{", ".join(digits)}"'
+
+
+def _digits(column: Column, value: Cell) -> str:
+    if isinstance(value, str):
+        return safe(value)
+    if value is None or isinstance(value, tuple) or not isfinite(value):
+        return ""
+    return repr(value) if abs(value) > column.floor else "0"
+
+
+def _of(kind: str | None) -> str:
+    return f' class="{kind}"' if kind else ""
+
+
+def _links(names: tuple[str, ...]) -> str:
+    return f' data-links="{link_names(names)}"' if names else ""

@@ -1,0 +1,142 @@
+r"""Formulas as MathML, from the LaTeX that reports write them in: a small part of it, and nothing of it unread.
+
+The part is letters, numbers, brackets, `_`, `^`, `\theta`, `\varphi`, `\circ`, `\text{...}`, `\overline{...}`,
+`\operatorname{...}`, `\left` and `\right`.
+Source: W3C, MathML Core.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from compoundkin.view.page.markup import safe
+
+LETTERS = {r"\theta": "θ", r"\varphi": "φ"}
+SIGNS = {"-": "−", "+": "+", "=": "="}
+_TOKEN = re.compile(r"\s+|\\[a-zA-Z]+|\\.|\d+(?:\.\d+)?(?:e[+-]?\d+)?|.", re.DOTALL)
+_WORDS = (r"\text", r"\operatorname")
+
+
+class Unread(ValueError):
+    """LaTeX that is not of the small part."""
+
+
+def mathml(latex: str) -> str:
+    r"""A formula as MathML, its terms one after the other so that lines may be broken between them.
+
+    Raises Unread for LaTeX that it does not know.
+
+    >>> mathml(r"q_{\text{crank}} = 90^\circ")
+    '<math><msub><mi>q</mi><mtext>crank</mtext></msub></math> <math><mo form="infix">=</mo><mn>90</mn><mo>°</mo></math>'
+    """
+    reader = _Reader(latex)
+    parts: list[list[str]] = [[]]
+    for atom in reader.atoms(""):
+        if reader.depth == 0 and atom in _BREAKS and parts[-1]:
+            # at the head of a part it would be taken for a sign, and be set close
+            parts.append([atom.replace("<mo>", '<mo form="infix">')])
+        else:
+            parts[-1].append(atom)
+    return " ".join(f"<math>{''.join(part)}</math>" for part in parts)
+
+
+class _Reader:
+    """Reads LaTeX, atom by atom; `depth` is how many brackets are open."""
+
+    def __init__(self, latex: str) -> None:
+        self.tokens = _TOKEN.findall(latex)
+        self.at = 0
+        self.depth = 0
+
+    def next(self) -> str:
+        if self.at >= len(self.tokens):
+            raise Unread("it ends too early")
+        self.at += 1
+        return str(self.tokens[self.at - 1])
+
+    def peek(self) -> str:
+        return str(self.tokens[self.at]) if self.at < len(self.tokens) else ""
+
+    def atoms(self, end: str) -> Iterator[str]:
+        """All atoms up to an end, each with what is below and above it."""
+        while self.peek() != end:
+            atom = self.atom()
+            if atom:
+                yield self.with_scripts(atom)
+        if end:
+            self.next()
+
+    def with_scripts(self, base: str) -> str:
+        below = self.script("_")
+        above = self.script("^")
+        if above == "<mo>°</mo>":
+            return (f"<msub>{base}{below}</msub>" if below else base) + above
+        if below and above:
+            return f"<msubsup>{base}{below}{above}</msubsup>"
+        if below or above:
+            return f"<msub>{base}{below}</msub>" if below else f"<msup>{base}{above}</msup>"
+        return base
+
+    def script(self, mark: str) -> str:
+        if self.peek() != mark:
+            return ""
+        self.next()
+        return self.group() if self.peek() == "{" else self.atom()
+
+    def group(self) -> str:
+        self.next()
+        inner = list(self.atoms("}"))
+        return inner[0] if len(inner) == 1 else f"<mrow>{''.join(inner)}</mrow>"
+
+    def atom(self) -> str:
+        token = self.next()
+        if token.isspace() or token == r"\,":
+            return ""
+        if token in _WORDS:
+            return f"<mtext>{safe(self.words())}</mtext>"
+        if token == r"\overline":
+            # a bar that stretches needs a font for mathematics; the bar over a text does not
+            return self.group().replace("<mtext>", '<mtext class="over">')
+        if token in (r"\left", r"\right"):
+            return self.bracket(self.next())
+        return self.bracket(token) if token in "()[]" else _simple(token)
+
+    def bracket(self, token: str) -> str:
+        if token not in "()[]":
+            raise Unread(token)
+        self.depth += 1 if token in "([" else -1
+        return f"<mo>{token}</mo>"
+
+    def words(self) -> str:
+        """What stands in braces, as it is, escapes undone."""
+        if self.next() != "{":
+            raise Unread("no brace")
+        found = ""
+        while (token := self.next()) != "}":
+            found += self.escaped(token) if token.startswith("\\") else token
+        return found
+
+    def escaped(self, token: str) -> str:
+        if token in (r"\^", r"\~") and self.peek() == "{":
+            self.next()
+            self.next()
+        return token[1:]
+
+
+def _simple(token: str) -> str:
+    if token in SIGNS:
+        return f"<mo>{SIGNS[token]}</mo>"
+    if token in LETTERS:
+        return f"<mi>{LETTERS[token]}</mi>"
+    if token == r"\circ":
+        return "<mo>°</mo>"
+    if token[0].isdigit():
+        return f"<mn>{token}</mn>"
+    if len(token) == 1 and token.isalpha():
+        return f"<mi>{safe(token)}</mi>"
+    raise Unread(token)
+
+
+# Before these a browser may break a long equation; inside of a term it may not.
+_BREAKS = tuple(f"<mo>{sign}</mo>" for sign in SIGNS.values())

@@ -1,0 +1,196 @@
+"""A motion as data for a page: poses of the links, points, drivers, instant centres, quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.analysis.centres import Centres, instant_centres
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.quantities import Quantity
+from compoundkin.view.page.packed_numbers import brief, exact
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, SHORTEST
+from compoundkin.view.sketch.moving_sketch import MovingSketch, moving_sketch
+from compoundkin.view.sketch.sketch_centres import centre_name
+
+# A page holds so many poses at most, fewer where there are many links: its data shall stay well below a megabyte.
+MOST_POSES, FEWEST_POSES = 721, 121
+MOST_NUMBERS = 90_000
+# Of a link there are so many numbers at every pose.
+OF_A_LINK = 9
+# Of more links than these the instant centres are left out.
+MOST_LINKS = 12
+# How long a motion takes to play, in seconds: one that is not in time; one in time at least and at most.
+CYCLE, QUICKEST, SLOWEST = 4.0, 1.0, 30.0
+
+
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """One design of a motion with its sketch, and which of its poses a page holds.
+
+    It holds `most` of them, fewer where there are many links. Raises NotAssembled where no pose is assembled,
+    InvalidInput where links change their dimensions on the way.
+    """
+
+    sample: Sample
+    outputs: tuple[str, ...] = ()
+    most: int = MOST_POSES
+    with_centres: bool = True
+
+    @property
+    def motion(self) -> Motion:
+        """The motion."""
+        return self.sample.motion
+
+    @cached_property
+    def sketch(self) -> MovingSketch:
+        """Its sketch."""
+        return moving_sketch(self.motion, self.sample.design)
+
+    @cached_property
+    def chosen(self) -> Number:
+        """The indices of the poses that the page holds: all, or so many as there is room for and the one shown."""
+        links = len(self.motion.mechanism.links)
+        most = min(self.most, max(FEWEST_POSES, MOST_NUMBERS // (OF_A_LINK * links)))
+        places = np.linspace(0, self.sample.poses - 1, min(most, self.sample.poses)).round().astype(int)
+        return np.union1d(places, self.sketch.pose)
+
+    @cached_property
+    def start(self) -> int:
+        """The index, among those that the page holds, of the pose shown first."""
+        return int(np.searchsorted(self.chosen, self.sketch.pose))
+
+    def of(self, values: Any) -> Number:
+        """This design's part of an array of the motion's shape, at the poses that the page holds."""
+        return np.asarray(self.sample.of(values))[self.chosen]
+
+    @cached_property
+    def closes(self) -> bool:
+        """Whether the last pose is the first one again, so that the motion can be played on and on."""
+        return bool(self.sample.assembled.all()) and self.sample.poses > 1 and self.sketch.scene.closes
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """All of it for a script, in the user's length unit, radians and seconds."""
+        window, mechanism = self.sketch.window, self.motion.mechanism
+        column, places = self.sample.places
+        return {
+            "title": mechanism.title,
+            "unit": mechanism.unit or "length",
+            "poses": len(self.chosen),
+            "all": self.sample.poses,
+            "indices": exact(self.chosen) if len(self.chosen) > 1 else 0.0,
+            "start": self.start,
+            "closes": self.closes,
+            "seconds": self._seconds,
+            "order": self.motion.order,
+            "assembled": exact(self.sample.assembled[self.chosen].astype(float)),
+            "window": {
+                "scale": window.scale,
+                "x": window.corner.real,
+                "y": window.corner.imag,
+                "width": window.width,
+                "height": window.height,
+            },
+            "along": {"name": column.name, "unit": column.unit, "values": exact(np.asarray(places)[self.chosen])},
+            "drivers": [self._quantity(driver, exact) for driver in self.sample.drivers],
+            "links": [self._link(name) for name in mechanism.links],
+            "points": [self._point(letter) for letter in self.sketch.scene.letters],
+            "parts": self._parts,
+            "vectors": dict(self._vectors()),
+            **self._centres(),
+            "outputs": [self._quantity(self.sample.quantity(name), brief) for name in self.outputs],
+        }
+
+    @property
+    def _seconds(self) -> float:
+        return CYCLE if self.slowness is None else self.slowness * float(np.ptp(self.sample.times))
+
+    @cached_property
+    def slowness(self) -> float | None:
+        """How many times slower than it runs a motion in time is played; None for one that is not in time."""
+        times = self.sample.times
+        if times is None or np.ptp(times) == 0:
+            return None
+        lasts = float(np.ptp(times))
+        return float(np.clip(lasts, QUICKEST, SLOWEST)) / lasts
+
+    def _quantity(self, found: Quantity, packed: Any) -> dict[str, Any]:
+        values = np.asarray(found.values)[self.chosen]
+        # what is rounding is zero, as in the report's tables
+        values = np.where(np.abs(values) <= self.sample.floor(found), 0.0, values)
+        parts = {"x": values.real, "y": values.imag} if found.is_vector else {"": values}
+        kept = {name: packed(part) for name, part in parts.items()}
+        return {"name": found.name, "unit": found.unit, "order": found.order, "parts": kept}
+
+    @cached_property
+    def _numbers(self) -> Mapping[str, int]:
+        return {name: k for k, name in enumerate(self.motion.mechanism.links)}
+
+    def _link(self, name: str) -> dict[str, Any]:
+        link, scene = self.motion.links[name], self.sketch.scene
+        found: dict[str, Any] = {"name": name, "number": scene.numbers[name], "group": scene.groups[name]}
+        z = self.of(link.origin.position)
+        found |= {"x": exact(z.real), "y": exact(z.imag), "angle": exact(self.of(link.angle))}
+        for k, (rate, turning) in enumerate((("v", "angular_velocity"), ("a", "angular_acceleration")), start=1):
+            if k <= self.motion.order:
+                z = self.of(link.origin.derivative(k))
+                found[rate] = [brief(z.real), brief(z.imag), brief(self.of(getattr(link, turning)))]
+        return found
+
+    def _point(self, letter: str) -> dict[str, Any]:
+        link = self.motion.mechanism.carriers[letter][0]
+        at = self.sketch.scene.points[link][letter]
+        return {"name": letter, "link": self._numbers[link], "x": at.real, "y": at.imag}
+
+    @property
+    def _parts(self) -> list[list[float]]:
+        """Of every part of the sketch: its link, the point that it is seen from, and whether it turns."""
+        return [[self._numbers[p.link], p.at.real, p.at.imag, int(p.turns)] for p in self.sketch.parts]
+
+    def _vectors(self) -> Iterator[tuple[str, Any]]:
+        """For each kind of vectors its scale, picture units for a unit of theirs, and what is said of it."""
+        for kind, (order, _) in KINDS_OF_VECTOR.items():
+            scale = self.sketch.scale(kind) if order <= self.motion.order else None
+            if scale is not None:
+                yield kind, {"scale": scale.per_unit, "text": scale.text, "length": scale.amount * scale.per_unit,
+                             "shortest": SHORTEST}  # fmt: skip
+
+    def _centres(self) -> dict[str, Any]:
+        """The instant centres in homogeneous coordinates, and for each secondary one the centres that give it."""
+        mechanism = self.motion.mechanism
+        if not self.with_centres or len(mechanism.links) > MOST_LINKS or not mechanism.drives:
+            return {"centres": [], "lines": []}
+        centres = instant_centres(self.motion)
+        couples = list(centres)
+        found = [self._centre(centres, couple) for couple in couples]
+        index = {tuple(sorted(couple)): k for k, couple in enumerate(couples)}
+        return {"centres": found, "lines": list(_lines(centres, index))}
+
+    def _centre(self, centres: Centres, couple: tuple[str, str]) -> dict[str, Any]:
+        centre, size = centres[couple], self.motion.size
+        shape = self.motion.shape
+        xyw = [np.where(centre.found, centre.homogeneous[..., k], np.nan).reshape(shape) for k in range(3)]
+        # (x, y, w) may be of any length: that of (x, y) in the mechanism's size, and w, together one
+        length = np.sqrt((xyw[0] / size) ** 2 + (xyw[1] / size) ** 2 + xyw[2] ** 2)
+        with np.errstate(invalid="ignore"):
+            packed = [brief(self.of(np.where(centre.at_infinity, 0.0, c) if k == 2 else c) / self.of(length))
+                      for k, c in enumerate(xyw)]  # fmt: skip
+        name = centre_name(self.sketch.scene, *couple)
+        return {"name": name, "links": list(couple), "at": packed}
+
+
+def _lines(centres: Centres, index: Mapping[tuple[str, ...], int]) -> Iterator[list[int]]:
+    """For each line that gives a centre: the centre, and those known ones that it goes through."""
+    names = {f"({a} {b})": index[tuple(sorted((a, b)))] for one, two in centres for a, b in ((one, two), (two, one))}
+    for step in centres.derivation():
+        for line in step.lines if step.kind != "primary" else ():
+            known = [names[text] for text in line if text in names]
+            if known:
+                yield [index[tuple(sorted(step.centre))], *known]

@@ -1,0 +1,63 @@
+"""A motion that plays in a notebook: the moving sketch alone, in a frame of its own."""
+
+from __future__ import annotations
+
+from compoundkin.kinematics import Motion
+from compoundkin.view.page.asset_files import asset
+from compoundkin.view.page.html_document import POLICY
+from compoundkin.view.page.markup import data_script, element, lines, safe
+from compoundkin.view.page.moving_data import Moving
+from compoundkin.view.page.page_palette import palette
+from compoundkin.view.page.viewer import player_html
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.sketch.sketch_style import page_css
+
+# A notebook keeps every output that it shows: a few dozen kilobytes each are enough.
+MOST_POSES = 181
+# The frame is so high, in pixels: the sketch as it is on a page so wide, and the controls below it.
+WIDTH, HIGHEST, CONTROLS = 640.0, 448.0, 190.0
+STYLE = "html,body{margin:0;background:var(--paper);font-size:15px}.player{padding:8px}"
+
+
+def player(motion: Motion, design: int = 0) -> str:
+    """A document that shows one design of a motion under a slider and a play button, and asks for nothing else.
+
+    Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> player(solve(load_named("crank-rocker"))).splitlines()[0]
+    '<!DOCTYPE html>'
+    """
+    moving = Moving(Sample(motion, design), most=MOST_POSES, with_centres=False)
+    return _document(moving)
+
+
+def _document(moving: Moving) -> str:
+    data = moving.data
+    styles = palette(), page_css(), asset("page.css"), asset("player.css"), STYLE
+    head = [
+        '<meta charset="utf-8">',
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+        element("title", safe(data["title"])),
+        *(element("style", text) for text in styles),
+    ]
+    scripted = "<script>document.documentElement.classList.add('scripted')</script>"
+    body = [
+        scripted,
+        player_html(moving, data),
+        data_script("ck-motion", data),
+        f"<script>{asset('player.js')}</script>",
+    ]
+    return f'<!DOCTYPE html>\n<html lang="en">\n<head>{lines(head)}</head>\n<body>{lines(body)}</body>\n</html>\n'
+
+
+def framed(motion: Motion) -> str:
+    """The player of a motion's first design in a frame, for notebooks; raises what `player` does."""
+    moving = Moving(Sample(motion), most=MOST_POSES, with_centres=False)
+    document = _document(moving)
+    window = moving.sketch.window
+    height = min(HIGHEST, WIDTH * window.height / window.width, window.height * 1.1) + CONTROLS
+    style = f"width:100%;max-width:{WIDTH:.0f}px;height:{height:.0f}px;border:1px solid #8886;border-radius:8px"
+    title = f"{motion.mechanism.title}, moving"
+    return f'<iframe srcdoc="{safe(document)}" title="{safe(title)}" style="{style}" sandbox="allow-scripts"></iframe>'

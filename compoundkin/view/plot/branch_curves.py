@@ -1,0 +1,230 @@
+"""Panels on which every branch is a curve over the driver: colours and dashes, marks and legends."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.configurations import Branch, Circuit, Circuits
+from compoundkin.kinematics.configuration import label
+from compoundkin.kinematics.quantities import degrees
+from compoundkin.view.plot import canvas, plot_style
+from compoundkin.view.plot.branch_lines import (
+    OF_ANGLES,
+    OF_DRIVERS,
+    Curve,
+    Positions,
+    curve_of,
+    seam,
+    shown,
+    start_position,
+    turns,
+    wrapped,
+)
+from compoundkin.view.plot.plotted_rows import TURN, Shown
+from compoundkin.view.plot.point_labels import Label
+
+# Branches of one circuit one after another, and again from the first.
+DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1, 1.2)))
+# The circuit on which solving begins is a wide line on which the others can be seen where they coincide.
+OWN, OTHER, ALONE = 2.8, 1.3, 1.6
+# More circuits than there are colours are grey, but for the one on which solving begins.
+FAINT = "#a8a8a8"
+# A legend of more entries than this is one of circuits, and then of that one circuit only.
+MOST_ENTRIES = 12
+# A place nearer to the end of a turn than this (degrees) is there.
+AT_END = 1e-6
+# Characters in a line of the legend below.
+WIDEST = 50
+# More limit positions than this in a panel, and the names beside them would be a crowd.
+MOST_NAMED = 8
+# Free space beside curves, and above and below them for names; parts of their range.
+MARGIN, BESIDE, ROOM = 0.06, 0.16, 0.12
+DOT = 5.5
+START: Mapping[str, Any] = MappingProxyType({"linestyle": "none", "marker": "D", "markersize": 5.5})
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """What all panels share: the circuits, the horizontal axis, and where the one turn of a periodic driver begins."""
+
+    positions: Positions
+    across: Shown
+    low: float | None
+
+    @classmethod
+    def of(cls, positions: Positions, quantity: Shown) -> Drawing:
+        """The drawing of circuits."""
+        found = positions.found
+        is_angle = positions.drives[found.driver].is_angle
+        unit = "deg" if is_angle else found.structure.mechanism.unit or "length"
+        curves = [curve_of(positions, branch, quantity).x for branch in found.branches]
+        low = seam(curves, OF_DRIVERS) if found.period else None
+        return cls(positions, Shown(found.driver, unit, positions.values), low)
+
+    @property
+    def found(self) -> Circuits:
+        """The circuits."""
+        return self.positions.found
+
+    @property
+    def own(self) -> int:
+        """The number of the circuit on which solving begins; 0 for none."""
+        return 0 if self.found.start is None else self.found.start.circuit
+
+    @property
+    def responsible(self) -> tuple[str, ...]:
+        """The groups that make limit positions."""
+        return tuple(dict.fromkeys(label(self.found.structure, limit.group) for limit in self.found.limits))
+
+    @property
+    def are_named(self) -> bool:
+        """Whether the group is written beside each limit position: where there are several, and no crowd."""
+        return len(self.responsible) > 1 and len(self.found.limits) <= MOST_NAMED
+
+    @property
+    def is_crowd(self) -> bool:
+        """Whether there are more circuits than colours."""
+        return len(self.found.circuits) > len(plot_style.COLOURS)
+
+    def look(self, circuit: Circuit, branch: Branch) -> dict[str, Any]:
+        """What the curve of a branch looks like."""
+        own, k = circuit.number == self.own, circuit.branches.index(branch)
+        width = ALONE if len(self.found.circuits) == 1 else OWN if own else OTHER
+        look = {"color": self.colour(circuit), "linestyle": DASHES[k % len(DASHES)], "linewidth": width}
+        # thin lines on the wide one, but for a crowd of grey ones
+        return {**look, "zorder": 2.0 if own and not self.is_crowd else 2.5 + own, "dash_capstyle": "butt"}
+
+    def colour(self, circuit: Circuit) -> str:
+        """The colour of a circuit."""
+        if self.is_crowd:
+            return plot_style.COLOURS[0] if circuit.number == self.own else FAINT
+        return plot_style.COLOURS[circuit.number - 1]
+
+    def panel(self, axes: Any, quantity: Shown, labels: list[Label]) -> None:
+        """All branches in one panel, their limit positions and change points."""
+        branches = [(circuit, branch) for circuit in self.found.circuits for branch in circuit.branches]
+        curves = [curve_of(self.positions, branch, quantity) for _, branch in branches]
+        low = seam([curve.y for curve in curves], OF_ANGLES) if quantity.is_angle else None
+        for (circuit, branch), curve in zip(branches, curves, strict=True):
+            axes.plot(*self._cut(curve.x, curve.y, low), **self.look(circuit, branch))
+            self._marks(axes, curve, low, self.colour(circuit))
+        self._start(axes, quantity, low)
+        self._frame(axes, curves, low, quantity)
+        if self.are_named:
+            labels += self._names(axes, curves, low)
+
+    def _cut(self, x: Number, y: Number, low: float | None) -> tuple[Number, Number]:
+        """A curve brought into one turn of what is an angle, both ways."""
+        if self.low is not None:
+            x, y = wrapped(x, y, self.low)
+        return (x, y) if low is None else wrapped(y, x, low)[::-1]
+
+    def _marked(self, axes: Any, curve: Curve, at: Sequence[int], low: float | None, look: Mapping[str, Any]) -> None:
+        """Marks at places of a curve; one at an end of a turn is at its other end too."""
+        if not at:
+            return
+        x, y = self._at(curve.x[list(at)], curve.y[list(at)], low)
+        for one, other in product(self._again(x, self.low), self._again(y, low)):
+            axes.plot(one, other, **look, zorder=5, clip_on=False)
+
+    def _again(self, values: Number, low: float | None) -> list[Number]:
+        """Values, and those at an end of a turn at its other end, NaN for the rest."""
+        if low is None:
+            return [values]
+        up, down = values < low + AT_END, values > low + TURN - AT_END
+        both = [(values, values == values), (values + TURN, up), (values - TURN, down)]
+        return [np.where(known, v, np.nan) for v, known in both if np.any(known)]
+
+    def _at(self, x: Number, y: Number, low: float | None) -> tuple[Number, Number]:
+        """A place as it is shown."""
+        x = x if self.low is None else x - turns(x, self.low)
+        return x, (y if low is None else y - turns(y, low))
+
+    def _marks(self, axes: Any, curve: Curve, low: float | None, colour: str) -> None:
+        dot = {"linestyle": "none", "marker": "o", "markersize": DOT, "color": colour}
+        self._marked(axes, curve, [k for k, _ in curve.limits], low, dot)
+        self._marked(axes, curve, curve.changes, low, {**canvas.RING, "color": plot_style.INK})
+
+    def _names(self, axes: Any, curves: Sequence[Curve], low: float | None) -> list[Label]:
+        """The groups responsible, each limit position once."""
+        found: dict[int, Label] = {}
+        for curve in curves:
+            for k, limit in curve.limits:
+                x, y = self._at(curve.x[k], curve.y[k], low)
+                text = label(self.found.structure, limit.group)
+                one = Label(axes, float(x), float(y), text, 1.0 if limit.greatest else -1.0, plot_style.INK)
+                found.setdefault(id(limit), one)
+        return list(found.values())
+
+    def _start(self, axes: Any, quantity: Shown, low: float | None) -> None:
+        """A diamond where solving begins."""
+        start = start_position(self.found)
+        if start is not None:
+            x = degrees(start.values) if self.across.is_angle else start.values
+            y = next(one for one in shown(start, quantity.name) if one.name == quantity.name).values
+            at = self._at(np.ravel(x), np.ravel(y), low)
+            axes.plot(*at, **START, color=plot_style.INK, zorder=6, clip_on=False)
+
+    def _frame(self, axes: Any, curves: Sequence[Curve], low: float | None, quantity: Shown) -> None:
+        """The ranges of both axes: a whole turn where a curve is cut at its ends."""
+        if self.low is not None and any(np.ptp(turns(curve.x, self.low)) for curve in curves):
+            axes.set_xlim(self.low, self.low + TURN)
+        else:
+            axes.margins(x=BESIDE if self.are_named else MARGIN)
+        still = canvas.steady(np.concatenate([curve.y for curve in curves]), quantity.scale)
+        if low is not None and any(np.ptp(turns(curve.y, low)) for curve in curves):
+            axes.set_ylim(low, low + TURN)
+        elif still is not None:
+            axes.set_ylim(*still)
+        else:
+            axes.margins(y=ROOM)
+
+    def legends(self, figure: Any) -> None:
+        """Which line is which branch, and what the marks mean."""
+        from matplotlib.lines import Line2D
+
+        handles = [Line2D([], [], **look, label=text) for text, look in self._entries()]
+        if len(handles) > 1:
+            figure.legend(handles=handles, loc="outside right upper")
+        marks = [Line2D([], [], label=textwrap.fill(text, WIDEST), **look) for text, look in self._meanings()]
+        if marks:
+            figure.legend(handles=marks, loc="outside lower right", ncols=len(marks))
+
+    def _entries(self) -> list[tuple[str, dict[str, Any]]]:
+        """The branches; of many of them the circuits, of many circuits that on which solving begins."""
+        shown = self.found.circuits
+        if len(self.found.branches) <= MOST_ENTRIES:
+            return [(_called(c, (b,)), self.look(c, b)) for c in shown for b in c.branches]
+        if not self.is_crowd:
+            return [(_called(c, c.branches), self.look(c, c.branches[0])) for c in shown]
+        own = [c for c in shown if c.number == self.own]
+        entries = [(_called(c, c.branches), self.look(c, c.branches[0])) for c in own]
+        others = next(c for c in shown if c.number != self.own)
+        text = f"{len(shown) - len(own)} other circuits" if own else f"{len(shown)} circuits"
+        return [*entries, (text, self.look(others, others.branches[0]))]
+
+    def _meanings(self) -> list[tuple[str, dict[str, Any]]]:
+        found: list[tuple[str, dict[str, Any]]] = []
+        if self.responsible:
+            of = "" if self.are_named else f" of {', '.join(self.responsible)}"
+            look = {"linestyle": "none", "marker": "o", "markersize": DOT, "color": plot_style.GREY}
+            found.append((f"limit position{of}", look))
+        if any(circuit.changes for circuit in self.found.circuits):
+            found.append(("change point", {**canvas.RING, "color": plot_style.INK}))
+        if self.found.start is not None:
+            found.append(("where solving begins", {**START, "color": plot_style.INK}))
+        return found
+
+
+def _called(circuit: Circuit, branches: Sequence[Branch]) -> str:
+    """What some branches of a circuit are called."""
+    first, last = branches[0].number, branches[-1].number
+    return f"circuit {circuit.number}, " + (f"branch {first}" if first == last else f"branches {first} to {last}")

@@ -1,0 +1,231 @@
+"""Branches of circuits as curves: quantities at places of every strand, whose ends are limit positions themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import cast
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
+from compoundkin.configurations import Branch, Circuits, Limit
+from compoundkin.configurations.driver_range import TURN as FULL
+from compoundkin.configurations.enumeration import dimensions_at
+from compoundkin.configurations.segments import CHANGE, NONE
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import degrees, order_of, quantity
+from compoundkin.kinematics.results import unwrapped
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.view.plot.plotted_rows import TURN, Shown, vector_of
+
+# Places on a strand for a turn of the driver's period: equal steps on a half circle whose diameter is the strand's
+# interval, so that they lie close where curves are steep.
+PLACES = 360
+# Where the one turn begins in which angles are shown, degrees; of equally good ones the first is taken.
+OF_DRIVERS, OF_ANGLES = (0.0, -180.0), (-180.0, 0.0, -90.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Values:
+    """A coordinate at all places."""
+
+    values: Number
+    is_angle: bool = True
+
+    def derivative(self, _: int) -> Number:
+        """The coordinate itself: there are no others."""
+        return self.values
+
+
+class _Places(_Values):
+    """Where a point is at all places."""
+
+    @property
+    def x(self) -> Number:
+        """The first coordinate."""
+        return np.real(self.values)
+
+    @property
+    def y(self) -> Number:
+        """The second coordinate."""
+        return np.imag(self.values)
+
+
+@dataclass(frozen=True, eq=False)
+class Positions:
+    """All that has a position on strands: `values` of the driver (rows, places), and the poses of the links there."""
+
+    found: Circuits
+    values: Number
+    world: Mapping[str, Pose]
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism."""
+        return self.found.structure.mechanism
+
+    @cached_property
+    def points(self) -> Mapping[str, _Places]:
+        """The points."""
+        dimensions = dimensions_at(self.found.structure, self.found.placing.design, 0)
+        places = {letter: (links[0], dimensions[links[0]][letter]) for letter, links in self.mechanism.carriers.items()}
+        return {letter: _Places(self._full(self.world[link].at(p).c[0])) for letter, (link, p) in places.items()}
+
+    @cached_property
+    def links(self) -> Mapping[str, _Values]:
+        """The angles of the links."""
+        return {name: _Values(self._full(self.world[name].angle.c[0])) for name in self.mechanism.links}
+
+    @cached_property
+    def pairs(self) -> Mapping[str, _Values]:
+        """The coordinates of the pairs."""
+        sweep = self.found.placing.sweep
+        found = {}
+        for name, pair in sweep.plan.pairs.items():
+            ends: Ends = sweep.ends[name]
+            poses: Poses = tuple(self.world[member] for member in pair.members)
+            with np.errstate(all="ignore"):
+                found[name] = _Values(self._full(pair.coordinate(ends, poses).c[0]), pair.free_is_angle)
+        return found
+
+    @cached_property
+    def drives(self) -> Mapping[str, _Values]:
+        """The values of the drivers."""
+        sweep = self.found.placing.sweep
+        values = {**sweep.fixed, sweep.driver: self.values}
+        return {name: _Values(self._full(values[name]), d.pair.free_is_angle) for name, d in sweep.plan.driven.items()}
+
+    def _full(self, value: Number) -> Number:
+        return np.broadcast_to(value, self.values.shape)
+
+
+def all_positions(found: Circuits) -> Positions:
+    """Every strand from end to end."""
+    strands = found.placing.strands
+    count = PLACES * max(1, round(found.period / FULL)) + 1
+    rows, phi = np.arange(strands.rows), np.linspace(0.0, np.pi, count)
+    sides = np.full(count, NONE)
+    sides[0], sides[-1] = 0, 1
+    return _positions(found, rows, strands.at(rows, phi[None]), sides)
+
+
+def start_position(found: Circuits) -> Positions | None:
+    """Where solving begins; None where nothing is assembled there."""
+    if found.start is None:
+        return None
+    return _positions(found, np.array([found.start.visit.row]), np.array([[found.start.inside]]), np.array([NONE]))
+
+
+def _positions(found: Circuits, rows: Number, values: Number, sides: Number) -> Positions:
+    with np.errstate(all="ignore"):
+        run = found.placing.sweep.run(found.placing.strands, rows, values, sides=sides)
+    return Positions(found, values, run.world)
+
+
+def shown(positions: Positions, name: str) -> tuple[Shown, ...]:
+    """A quantity by its name, (strands, places), angles in degrees; a point as its coordinates.
+
+    Raises UnknownName with the nearest name there is, InvalidInput for rates.
+    """
+    # of a motion, `quantity` asks for its points, links, pairs and drivers only
+    motion = cast(Motion, positions)
+    vector, part = vector_of(name)
+    if order_of(vector):
+        owner = vector.rpartition(".")[0]
+        what = quantity(motion, owner)
+        position = "x" if what.is_vector else "angle" if what.is_angle else "displacement"
+        remedy = f"take {owner}.{position}, or plot a motion: solve() it"
+        raise InvalidInput(Problem(name, "circuits show positions, not rates", remedy))
+    try:
+        found, part = quantity(motion, name), ""
+    except UnknownName:
+        if not part or not quantity(motion, vector).is_vector:
+            raise
+        found = quantity(motion, vector)
+    # angles go on from place to place, without leaps by a turn
+    values = degrees(unwrapped(found.values)) if found.is_angle else found.values
+    one = Shown(found.name, "deg" if found.is_angle else found.unit, values)
+    if part:
+        return (one.part(part),)
+    return (one.part("x"), one.part("y")) if one.is_vector else (one,)
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A quantity along a branch, in the order of its circuit: the driver `x`, the quantity `y`, and special places.
+
+    `limits` are the indices of its ends that are limit positions, with these; `changes` those of change points.
+    """
+
+    branch: Branch
+    x: Number
+    y: Number
+    limits: tuple[tuple[int, Limit], ...]
+    changes: tuple[int, ...]
+
+
+def curve_of(positions: Positions, branch: Branch, one: Shown) -> Curve:
+    """The curve of a branch."""
+    found, visits = positions.found, branch.visits
+    x = np.concatenate([positions.values[v.row][:: v.sense] + v.periods * found.period for v in visits])
+    y = np.concatenate([one.values[v.row][:: v.sense] for v in visits])
+    ends = branch.ends if visits[0].sense > 0 else branch.ends[::-1]
+    limits = tuple((k, end) for k, end in zip((0, len(x) - 1), ends, strict=True) if end is not None)
+    kinds = found.placing.strands.kind
+    count = positions.values.shape[1]
+    changes = tuple(count * (i + 1) - 1 for i, v in enumerate(visits) if kinds[v.row, v.left] == CHANGE)
+    driver = degrees(x) if positions.drives[found.driver].is_angle else x
+    return Curve(branch, driver, _joined(y) if one.is_angle else y, limits, changes)
+
+
+def _joined(angles: Number) -> Number:
+    return np.rad2deg(unwrapped(np.deg2rad(angles)))
+
+
+def seam(curves: Sequence[Number], candidates: Sequence[float]) -> float:
+    """The angle, of some, at which the fewest of several curves are cut; of those, where they take least room.
+
+    >>> seam([np.array([-80.0, 80.0])], (0.0, -180.0))
+    -180.0
+    """
+
+    def room(low: float) -> tuple[int, float]:
+        inside = np.concatenate([curve - turns(curve, low) for curve in curves])
+        span = np.ptp(inside[np.isfinite(inside)]) if np.isfinite(inside).any() else 0.0
+        # in steps of degrees, so that rounding does not decide
+        return sum(len(_cuts(turns(curve, low))) for curve in curves), round(float(span))
+
+    return min(candidates, key=room)
+
+
+def turns(angles: Number, low: float) -> Number:
+    """The whole turns, in degrees, by which angles lie above the turn that begins at `low`."""
+    return TURN * np.floor((angles - low) / TURN)
+
+
+def wrapped(first: Number, second: Number, low: float) -> tuple[Number, Number]:
+    """A curve whose first coordinate is brought into the turn that begins at `low`, NaN where it is cut.
+
+    >>> [part.tolist() for part in wrapped(np.array([350.0, 370.0]), np.array([0.0, 1.0]), 0.0)]
+    [[350.0, 360.0, nan, 0.0, 10.0], [0.0, 0.5, nan, 0.5, 1.0]]
+    """
+    away = turns(first, low)
+    k = _cuts(away)
+    border = low + np.maximum(away[k], away[k + 1])
+    share = (border - first[k]) / (first[k + 1] - first[k])
+    between = second[k] + share * (second[k + 1] - second[k])
+    where, blank = np.repeat(k + 1, 3), np.full(len(k), np.nan)
+    crossed = np.stack([border - away[k], blank, border - away[k + 1]], axis=1).ravel()
+    return np.insert(first - away, where, crossed), np.insert(
+        second, where, np.stack([between, blank, between], 1).ravel()
+    )
+
+
+def _cuts(away: Number) -> Number:
+    """After which places a curve goes into another turn."""
+    return np.flatnonzero(np.isfinite(away[1:] - away[:-1]) & (away[1:] != away[:-1]))

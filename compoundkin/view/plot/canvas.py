@@ -1,0 +1,192 @@
+"""Figures and axes: their making, their ticks, legends and marks."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.view.plot.extremes import CONSTANT
+from compoundkin.view.plot.plot_picture import Plot
+from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, colours
+from compoundkin.view.plot.plotted_rows import Shown
+from compoundkin.view.plot.point_labels import Label, place
+
+WIDTH = 7.0
+# Characters of a title in a line.
+TITLE = 78
+# More designs than this get a scale of colours instead of a legend.
+LISTED = 8
+# Steps of ticks in degrees, as people count them.
+DEGREES = (1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720)
+ACROSS, UPWARDS = 9, 6
+# Characters that the height of a panel and of a whole figure have room for.
+PANEL, WHOLE = 24, 60
+# How poses next to limit positions are marked.
+RING: Mapping[str, Any] = MappingProxyType(
+    {"linestyle": "none", "marker": "o", "markersize": 5.5, "markerfacecolor": "white", "markeredgewidth": 1.2}
+)
+
+
+def panels(rows: int, title: str, size: tuple[float, float], columns: int = 1, **options: Any) -> tuple[Any, list[Any]]:
+    """A figure with a title and its axes, row by row."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, layout="constrained")
+    FigureCanvasAgg(figure)
+    if title:
+        figure.suptitle(textwrap.fill(title, TITLE), x=0.01, ha="left")
+    grid = figure.subplots(rows, columns, squeeze=False, **options)
+    return figure, list(grid.ravel())
+
+
+def finished(figure: Any, labels: Sequence[Label]) -> Plot:
+    """The picture, its labels placed after everything else has its place."""
+    place(figure, labels)
+    return Plot(figure)
+
+
+def degree_step(span: float, most: int) -> float | None:
+    """The distance between ticks of degrees; None where the usual ones for decimal numbers suit.
+
+    >>> degree_step(360.0, 9), degree_step(44.0, 6), degree_step(1.5, 6)
+    (45, 10, None)
+    """
+    if span < DEGREES[1]:
+        return None
+    return next((step for step in DEGREES if span / step <= most), None)
+
+
+def ticks(axis: Any, is_angle: bool, most: int) -> None:
+    """Ticks at round numbers: of degrees at parts of a turn."""
+    from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+    low, high = axis.get_view_interval()
+    step = degree_step(abs(high - low), most) if is_angle else None
+    axis.set_major_locator(MultipleLocator(step) if step else MaxNLocator(most, steps=(1, 2, 2.5, 5, 10)))
+
+
+def axis_labels(axes: Any, x: Shown | None, y: Shown, room: int) -> None:
+    """Names and units, and the ticks that suit them; the unit goes below a name with more than `room` characters."""
+    if x is not None:
+        axes.set_xlabel(x.label)
+        ticks(axes.xaxis, x.is_angle, ACROSS)
+    lines = y.label.rsplit(" [", 1) if len(y.label) > room else [y.label]
+    small = {"fontsize": SMALL_PRINT} if len(lines[0]) > room else {}
+    axes.set_ylabel("\n[".join(lines), **small)
+    ticks(axes.yaxis, y.is_angle, UPWARDS)
+
+
+def steady(values: Number, scale: float) -> tuple[float, float] | None:
+    """Limits around values that are constant but for rounding; None where they are not.
+
+    >>> steady(np.array([1.0, 1.0]), 1.0)
+    (0.5, 1.5)
+    """
+    known = values[np.isfinite(values)]
+    if not len(known) or np.ptp(known) > CONSTANT * max(scale, float(np.max(np.abs(known)))):
+        return None
+    middle = float(np.mean(known))
+    half = abs(middle) / 2.0 if abs(middle) > CONSTANT * scale else scale or 1.0
+    return middle - half, middle + half
+
+
+def plane(axes: Any, x: str, y: str) -> None:
+    """Axes of a plane: equal scales."""
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
+    axes.margins(0.1)
+
+
+def legend(axes: Any) -> None:
+    """The legend of an axes, above it at the right, if there is more than one thing to tell apart."""
+    handles, _ = axes.get_legend_handles_labels()
+    if len(handles) > 1:
+        columns = min(len(handles), 4)
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, borderaxespad=0.2)
+
+
+def designs_legend(figure: Any, axes: Sequence[Any], names: Sequence[str]) -> None:
+    """Which colour is which design: names beside the plot, or a scale where there are many."""
+    from matplotlib.colors import LinearSegmentedColormap, Normalize
+    from matplotlib.lines import Line2D
+
+    shades = colours(1, len(names))
+    if len(names) <= LISTED:
+        handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(shades, names, strict=True)]
+        figure.legend(handles=handles, loc="outside right upper")
+        return
+    from matplotlib.cm import ScalarMappable
+
+    scale = LinearSegmentedColormap.from_list("designs", shades, N=len(names))
+    bar = figure.colorbar(ScalarMappable(Normalize(-0.5, len(names) - 0.5), scale), ax=list(axes), aspect=35, pad=0.02)
+    shown = np.unique(np.linspace(0, len(names) - 1, 6).round().astype(int))
+    bar.set_ticks(shown.tolist(), labels=[names[k] for k in shown])
+    bar.outline.set_visible(False)
+
+
+def events_legend(figure: Any, gaps: bool, limits: bool, changes: bool, marks: str = "") -> None:
+    """What the shades, rings, dashes and dots mean, below the plot."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles: list[Any] = []
+    if gaps:
+        handles.append(Patch(color=SHADE, label="cannot be assembled"))
+    if marks:
+        handles.append(Line2D([], [], linestyle="none", marker="o", markersize=3.5, color=GREY, label=marks))
+    if limits:
+        handles.append(ring_handle("next to a limit position"))
+    if changes:
+        handles.append(Line2D([], [], color=GREY, linestyle="--", linewidth=1.0, label="change point"))
+    if handles:
+        figure.legend(handles=handles, loc="outside lower right", ncols=len(handles))
+
+
+def ring_handle(label: str) -> Any:
+    """The ring that marks a pose next to a limit position, for a legend."""
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], **RING, color=INK, label=label)
+
+
+def ring(axes: Any, x: Number, y: Number, colour: Any) -> None:
+    """Rings around poses next to limit positions."""
+    if len(x):
+        axes.plot(x, y, **RING, color=colour, zorder=4)
+
+
+def dot(axes: Any, x: Any, y: Any, colour: Any, size: float = 4.5) -> None:
+    """Dots on a curve."""
+    axes.plot(x, y, linestyle="none", marker="o", markersize=size, color=colour, zorder=5, clip_on=False)
+
+
+def arrow(axes: Any, x: Number, y: Number, colour: Any) -> None:
+    """An arrow along a curve, an eighth of its poses after its begin; none where nothing moves."""
+    known = np.isfinite(x) & np.isfinite(y)
+    moves = np.flatnonzero(known[:-1] & known[1:] & ((np.diff(x) != 0) | (np.diff(y) != 0)))
+    if len(moves):
+        k = int(moves[len(moves) // 8])
+        style = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 13}
+        axes.annotate("", (x[k + 1], y[k + 1]), (x[k], y[k]), arrowprops=style, zorder=5)
+
+
+def note(axes: Any, text: str) -> None:
+    """A remark in small print above an axes, at the left."""
+    axes.set_title(text, loc="left", fontsize=SMALL_PRINT, color=GREY)
+
+
+def design_names(shape: tuple[int, ...], given: Sequence[str]) -> tuple[str, ...]:
+    """What designs are called: as given, or by their indices.
+
+    >>> design_names((2, 5), ()), design_names((1, 2, 5), ())
+    (('design 0', 'design 1'), ('design 0, 0', 'design 0, 1'))
+    """
+    indices = np.ndindex(*shape[:-1])
+    return tuple(given) or tuple("design " + ", ".join(map(str, index)) for index in indices)

@@ -1,0 +1,113 @@
+"""Centrodes: the fixed and the moving curve that roll on each other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from compoundkin.analysis.coupler.centrodes import pole
+from compoundkin.analysis.coupler.relative_motion import relative_link
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+from compoundkin.model.elements import FRAME
+from compoundkin.view.plot import canvas, planar, plot_style
+from compoundkin.view.plot.coupler_plot import fixed_points
+from compoundkin.view.plot.plot_picture import Plot
+from compoundkin.view.plot.point_labels import Label
+
+SIZE = (6.4, 5.8)
+# Poles farther from a link than this many lengths of the mechanism are not drawn: centrodes run to infinity.
+FAR = 2.5
+
+
+def centrodes(
+    motion: Motion,
+    link: str,
+    on: str = FRAME,
+    *,
+    pose: int = 0,
+    design: int = 0,
+    every: int | None = None,
+    title: str | None = None,
+    size: tuple[float, float] | None = None,
+) -> Plot:
+    """Draw the fixed and the moving centrode of a link as seen from another, the moving one where it is at a pose.
+
+    Both in the frame of `on`; they touch at the pole of that pose. `design` is an index where there are several. Poles
+    farther from the link than two and a half lengths of the mechanism are left out. Raises UnknownName for links that
+    are not there, InvalidInput for a pose or design that is not there, where no driver moves, or below order 1.
+    Source: E. A. Dijksman, Motion Geometry of Mechanisms (1976).
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> picture = centrodes(solve(load_named("elliptic-trammel")), "rod")
+    >>> [line.get_label() for line in picture.figure.axes[0].get_lines()[:1]]
+    ['fixed centrode (frame)']
+    """
+    shared = planar.drawing(motion, (), every)
+    _check(motion, pose, design)
+    fixed, moving, body = _curves(motion, link, on, design, pose)
+    with plot_style.styled():
+        figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or SIZE)
+        one, shades = axes[0], plot_style.COLOURS
+        planar.curve(one, shared, design, fixed, shades[0], f"fixed centrode ({on})")
+        planar.marks(one, shared, design, fixed, shades[0])
+        planar.curve(one, shared, design, moving, shades[1], f"moving centrode ({link})")
+        _pole(one, shared, fixed[pose])
+        fixed_points(one, motion, on, shared)
+        for letter, z in body.items():
+            one.plot([z.real], [z.imag], marker="x", markersize=6, color=shades[1], linestyle="none", zorder=6)
+            shared.labels.append(Label(one, z.real, z.imag, letter, 1j, shades[1]))
+        unit = motion.mechanism.unit or "length"
+        canvas.plane(one, f"x [{unit}]", f"y [{unit}]")
+        canvas.legend(one)
+        where = f"every {shared.every} poses: {shared.x.label}"
+        canvas.events_legend(figure, False, bool(shared.happened.blanks), False, where)
+        return canvas.finished(figure, shared.labels)
+
+
+def _check(motion: Motion, pose: int, design: int) -> None:
+    for what, index, count in (("pose", pose, motion.inputs.poses), ("design", design, motion.inputs.designs)):
+        if not 0 <= index < count:
+            raise InvalidInput(Problem(what, f"there is no {what} {index}", f"0 to {count - 1}"))
+
+
+def _curves(motion: Motion, link: str, on: str, design: int, pose: int) -> tuple[Number, Number, dict[str, complex]]:
+    """The fixed centrode, the moving one at a pose, and the points of the moving link there."""
+    found, seen = pole(motion, link, on), relative_link(motion, link, on)
+    rows = (motion.inputs.designs, motion.inputs.poses)
+
+    def row(values: Any) -> Number:
+        return np.broadcast_to(values, motion.shape).reshape(rows)[design]
+
+    fixed, moving = row(found.fixed), row(found.moving)
+    origin, turn = complex(row(seen.origin.position)[pose]), complex(np.exp(1j * row(seen.angle)[pose]))
+    own, other = _places(motion, link, design), _places(motion, on, design)
+    body = {letter: origin + turn * place for letter, place in own.items()}
+    fixed, moving = _near(fixed, other, motion.size), _near(moving, own, motion.size)
+    return fixed, origin + turn * moving, body
+
+
+def _places(motion: Motion, link: str, design: int) -> dict[str, complex]:
+    """The points of a link in its own frame, of one design at its first pose."""
+    known = motion.mechanism.geometry.points[link]
+    rows = {
+        name: np.broadcast_to(place, motion.shape).reshape(motion.inputs.designs, -1) for name, place in known.items()
+    }
+    return {name: complex(row[design, 0]) for name, row in rows.items()}
+
+
+def _near(curve: Number, points: dict[str, complex], size: float) -> Number:
+    """A curve with poles far from a link's points and at infinity left out."""
+    middle = np.mean(list(points.values())) if points else 0j
+    with np.errstate(invalid="ignore"):
+        near = np.isfinite(curve) & (np.abs(curve - middle) <= FAR * size)
+    return np.where(near, curve, complex(np.nan, np.nan))
+
+
+def _pole(axes: Any, shared: planar.Drawing, z: complex) -> None:
+    if np.isfinite(z):
+        canvas.dot(axes, [z.real], [z.imag], plot_style.INK, 6.0)
+        shared.labels.insert(0, Label(axes, z.real, z.imag, "pole", 1 - 1j))

@@ -1,0 +1,85 @@
+"""The one style of all plots, in force only while one is drawn or written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from types import MappingProxyType
+from typing import Any
+
+from compoundkin.base.errors import InvalidInput, Problem
+
+INK, GREY, SHADE = "#222222", "#767676", "#dcdcdc"
+# Told apart with every kind of colour blindness: M. Okabe, K. Ito, Color Universal Design (2008); the yellow is left
+# out, for it is too light for thin lines.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+# Even in lightness and safe for the colour-blind; its light end would be lost on white.
+FAMILY, LIGHTEST = "viridis", 0.88
+
+SMALL_PRINT = 8.5
+
+STYLE: Mapping[str, Any] = MappingProxyType(
+    {
+        "font.family": "DejaVu Sans",  # comes with Matplotlib, so that every computer draws the same
+        "font.size": 10,
+        "axes.titlesize": 10,
+        "axes.labelsize": 10,
+        "xtick.labelsize": 9,
+        "ytick.labelsize": 9,
+        "legend.fontsize": 9,
+        "figure.titlesize": 11,
+        "figure.facecolor": "white",
+        "axes.edgecolor": GREY,
+        "axes.labelcolor": INK,
+        "text.color": INK,
+        "xtick.color": GREY,
+        "ytick.color": GREY,
+        "xtick.labelcolor": INK,
+        "ytick.labelcolor": INK,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "grid.color": "#e6e6e6",
+        "grid.linewidth": 0.6,
+        "axes.linewidth": 0.8,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "lines.linewidth": 1.5,
+        "legend.frameon": False,
+        "savefig.dpi": 150,
+        "text.parse_math": False,  # a dollar sign in a name is a dollar sign
+        "svg.hashsalt": "compoundkin",  # otherwise the names inside an SVG differ from run to run
+        "svg.fonttype": "path",
+        "pdf.fonttype": 42,
+    }
+)
+
+
+def require_matplotlib() -> None:
+    """Raise InvalidInput with the remedy where Matplotlib is not installed."""
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise InvalidInput(Problem("", "plots need matplotlib", "pip install 'compoundkin[plot]'")) from None
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Draw in the style of the house, whatever the user's own settings are; they are back afterwards."""
+    require_matplotlib()
+    from matplotlib import style
+
+    with style.context(dict(STYLE), after_reset=True):
+        yield
+
+
+def colours(count: int, designs: int) -> tuple[Any, ...]:
+    """A colour for each of `count` curves, or for each of several designs from dark to light.
+
+    >>> colours(2, 1)
+    ('#0072B2', '#D55E00')
+    """
+    if designs == 1:
+        return tuple(COLOURS[k % len(COLOURS)] for k in range(count))
+    from matplotlib import colormaps
+
+    return tuple(colormaps[FAMILY](LIGHTEST * k / (designs - 1)) for k in range(designs))

@@ -1,0 +1,219 @@
+"""What a plot shows, as rows of real numbers: designs x poses, in the units that people read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.quantities import DRIVER, LINK, PAIR, POINT, Quantity, known_owners, quantity
+
+# The real numbers of a planar vector, as they are called behind its name.
+LENGTH = "length"
+PARTS: Mapping[str, Callable[[Number], Number]] = MappingProxyType({"x": np.real, "y": np.imag, LENGTH: np.abs})
+TIME, POSE, DRIVEN = "time", "pose", "driver"
+# The scale of angles, in degrees.
+TURN = 360.0
+POWERS = {"^2": "²", "^3": "³"}
+
+# What may be the time derivative of an attribute, the first that there is; nothing means the attribute of a bare name.
+RATES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        **{a: (b,) for table in (LINK, PAIR) for a, b in zip(table, list(table)[1:], strict=False)},
+        "": ("angular_velocity", "rate"),
+        "angle": ("angular_velocity", "rate"),
+        "displacement": ("rate",),
+        "speed": ("acceleration",),
+        "acceleration": ("jerk",),
+        "x": ("velocity.x",),
+        "y": ("velocity.y",),
+        **{f"{a}.{xy}": (f"{b}.{xy}",) for a, b in zip(POINT, list(POINT)[1:4], strict=False) for xy in ("x", "y")},
+    }
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """A quantity along an axis: `values` real or complex, (designs, poses), angles in degrees.
+
+    `order` is how many time derivatives it takes, `scale` what its rounding is relative to; `vector` holds the vectors
+    that `values` are the lengths of.
+    """
+
+    name: str
+    unit: str
+    values: Number
+    order: int = 0
+    scale: float = 1.0
+    vector: Number | None = None
+
+    @property
+    def label(self) -> str:
+        """The name with its unit.
+
+        >>> Shown("G.acceleration", "mm/s^2", np.zeros((1, 1))).label
+        'G.acceleration [mm/s²]'
+        """
+        return f"{self.name} [{readable(self.unit)}]".lstrip() if self.unit else self.name
+
+    @property
+    def is_vector(self) -> bool:
+        """Whether it is a planar vector."""
+        return np.iscomplexobj(self.values)
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether it is in degrees."""
+        return self.unit == "deg"
+
+    def part(self, name: str) -> Shown:
+        """The component or the length of a vector."""
+        vector = self.values if name == LENGTH else None
+        return Shown(f"{self.name}.{name}", self.unit, PARTS[name](self.values), self.order, self.scale, vector)
+
+    @property
+    def parts(self) -> tuple[Shown, ...]:
+        """The components and the length of a vector; what is no vector, as it is."""
+        return tuple(self.part(name) for name in PARTS) if self.is_vector else (self,)
+
+
+def readable(unit: str) -> str:
+    """A unit with its powers raised."""
+    for plain, raised in POWERS.items():
+        unit = unit.replace(plain, raised)
+    return unit
+
+
+def shown(motion: Motion, name: str) -> Shown:
+    """The quantity of a name; a component or the length of a vector as "G.velocity.x", "G.velocity.length".
+
+    Raises UnknownName with the nearest name there is.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> shown(solve(load_named("six-bar")), "G.velocity.length").label
+    'G.velocity.length [mm/s]'
+    """
+    owner, part = vector_of(name)
+    try:
+        found = _rows(motion, quantity(motion, name).shown)
+    except UnknownName:
+        if not part:
+            raise
+        whole = _rows(motion, quantity(motion, owner).shown)
+        if not whole.is_vector:
+            raise UnknownName(Problem(name, f"{owner} is no vector", f"leave .{part} out")) from None
+        return whole.part(part)
+    return found
+
+
+def vector_of(name: str) -> tuple[str, str]:
+    """The vector and its part that a name may mean; the part is empty where it can mean none.
+
+    >>> vector_of("G.velocity.x"), vector_of("G.x"), vector_of("G.length")
+    (('G.velocity', 'x'), ('G.x', ''), ('G', 'length'))
+    """
+    owner, _, part = name.rpartition(".")
+    return (owner, part) if part == LENGTH or (part in PARTS and "." in owner) else (name, "")
+
+
+def rate_name(motion: Motion, name: str) -> str:
+    """The name of the time derivative of a quantity; raises UnknownName where it has none that can be named.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> rate_name(solve(load_named("six-bar")), "bar.angle")
+    'bar.angular_velocity'
+    """
+    own = shown(motion, name)
+    vector, part = vector_of(name)
+    owner, _, attribute = vector.rpartition(".") if "." in vector else (vector, "", "")
+    for candidate in RATES.get(f"{attribute}.{part}" if part else attribute, ()):
+        try:
+            found = shown(motion, f"{owner}.{candidate}")
+        except UnknownName:
+            continue
+        if not own.is_vector and not found.is_vector:
+            return found.name
+    remedy = "take an angle, a displacement, a coordinate such as G.x, or a component such as G.velocity.x"
+    raise UnknownName(Problem(name, "a phase plot needs a quantity whose rate has a name", remedy))
+
+
+def along(motion: Motion, against: str | None) -> tuple[Shown, bool]:
+    """What a plot runs along, and whether it is known where the mechanism cannot be assembled.
+
+    None is the time of a motion in time, else its first driver that moves. Raises UnknownName.
+    """
+    if motion.inputs.poses < 2:
+        what, remedy = "the motion has a single pose", "solve it at several values of a driver"
+        raise InvalidInput(Problem("motion", what, remedy))
+    if against == POSE:
+        return Shown(POSE, "", _shaped(motion, np.arange(motion.inputs.poses, dtype=float))), True
+    if against == TIME or (against is None and motion.time is not None):
+        if motion.time is None:
+            raise InvalidInput(Problem(TIME, "this is no motion in time", "solve(..., time=...)"))
+        return Shown(TIME, "s", _shaped(motion, motion.time)), True
+    if against in (None, DRIVEN):
+        return driver(motion), True
+    found = _named(motion, str(against))
+    if found.is_vector:
+        remedy = f"take a part of it: {against}.x, {against}.y, {against}.length"
+        raise InvalidInput(Problem(against, "nothing can be drawn against a vector", remedy))
+    return found, False
+
+
+def _named(motion: Motion, against: str) -> Shown:
+    try:
+        return shown(motion, against)
+    except UnknownName:
+        if "." in against:
+            raise
+        known = nearest(against, [TIME, DRIVEN, POSE, *known_owners(motion)])
+        raise UnknownName(Problem(against, "there is nothing of this name to draw against", known)) from None
+
+
+def driver(motion: Motion) -> Shown:
+    """The first driver that moves; the first of all where none does."""
+    rows = {name: shown(motion, f"{name}.{next(iter(DRIVER))}") for name in motion.drives}
+    if not rows:
+        raise InvalidInput(Problem(DRIVEN, "the mechanism has no driver", f"against={POSE!r}"))
+    moving = [name for name, row in rows.items() if np.ptp(row.values, axis=-1).any()]
+    name = (moving or list(rows))[0]
+    return replace(rows[name], name=name)
+
+
+def all_of(motion: Motion, names: Sequence[str]) -> tuple[Shown, ...]:
+    """The quantities of names, or what the mechanism states as its outputs where none are given."""
+    chosen = names or motion.mechanism.outputs
+    if not chosen:
+        raise InvalidInput(Problem("quantities", "nothing is named", "name some: plot(motion, 'G.velocity')"))
+    return tuple(shown(motion, name) for name in chosen)
+
+
+def _rows(motion: Motion, found: Quantity) -> Shown:
+    values = _shaped(motion, found.values)
+    largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
+    scale = max(largest, (TURN if found.is_angle else motion.size) * _pace(motion) ** found.order)
+    owner, _, attribute = found.name.rpartition(".")
+    is_speed = attribute == "speed" and owner in motion.points
+    vector = _shaped(motion, motion.points[owner].velocity) if is_speed else None
+    return Shown(found.name, found.unit, values, found.order, scale, vector)
+
+
+def _pace(motion: Motion) -> float:
+    """How fast the drivers are, in lengths of the mechanism or radians a second."""
+    if not motion.order:
+        return 0.0
+    rates = [np.abs(drive.rate) / (1.0 if drive.is_angle else motion.size) for drive in motion.drives.values()]
+    return max((float(np.max(rate)) for rate in rates), default=0.0)
+
+
+def _shaped(motion: Motion, values: Any) -> Number:
+    full = np.broadcast_to(np.asarray(values), motion.shape)
+    return full.reshape(motion.inputs.designs, motion.inputs.poses)

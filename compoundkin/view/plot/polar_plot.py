@@ -1,0 +1,109 @@
+"""Polar plots: quantities as radii over the driver's angle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics import Motion
+from compoundkin.view.plot import canvas, planar, plot_style
+from compoundkin.view.plot.plot_picture import Plot
+from compoundkin.view.plot.plotted_rows import LENGTH, Shown, all_of, driver, readable, shown
+
+SIZE = (5.6, 5.8)
+# What Matplotlib leaves out of legends begins so.
+ZERO = "_zero"
+# Where the radii may be written, degrees, between the lines of angles.
+FREE_ANGLES = np.arange(15.0, 375.0, 30.0)
+# Free space inside the lowest and outside the highest value, as a part of their distance.
+MARGIN = 0.08
+
+
+def polar(
+    motion: Motion,
+    *names: str,
+    around: str | None = None,
+    designs: Sequence[str] = (),
+    title: str | None = None,
+    size: tuple[float, float] | None = None,
+) -> Plot:
+    """Draw quantities as radii over an angle: the first driver that moves, or `around`.
+
+    Vectors are drawn by their length. Radii begin at zero, or with negative values below the lowest one; then the zero
+    circle is drawn. All quantities of a plot have one unit. Raises UnknownName for names that the motion does not
+    have, InvalidInput where units differ or `around` is no angle.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> polar(solve(load_named("crank-shaper")), "E.velocity").figure.axes[0].name
+    'polar'
+    """
+    radii = tuple(one.part(LENGTH) if one.is_vector else one for one in all_of(motion, names))
+    angle = driver(motion) if around is None else shown(motion, around)
+    _check(radii, angle)
+    shared = planar.drawing(motion, designs, None)
+    with plot_style.styled():
+        text = motion.mechanism.title if title is None else title
+        figure, axes = canvas.panels(1, text, size or SIZE, subplot_kw={"projection": "polar"})
+        shades: Any = plot_style.colours(len(radii), shared.designs)
+        for k, one in enumerate(radii):
+            for d in range(shared.designs):
+                colour = shades[k if shared.designs == 1 else d]
+                _line(axes[0], shared, d, np.deg2rad(angle.values[d]), one, colour)
+        _rings(axes[0], radii)
+        axes[0].set_rlabel_position(_free_angle(axes[0]))
+        axes[0].set_xlabel(f"{', '.join(one.name for one in radii)} [{readable(radii[0].unit)}] over {angle.label}")
+        planar.finish(figure, axes, shared, False)
+        return canvas.finished(figure, [])
+
+
+def _check(radii: Sequence[Shown], angle: Shown) -> None:
+    if not angle.is_angle:
+        raise InvalidInput(Problem(angle.name, "it is no angle", 'name one: around="crank.angle"'))
+    for one in radii:
+        if one.unit != radii[0].unit:
+            told = f"its unit is {one.unit}, that of {radii[0].name} {radii[0].unit}"
+            raise InvalidInput(Problem(one.name, told, "draw them one by one"))
+
+
+def _line(axes: Any, shared: planar.Drawing, d: int, angle: Any, radius: Shown, colour: Any) -> None:
+    axes.plot(angle, radius.values[d], color=colour, label=radius.name)
+    beside = shared.happened.beside(d, len(angle))
+    canvas.ring(axes, angle[beside], radius.values[d][beside], colour)
+
+
+def _rings(axes: Any, radii: Sequence[Shown]) -> None:
+    """The range of radii and few rings, the zero circle among them where it lies inside."""
+    from matplotlib.ticker import MaxNLocator
+
+    values = np.concatenate([one.values[np.isfinite(one.values)] for one in radii])
+    scale = max(one.scale for one in radii)
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+    low = 0.0 if low >= 0.0 else low
+    pad = MARGIN * (high - low) or scale
+    axes.set_rlim(low - pad if low < 0.0 else 0.0, high + pad)
+    axes.yaxis.set_major_locator(MaxNLocator(4, steps=(1, 2, 2.5, 5, 10)))
+    axes.set_thetagrids(range(0, 360, 30))
+    axes.tick_params(axis="y", labelcolor=plot_style.GREY)
+    axes.spines["polar"].set_color("#c8c8c8")
+    if low < 0.0:
+        turn = np.linspace(0.0, 2.0 * np.pi, 181)
+        axes.plot(turn, np.zeros(len(turn)), color=plot_style.GREY, linewidth=1.0, zorder=0.4, label=ZERO)
+
+
+def _free_angle(axes: Any) -> float:
+    """The angle, of those between the lines of angles, at which the rings are farthest from all curves."""
+    low, high = axes.get_ylim()
+    rings = np.array([r for r in axes.yaxis.get_majorticklocs() if low < r < high])
+    free = np.full(len(FREE_ANGLES), np.inf)
+    for line in axes.get_lines():
+        known = np.isfinite(line.get_ydata()) & (line.get_label() != ZERO)
+        angle, radius = np.asarray(line.get_xdata())[known], np.asarray(line.get_ydata())[known]
+        if len(angle) and len(rings):
+            apart = np.abs(np.exp(1j * angle) - np.exp(1j * np.deg2rad(FREE_ANGLES))[:, None])
+            distance = np.abs(radius[:, None] - rings).min(axis=1) / (high - low)
+            free = np.minimum(free, np.min(apart + distance, axis=1))
+    return float(FREE_ANGLES[np.argmax(free)])

@@ -1,0 +1,195 @@
+"""`plot`: quantities over the driver, the time or any other quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+from compoundkin.view.plot import canvas, plot_style
+from compoundkin.view.plot.events import Events, at, events
+from compoundkin.view.plot.extremes import extremes as found_extremes
+from compoundkin.view.plot.plot_picture import Plot
+from compoundkin.view.plot.plotted_rows import Shown, all_of, along
+from compoundkin.view.plot.point_labels import Label, number
+
+FIRST, EACH = 2.0, 2.0
+# More curves than this in a panel, and values beside their extremes would be a crowd.
+MOST_MARKED = 4
+# Beside limit positions rates grow without limit: what exceeds the inner nine tenths of the values this many times
+# would press all else flat, and is cut off. Where a motion has no limit position it may end just before one, or have
+# true peaks, which are cut off only where nothing else could be seen.
+INNER, TALL, TALL_WITHOUT_LIMITS, MARGIN = (5.0, 95.0), 3.0, 50.0, 0.35
+# Free space above and below curves, for the values of extremes; a part of their range.
+HEADROOM = 0.16
+# How high the strip is that shows where single designs cannot be assembled.
+STRIP = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """One axes: its curves, and what its vertical axis is called."""
+
+    title: Shown
+    curves: tuple[Shown, ...]
+
+
+def plot(
+    motion: Motion,
+    *names: str,
+    against: str | None = None,
+    stacked: bool = True,
+    extremes: bool | None = None,
+    designs: Sequence[str] = (),
+    title: str | None = None,
+    size: tuple[float, float] | None = None,
+) -> Plot:
+    """Draw quantities of a motion over the time, its driver or any other quantity.
+
+    `names` as `quantity` takes them ("G.velocity", "bar.angle"), and parts of vectors ("G.velocity.x",
+    "G.velocity.length"); a vector is drawn as its components and its length; none means the mechanism's outputs.
+    `against` is "time", "driver", "pose" or a quantity; without it the time of a motion in time, else the first driver
+    that moves. Every quantity has a panel of its own; with ``stacked=False`` those of one unit share one. Angles are in
+    degrees. The highest and lowest values are marked, interpolated between poses, unless `extremes` is False or there
+    are many curves. Designs are a family of curves, called `designs` if that is given. `size` is in inches.
+
+    What cannot be assembled is shaded, poses next to limit positions are ringed, change points dashed. Raises
+    UnknownName for names that the motion does not have, InvalidInput for a motion of a single pose, a vector to draw
+    against, or without Matplotlib.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> picture = plot(solve(load_named("six-bar")), "bar.angle", "G.velocity")
+    >>> [axes.get_ylabel() for axes in picture.figure.axes]
+    ['bar.angle [deg]', 'G.velocity [mm/s]']
+    """
+    x, is_input = along(motion, against)
+    shown = arranged(all_of(motion, names), motion.inputs.designs, stacked)
+    called = canvas.design_names(motion.shape, designs)
+    if len(called) != motion.inputs.designs:
+        told = f"there are {motion.inputs.designs} designs and {len(called)} names"
+        raise InvalidInput(Problem("designs", told, "give one for each, or leave them out"))
+    happened = events(motion)
+    with plot_style.styled():
+        height = FIRST + EACH * len(shown)
+        text = motion.mechanism.title if title is None else title
+        figure, axes = canvas.panels(len(shown), text, size or (canvas.WIDTH, height), sharex=True)
+        labels: list[Label] = []
+        _across(axes, x, is_input)
+        for one, panel in zip(axes, shown, strict=True):
+            _draw(one, x, panel, happened, extremes, labels)
+            canvas.axis_labels(one, x if one is axes[-1] else None, panel.title, canvas.PANEL)
+            _mark_events(one, x, happened, is_input)
+        _legends(figure, axes, called, happened, is_input)
+        return canvas.finished(figure, labels)
+
+
+def arranged(shown: Sequence[Shown], designs: int, stacked: bool) -> tuple[Panel, ...]:
+    """The panels of quantities: one each, one for each unit, or with several designs one for each part."""
+    if designs > 1:
+        return tuple(Panel(part, (part,)) for one in shown for part in one.parts)
+    if stacked:
+        return tuple(Panel(one, one.parts) for one in shown)
+    units = dict.fromkeys(one.unit for one in shown)
+    found = []
+    for unit in units:
+        same = [one for one in shown if one.unit == unit]
+        names = same[0].name if len(same) == 1 else ""
+        parts = tuple(part for one in same for part in one.parts)
+        found.append(Panel(Shown(names, unit, same[0].values, scale=max(one.scale for one in same)), parts))
+    return tuple(found)
+
+
+def _draw(axes: Any, x: Shown, panel: Panel, happened: Events, marked: bool | None, labels: list[Label]) -> None:
+    """The curves of a panel, their extremes, and rings beside limit positions."""
+    designs = len(x.values)
+    shades = plot_style.colours(len(panel.curves), designs)
+    lines = [(curve, d) for curve in panel.curves for d in range(designs)]
+    window = _upwards(axes, panel, any(any(blank.limits) for blank in happened.blanks))
+    for k, (curve, d) in enumerate(lines):
+        name = curve.name.removeprefix(f"{panel.title.name}.") if designs == 1 else f"_design {d}"
+        axes.plot(x.values[d], curve.values[d], color=shades[k], label=name)
+        beside = happened.beside(d, x.values.shape[1])
+        canvas.ring(axes, x.values[d][beside], curve.values[d][beside], shades[k])
+    if marked or (marked is None and len(lines) <= MOST_MARKED):
+        found: list[Label] = []
+        for k, (curve, d) in enumerate(lines):
+            _extremes(axes, x.values[d], curve, d, window, shades[k], found)
+        # the outermost ones take their places first
+        labels.extend(sorted(found, key=lambda label: -label.y * label.towards.imag))
+
+
+def _upwards(axes: Any, panel: Panel, near_limits: bool) -> tuple[float, float] | None:
+    """Set the range of the vertical axis, and return it where values lie outside of it."""
+    values = np.concatenate([curve.values for curve in panel.curves])
+    still, window = canvas.steady(values, panel.title.scale), _window(panel, values, near_limits)
+    if still is not None:
+        axes.set_ylim(*still)
+    elif window is not None:
+        axes.set_ylim(*window)
+        canvas.note(axes, f"cut off: from {number(np.nanmin(values))} to {number(np.nanmax(values))}")
+        return window
+    else:
+        axes.margins(y=HEADROOM)
+    return None
+
+
+def _extremes(
+    axes: Any, x: Number, curve: Shown, d: int, window: tuple[float, float] | None, colour: Any, labels: list[Label]
+) -> None:
+    vector = None if curve.vector is None else curve.vector[d]
+    for one in found_extremes(x, curve.values[d], curve.order > 0, curve.scale, vector):
+        if window is None or window[0] < one.y < window[1]:
+            canvas.dot(axes, one.x, one.y, colour)
+            labels.append(Label(axes, one.x, one.y, number(one.y, curve.scale), 1j if one.is_highest else -1j, colour))
+
+
+def _window(panel: Panel, values: Number, near_limits: bool) -> tuple[float, float] | None:
+    """The values to show where rates grow without limit; None for all of them."""
+    known = values[np.isfinite(values)]
+    if not len(known) or all(curve.order == 0 for curve in panel.curves):
+        return None
+    low, high = np.percentile(known, INNER)
+    span = high - low
+    if span == 0.0 or np.ptp(known) <= (TALL if near_limits else TALL_WITHOUT_LIMITS) * span:
+        return None
+    edge, far = HEADROOM * span, MARGIN * span
+    return float(max(low - far, known.min() - edge)), float(min(high + far, known.max() + edge))
+
+
+def _mark_events(axes: Any, x: Shown, happened: Events, is_input: bool) -> None:
+    """Shades where nothing is assembled, and dashes at change points."""
+    designs = len(x.values)
+    shades = [plot_style.SHADE] if designs == 1 else plot_style.colours(1, designs)
+    for blank in happened.blanks if is_input else ():
+        row = x.values[blank.design]
+        begin, end = at(row, blank.begin), at(row, blank.end)
+        low, high = (0.0, 1.0) if designs == 1 else np.array([blank.design, blank.design + 1]) * STRIP / designs
+        axes.axvspan(begin, end, low, high, color=shades[blank.design], linewidth=0, zorder=0.5)
+    for design, place in happened.changes:
+        where = at(x.values[design], place)
+        colour = plot_style.GREY if designs == 1 else shades[design]
+        if np.isfinite(where):
+            axes.axvline(where, color=colour, linestyle="--", linewidth=1.0, zorder=1)
+
+
+def _across(axes: Sequence[Any], x: Shown, is_input: bool) -> None:
+    """The horizontal axis from end to end of what drives the motion."""
+    known = x.values[np.isfinite(x.values)]
+    if is_input and np.ptp(known) > 0:
+        axes[0].set_xlim(known.min(), known.max())
+
+
+def _legends(figure: Any, axes: Sequence[Any], called: Sequence[str], happened: Events, is_input: bool) -> None:
+    if len(called) > 1:
+        canvas.designs_legend(figure, axes, called)
+    else:
+        for one in axes:
+            canvas.legend(one)
+    limits = any(any(blank.limits) for blank in happened.blanks)
+    canvas.events_legend(figure, bool(happened.blanks) and is_input, limits, bool(happened.changes))

@@ -1,0 +1,127 @@
+"""Lists of kinematic chains, their inversions, Baranov trusses and Assur groups as a report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.synthesis.chains import AssurGroup, Chain, assur_groups, chain_name, chains, inversions, trusses
+from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS
+from compoundkin.view.report.report_data import Block, Cell, Column, Outcome, Paragraph, Report, Section, Table
+from compoundkin.view.report.wording import counted
+
+# Lists of more links are made where they are asked for: eleven take some seconds, twelve half a minute.
+MOST_MADE = 12
+# A group has one link less than its truss; those with more links are not listed.
+MOST_IN_GROUP = 8
+_NOTHING = Outcome(True, 0, 0, 0, 0, 0, 0)
+_FEWEST = 3
+_MOST_MOBILITY = 3
+
+
+def atlas_report(
+    links: int, mobility: int = 1, with_inversions: bool = False, with_trusses: bool = False, with_groups: bool = False
+) -> Report:
+    """The chains with so many links and that mobility; their inversions, the trusses and groups with as many links.
+
+    With `with_trusses` or `with_groups` these are listed instead of chains, unless inversions are asked for too.
+    Raises InvalidInput for numbers of links that no list can have.
+
+    >>> report = atlas_report(6)
+    >>> [section.key for section in report.sections], len(report.sections[0].blocks[1].rows)
+    (['chains'], 2)
+    """
+    _checked(links, mobility, with_groups)
+    sections = []
+    if with_inversions or not (with_trusses or with_groups):
+        sections.append(Section("chains", "", tuple(_chains(chains(links, mobility), links, mobility))))
+    if with_inversions:
+        sections.append(Section("inversions", "Inversions", tuple(_inversions(links, mobility))))
+    if with_trusses:
+        sections.append(Section("trusses", "Baranov trusses", tuple(_trusses(links))))
+    if with_groups:
+        sections.append(Section("assur_groups", "Assur groups", tuple(_groups(links))))
+    return Report(f"Atlas: {links} links", tuple(sections), _NOTHING)
+
+
+def _checked(links: int, mobility: int, with_groups: bool) -> None:
+    if not _FEWEST - with_groups <= links <= MOST_MADE:
+        what = f"there is no list of chains with {links} links"
+        raise InvalidInput(Problem("--links", what, f"give {_FEWEST} to {MOST_MADE}; up to {MOST_LINKS} are at hand"))
+    if not 0 <= mobility <= _MOST_MOBILITY:
+        what = f"there is no list of chains of mobility {mobility}"
+        raise InvalidInput(Problem("--mobility", what, f"give 0 (trusses) to {_MOST_MOBILITY}"))
+    if with_groups and not 2 <= links <= MOST_IN_GROUP:
+        what = f"there is no list of Assur groups with {links} links"
+        raise InvalidInput(Problem("--links", what, f"give an even number from 2 to {MOST_IN_GROUP}"))
+
+
+def _chains(found: Sequence[Chain], links: int, mobility: int) -> Iterator[Block]:
+    yield Paragraph(
+        f"{counted(len(found), 'chain')} of {links} links and mobility {mobility}.{_parity(links, mobility, found)}"
+    )
+    yield from _table(found)
+
+
+def _parity(links: int, mobility: int, found: Sequence[Chain]) -> str:
+    odd = (3 * (links - 1) - mobility) % 2
+    return f" F = 3 (n - 1) - 2 p leaves no whole number of pairs for n = {links}." if odd and not found else ""
+
+
+def _trusses(links: int) -> Iterator[Block]:
+    found = trusses(links)
+    yield Paragraph(
+        f"{counted(len(found), 'truss').replace('trusss', 'trusses')} of {links} links.{_parity(links, 0, found)}"
+    )
+    yield from _table(found)
+
+
+def _table(found: Sequence[Chain]) -> Iterator[Table]:
+    if found:
+        columns = (Column("number", style="each"), Column("name"), Column("links by pairs"),
+                   Column("symmetry", style="each"), Column("inversions", style="each"), Column("graph6"),
+                   Column("pairs"))  # fmt: skip
+        yield Table(columns, tuple(_row(k, chain) for k, chain in enumerate(found, 1)))
+
+
+def _row(k: int, chain: Chain) -> tuple[Cell, ...]:
+    name = chain_name(chain) or f"{chain.links}-link chain"
+    return k, name, chain.assortment_text, chain.symmetries, len(chain.inversions), chain.graph6, _pairs(chain)
+
+
+def _pairs(chain: Chain) -> str:
+    return " ".join(f"{first}-{second}" for first, second in chain.pairs)
+
+
+def _inversions(links: int, mobility: int) -> Iterator[Block]:
+    found = inversions(links, mobility)
+    yield Paragraph(f"{counted(len(found), 'inversion')}: links that symmetry makes alike are fixed once.")
+    columns = Column("name"), Column("graph6"), Column("frame, link", style="each"), Column("its pairs", style="each")
+    rows = tuple((chain_name(one.chain, one.frame), one.chain.graph6, one.frame, one.chain.degrees[one.frame])
+                 for one in found)  # fmt: skip
+    if rows:
+        yield Table(columns, rows)
+
+
+def _groups(links: int) -> Iterator[Block]:
+    found = assur_groups(links) if links % 2 == 0 else ()
+    odd = " A group of pins has an even number of links." if links % 2 else ""
+    yield Paragraph(f"{counted(len(found), 'Assur group')} of {links} links and revolute pairs.{odd}")
+    columns = (Column("name"), Column("order", style="each"), Column("truss"), Column("less link", style="each"),
+               Column("pairs; outer ones by their link"))  # fmt: skip
+    rows = tuple(_group_row(k, group) for k, group in enumerate(found, 1))
+    if rows:
+        yield Table(columns, rows)
+
+
+def _group_row(k: int, group: AssurGroup) -> tuple[Cell, ...]:
+    pairs = _group_pairs(group.truss, group.removed)
+    return f"{group.links}-link group {k}", group.outer, chain_name(group.truss), group.removed, pairs
+
+
+def _group_pairs(truss: Chain, removed: int) -> str:
+    """The pairs of a group, its links numbered from 0 in the order in which `Composer.attach` names them."""
+    number = {link: k for k, link in enumerate(link for link in range(truss.links) if link != removed)}
+    inner = [f"{number[a]}-{number[b]}" for a, b in truss.pairs if removed not in (a, b)]
+    outer = [str(number[link]) for link in truss.neighbours[removed]]
+    return f"{' '.join(inner)}; {' '.join(outer)}"

@@ -1,0 +1,209 @@
+"""Instant centres as a textbook solution has them: primary ones, secondary ones with their lines, velocity ratios."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.analysis.centres import Centre, Centres, Step, instant_centres
+from compoundkin.analysis.centres.circle_diagram import diagram_of
+from compoundkin.analysis.centres.derivation import derive
+from compoundkin.analysis.centres.instant_centres import POOR
+from compoundkin.kinematics.quantities import degrees
+from compoundkin.structure import Structure
+from compoundkin.view.report.digits import number
+from compoundkin.view.report.report_data import Block, Cell, Column, Formula, Paragraph, Section, Table
+from compoundkin.view.report.shown_poses import ROUNDING, Sample
+from compoundkin.view.report.wording import counted, listed
+
+# A direction this close to 0 or 180 degrees is rounding.
+NEARLY = 1e-9
+# Of so many centres, pose by pose, each is looked at within a second.
+MOST_CENTRES = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """The centres of one pose of a design, the first one, in the order of the derivation."""
+
+    sample: Sample
+    given: Centres | None = None
+
+    @cached_property
+    def centres(self) -> Centres:
+        """The centres of the motion: those given, if they are known already."""
+        return self.given or instant_centres(self.sample.motion)
+
+    @cached_property
+    def pose(self) -> tuple[int, ...]:
+        """The pose, an index into the motion's shape."""
+        shape = self.sample.motion.shape
+        flat = self.sample.design * self.sample.poses
+        return tuple(int(k) for k in np.unravel_index(flat, shape)) if shape else ()
+
+    def of(self, values: Any) -> Any:
+        """What an array of the motion's shape holds at the pose."""
+        return np.asarray(values)[self.pose]
+
+    @cached_property
+    def ordered(self) -> tuple[Centre, ...]:
+        """All centres, in the order in which they are derived; those without a step last."""
+        steps = {frozenset(step.centre): k for k, step in enumerate(self.centres.derivation())}
+        found = sorted(self.centres, key=lambda names: steps.get(frozenset(names), len(steps)))
+        return tuple(self.centres[names] for names in found)
+
+    @cached_property
+    def kinds(self) -> Mapping[str, str]:
+        """The kind of every step by its text, which is what a centre says of how it is derived."""
+        return {step.text: step.kind for step in self.centres.derivation()}
+
+    @cached_property
+    def primary(self) -> tuple[Centre, ...]:
+        """The centres that a pair gives."""
+        return tuple(centre for centre in self.ordered if self.kinds.get(centre.how) == "primary")
+
+    @cached_property
+    def secondary(self) -> tuple[Centre, ...]:
+        """All other centres."""
+        return tuple(centre for centre in self.ordered if self.kinds.get(centre.how) != "primary")
+
+
+def centres_sections(sample: Sample) -> tuple[Section, ...]:
+    """The sections on the instant centres of a motion's first pose: primary, secondary, angular velocities.
+
+    Raises NotDetermined where nothing moves, InvalidInput for a motion of order 0.
+    """
+    shown = Shown(sample)
+    primary = Paragraph("Each is given by a pair."), _table(shown, shown.primary, "pair")
+    secondary = (Paragraph(_rule(shown)), _table(shown, shown.secondary, "lines")) if shown.secondary else ()
+    return (
+        Section("centres", "Instant centres", (Paragraph(_place(sample)), *_count(shown))),
+        Section("primary", "Primary centres", primary),
+        *([Section("secondary", "Secondary centres", secondary)] if secondary else []),
+        _velocities(shown),
+    )
+
+
+def centre_blocks(found: Centres) -> tuple[Block, ...]:
+    """Centres at the first pose, the primary ones first; of many at many poses the derivation alone."""
+    sample = Sample(found.motion)
+    if len(found) * found.motion.inputs.designs * sample.poses > MOST_CENTRES:
+        return derivation_section(found.motion.structure).blocks
+    shown = Shown(sample, found)
+    tables = _table(shown, shown.primary, "pair"), _table(shown, shown.secondary, "lines")
+    return (Paragraph(_place(sample)), *_count(shown), *(table for table in tables if table.rows))
+
+
+def derivation_section(structure: Structure) -> Section:
+    """The order in which the circle diagram is completed: the same for all dimensions and poses.
+
+    Raises NotDetermined where the drivers do not determine the motion.
+    """
+    steps = derive(diagram_of(structure)).steps
+    columns = Column("step", style="each"), Column("centre"), Column("from")
+    rows = tuple((k, _name(step.centre), _derived(step)) for k, step in enumerate(steps, 1))
+    text = "The circle diagram, side by side, from links and pairs alone: it holds at every pose."
+    return Section("derivation", "Derivation of the centres", (Paragraph(text), Table(columns, rows)))
+
+
+def _derived(step: Step) -> str:
+    return _two_lines(step.text) if step.kind == "crossing" else step.text
+
+
+def _place(sample: Sample) -> str:
+    at = [f"{d.name} {number(float(d.values[0]))}{f' {d.unit}' if d.unit != 'length' else ''}" for d in sample.drivers]
+    unit = sample.motion.mechanism.unit or "the unit of the file"
+    return f"At {listed(at)}. Coordinates in {unit}, in the frame's axes." if at else f"Coordinates in {unit}."
+
+
+def _rule(shown: Shown) -> str:
+    text = "Three centres of three links lie on a line (Aronhold-Kennedy): each is where two such lines cross."
+    if {"trial", "rates"} & set(shown.kinds.values()):
+        text += " Where lines are lacking, trial positions or the drivers' rates help; the derivation has more."
+    return text
+
+
+def _count(shown: Shown) -> Iterator[Block]:
+    n, primary, secondary = len(shown.sample.motion.mechanism.links), len(shown.primary), len(shown.secondary)
+    yield Formula(f"N = n (n - 1) / 2 = {n} * {n - 1} / 2 = {len(shown.centres)}")
+    yield Paragraph(f"{primary} of the {counted(len(shown.centres), 'centre')} are primary, {secondary} secondary.")
+
+
+def _table(shown: Shown, found: Sequence[Centre], how: str) -> Table:
+    """A row for each centre; directions and conditioning only where there is something to say."""
+    unit = shown.sample.motion.mechanism.unit or "length"
+    floor = ROUNDING * shown.sample.motion.size
+    columns = [Column("centre"), Column("x", unit, "each", floor), Column("y", unit, "each", floor, follows=True)]
+    values: list[Iterable[Cell]] = [[_name(centre.links) for centre in found], *_coordinates(shown, found)]
+    directions = [_direction(shown, centre) for centre in found]
+    poor = [_poor(shown, centre) for centre in found]
+    if any(value is not None for value in directions):
+        columns.append(Column("at infinity, direction", "deg", "each", NEARLY))
+        values.append(directions)
+    if any(value is not None for value in poor):
+        columns.append(Column("poor conditioning", style="brief"))
+        values.append(poor)
+    texts = [_at_pose(centre.how_at(*shown.pose)) for centre in found]
+    return Table((*columns, Column(how)), tuple(zip(*values, texts, strict=True)))
+
+
+def _coordinates(shown: Shown, found: Sequence[Centre]) -> Iterator[list[Cell]]:
+    points = [complex(shown.of(centre.point)) for centre in found]
+    for parts in ([p.real for p in points], [p.imag for p in points]):
+        yield [float(v) if np.isfinite(p) else None for v, p in zip(parts, points, strict=True)]
+
+
+def _direction(shown: Shown, centre: Centre) -> float | None:
+    """The direction of a centre at infinity, from 0 to below 180 degrees: either way along it is the same."""
+    if not shown.of(centre.at_infinity):
+        return None
+    angle = float(degrees(np.angle(shown.of(centre.direction)))) % 180.0
+    return 0.0 if 180.0 - angle < NEARLY else angle
+
+
+def _poor(shown: Shown, centre: Centre) -> float | None:
+    value = float(shown.of(centre.conditioning))
+    return value if shown.of(centre.found) and value < POOR else None
+
+
+def _at_pose(how: str) -> str:
+    """How a centre was found, in short: a trial's details are for the derivation."""
+    return _two_lines(how.partition(";")[0])
+
+
+def _two_lines(text: str) -> str:
+    """The two lines one under the other, where a column can have them so."""
+    return text.removeprefix("line ").replace(" x line ", "\nx ")
+
+
+def _name(links: tuple[str, str]) -> str:
+    return f"({links[0]} {links[1]})"
+
+
+def _velocities(shown: Shown) -> Section:
+    """Angular velocities of the links by centres alone and as solved, as ratios to the driver's where it has one."""
+    motion = shown.sample.motion
+    text, unit, scale = _reference(shown)
+    rows = []
+    for name in motion.mechanism.links:
+        by_centres = float(shown.of(shown.centres.velocities.angular_velocity(name))) / scale
+        solved = float(shown.of(motion.links[name].angular_velocity)) / scale
+        rows.append((name, by_centres, solved, abs(by_centres - solved)))
+    floor = ROUNDING * max((abs(row[2]) for row in rows if np.isfinite(row[2])), default=0.0)
+    columns = (Column("link"), Column("from centres", unit, "each", floor), Column("as solved", unit, "each", floor),
+               Column("difference", unit, "brief"))  # fmt: skip
+    return Section("velocities", "Angular velocities", (Paragraph(text), Table(columns, tuple(rows))))
+
+
+def _reference(shown: Shown) -> tuple[str, str, float]:
+    """What angular velocities are told in: the speed of the only driver, if it turns, else rad/s."""
+    drivers = list(shown.sample.motion.drives.items())
+    speeds = [float(shown.of(drive.rate)) for _, drive in drivers]
+    if len(drivers) == 1 and drivers[0][1].is_angle and speeds[0]:
+        text = f"Ratios to the speed of the driver {drivers[0][0]}, by the centres alone and as solved from the pairs."
+        return text, "", speeds[0]
+    return "By the centres and the drivers' rates alone, and as solved from the pairs.", "rad/s", 1.0

@@ -1,0 +1,220 @@
+"""Reports on all configurations of a mechanism, and on its circuits, branches and limit positions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from math import prod
+
+import numpy as np
+
+from compoundkin.base.errors import CompoundkinError, InvalidInput
+from compoundkin.configurations import AllConfigurations, Branch, Circuit, Circuits, Limit, Place, circuits
+from compoundkin.configurations.location import first_configuration
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.quantities import degrees
+from compoundkin.structure import Group, Structure
+from compoundkin.view.report.digits import number
+from compoundkin.view.report.report_data import Alert, Cell, Column, Outcome, Paragraph, Report, Section, Table
+from compoundkin.view.report.wording import counted, listed
+
+# A reader needs no more rows than this of a table; the JSON report has all.
+MOST_ROWS = 40
+# A report follows all circuits of mechanisms with at most so many combinations of modes: a fraction of a second.
+MOST_MODES = 64
+TRIAD_MODES, TRIAD_BODIES = 6, 4
+# Angles below this (degrees) are rounding.
+FLOOR = 1e-9
+MISSING = "The numbers of configurations and of branches do not agree everywhere, so that a circuit may be missing."
+
+
+def configurations_report(found: AllConfigurations) -> Report:
+    """All configurations at the first driver values."""
+    outcome = Outcome(True, 1, int(any(True for _ in found)), 0, 0, 0, 0)
+    return Report(found.structure.mechanism.title, (configurations_section(found),), outcome)
+
+
+def configurations_section(found: AllConfigurations) -> Section:
+    """How many configurations there are, their names, and the angles of the links that are solved."""
+    ones, structure = list(found), found.structure
+    links = [link for group in structure.groups for link in group.links]
+    heads = (Column("no.", style="each"), Column("configuration"))
+    columns = (*heads, *(Column(link, "deg", "fixed", FLOOR) for link in links))
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
+        (i, one.name, *(float(degrees(one.angles[link])) for link in links)) for i, one in enumerate(ones, start=1)
+    )
+    at = {name: float(np.ravel(rates[0])[0]) for name, rates in found.inputs.drives.items()}
+    angles = "The angles are those of the links from the frame's x axis."
+    text = f"{_drivers(structure, at)}: {_count(found, len(ones))} {angles}"
+    return Section("configurations", "Configurations", (Paragraph(text), _table(columns, rows, keys=2)))
+
+
+def _count(found: AllConfigurations, real: int) -> str:
+    """How many are real of how many, and how that is known."""
+    if not found.possible:
+        return f"{counted(real, 'real configuration')} found by a search, which may have missed some."
+    text = f"{real} real of {found.possible} possible over the complex numbers"
+    return f"{text}; none is missing." if found.certified else f"{text}, as far as found numerically."
+
+
+def _drivers(structure: Structure, values: Mapping[str, float]) -> str:
+    shown = (f"{name} = {_with_unit(is_angle(structure, name), value)}" for name, value in values.items())
+    return ", ".join(shown) or "Without a driver"
+
+
+def _with_unit(angle: bool, value: float) -> str:
+    return f"{number(float(degrees(value)))} degrees" if angle else number(value)
+
+
+def is_angle(structure: Structure, driver: str) -> bool:
+    """Whether a driver drives an angle."""
+    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
+    return any(d.pair.free_is_angle for b in bodies for d in b.driven if d.drive.name == driver and not d.is_passive)
+
+
+def circuits_report(found: Circuits) -> Report:
+    """Circuits, branches, limit positions, change points and toggle positions of one driver."""
+    page = _Page(found)
+    sections = (page.circuits(), page.branches(), *page.limits(), *page.changes(), *page.toggles())
+    return Report(found.structure.mechanism.title, sections, Outcome(True, 0, 0, 0, 0, 0, 0))
+
+
+def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
+    """What a report of one design says of configurations, circuits and limits, where that takes little time.
+
+    With several drivers the first one is moved, the others stay at their first values.
+    """
+    structure, drives = motion.structure, motion.mechanism.drives
+    modes = prod(step.modes or _modes(step.group) for step in motion.tracker.plan.steps)
+    if not drives or motion.inputs.designs > 1 or modes > MOST_MODES:
+        return ()
+    first = {name: float(np.ravel(values[0])[0]) for name, values in motion.inputs.drives.items()}
+    others = {name: value for name, value in first.items() if name != drives[0].name}
+    try:
+        found = circuits(structure, drives[0].name, others, design=design)
+    except CompoundkinError:
+        return ()
+    page = _Page(replace(found, start=_begun(found, motion, design)))
+    return page.circuits(), *page.limits()
+
+
+def _begun(found: Circuits, motion: Motion, design: int) -> Place | None:
+    """Where on the circuits the motion begins, in whatever modes it was solved."""
+    first = first_configuration(motion, design)
+    try:
+        return None if first is None else found.at(first)
+    except InvalidInput:
+        return None
+
+
+def _modes(group: Group) -> int:
+    """The modes of a group without signs, for an estimate of the work: six of a triad of pins, many of any other."""
+    pins = all(pair.is_simple and pair.free_is_angle for pair in (*group.inner, *group.outer))
+    return TRIAD_MODES if pins and len(group.bodies) <= TRIAD_BODIES else MOST_MODES + 1
+
+
+class _Page:
+    """The sections of a report on circuits."""
+
+    def __init__(self, found: Circuits) -> None:
+        self.found = found
+        self.angle = is_angle(found.structure, found.driver)
+        self.value = Column(found.driver, "deg" if self.angle else "", "fixed", FLOOR)
+
+    def circuits(self) -> Section:
+        """The circuits, and whether all of them are found."""
+        heads = (Column("circuit", style="each"), Column("branches", style="each"), Column("limits", style="each"))
+        rows = tuple((c.number, len(c.branches), len(c.limits), self._range(c)) for c in self.found.circuits)
+        blocks = [Paragraph(" ".join(self._said()))]
+        table = _table((*heads, Column(f"driver {self.found.driver}")), rows)
+        alerts = [] if self.found.consistent else [Alert(MISSING, "give a narrower range of the driver")]
+        return Section("circuits", "Circuits", (*blocks, *alerts, table))
+
+    def _said(self) -> Iterator[str]:
+        found = self.found
+        branches = f"{len(found.branches)} {'branch' if len(found.branches) == 1 else 'branches'}"
+        others = f", with {_drivers(found.structure, found.fixed)}" if found.fixed else ""
+        limits = counted(len(found.limits), "limit position")
+        yield f"{counted(len(found.circuits), 'circuit')}, {branches}, {limits} of the driver {found.driver}{others}."
+        if found.consistent:
+            yield f"At {found.checked} further driver values there are as many configurations as branches."
+        if found.start:
+            yield f"Solving begins on circuit {found.start.circuit}, branch {found.start.branch}."
+
+    def _range(self, circuit: Circuit) -> str:
+        if circuit.turns_fully:
+            turns = abs(circuit.winding)
+            text = "turns fully" if turns == 1 else f"turns fully, {turns} turns to come back"
+            return f"{text}; turns back on the way" if circuit.limits else text
+        unit = " degrees" if self.angle else ""
+        return f"from {self._number(circuit.low)} to {self._number(circuit.high)}{unit}"
+
+    def _number(self, value: float) -> str:
+        return number(self._in_unit(value))
+
+    def _in_unit(self, value: float) -> float:
+        return float(degrees(value)) if self.angle else value
+
+    def branches(self) -> Section:
+        """The branches with the driver's interval and what ends them."""
+        unit = self.value.unit
+        columns = (
+            Column("branch", style="each"),
+            Column("circuit", style="each"),
+            Column("from", unit, "fixed", FLOOR),
+            Column("to", unit, "fixed", FLOOR, follows=True),
+            Column("ended by"),
+            Column("configuration in the middle"),
+        )
+        rows = tuple(self._branch(branch) for branch in self.found.branches)
+        return Section("branches", "Branches", (_table(columns, rows),))
+
+    def _branch(self, branch: Branch) -> tuple[Cell, ...]:
+        groups = dict.fromkeys([*(self._group(end) for end in branch.ends if end), *branch.open_ends])
+        ends = listed(groups) if groups else "-"
+        low, high = self._in_unit(branch.low), self._in_unit(branch.high)
+        return branch.number, branch.circuit, low, high, ends, branch.name
+
+    def _group(self, limit: Limit) -> str:
+        return f"{self.found.structure.groups[limit.group].name} ({', '.join(limit.links)})"
+
+    def limits(self) -> Iterator[Section]:
+        """The limit positions, each with the group responsible."""
+        if self.found.limits:
+            columns = (
+                self.value,
+                Column("which is"),
+                Column("circuit", style="each"),
+                Column("branches"),
+                Column("group"),
+            )
+            rows = tuple(
+                (self._in_unit(one.value), "greatest" if one.greatest else "least", one.circuit,
+                 f"{one.branches[0]} and {one.branches[1]}", self._group(one))
+                for one in self.found.limits
+            )  # fmt: skip
+            text = "Where the driver turns back, for a group comes to the end of its reach there."
+            yield Section("limits", "Limit positions", (Paragraph(text), _table(columns, rows)))
+
+    def changes(self) -> Iterator[Section]:
+        """The change points."""
+        found = [change for circuit in self.found.circuits for change in circuit.changes]
+        if found:
+            columns = (self.value, Column("circuit", style="each"), Column("branch", style="each"), Column("links"))
+            rows = tuple((self._in_unit(c.value), c.circuit, c.branch, ", ".join(c.links)) for c in found)
+            text = (
+                "Where two modes of a group meet and the motion goes on: it may change from one circuit to the other."
+            )
+            yield Section("changes", "Change points", (Paragraph(text), _table(columns, rows)))
+
+    def toggles(self) -> Iterator[Section]:
+        """The toggle positions."""
+        if self.found.toggles:
+            columns = (Column("link"), self.value, Column("circuit", style="each"), Column("branch", style="each"))
+            rows = tuple((t.link, self._in_unit(t.value), t.circuit, t.branch) for t in self.found.toggles)
+            text = "Where a link on the frame stands still and turns back while the driver goes on."
+            yield Section("toggles", "Toggle positions", (Paragraph(text), _table(columns, rows)))
+
+
+def _table(columns: tuple[Column, ...], rows: tuple[tuple[Cell, ...], ...], keys: int = 0) -> Table:
+    return Table(columns, rows, keys, tuple(range(MOST_ROWS)) if len(rows) > MOST_ROWS else None)

@@ -1,0 +1,62 @@
+"""The vector-loop equations of a mechanism, written out with knowns and unknowns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from compoundkin.analysis.equations import LoopEquations, latex, loop_equations, text
+from compoundkin.analysis.equations.terms import Unknown
+from compoundkin.structure import Structure
+from compoundkin.view.report.report_data import Block, Cell, Column, Formula, Paragraph, Section, Table
+from compoundkin.view.report.wording import counted
+
+NOTATION = (
+    "A vector AB e^(i crank) has the length AB and is turned by the angle of the link crank; "
+    "the frame's angle is zero. AB' starts or ends where a guide is, from which its displacement counts."
+)
+_MEANING = {
+    "angle": "angle of the link",
+    "displacement": "displacement along the guide",
+    "direction": "direction of the line between centres",
+    "parameter": "parameter of the profile at the contact",
+}
+
+
+def equations_section(structure: Structure) -> Section:
+    """The loop equations, the auxiliary ones and those of the drivers; what is unknown, what is known."""
+    return Section("equations", "Vector-loop equations", tuple(_blocks(loop_equations(structure))))
+
+
+def _blocks(found: LoopEquations) -> Iterator[Block]:
+    yield Paragraph(NOTATION)
+    for k, loop in enumerate(found.loops, 1):
+        yield Paragraph(f"Loop {k}: {loop.loop}")
+        yield Formula(text(loop), latex(loop))
+    for title, equations in (("Auxiliary equations:", found.auxiliary), ("Drivers:", found.drivers)):
+        if equations:
+            yield Paragraph(title)
+        for equation in equations:
+            yield Formula(text(equation), latex(equation))
+    yield Paragraph(_count(found))
+    yield Table((Column("unknown"), Column("what it is")), tuple(_unknown(one) for one in found.unknowns))
+    known = tuple((symbol, _length(length)) for symbol, length in found.lengths.items())
+    if known:
+        yield Table((Column("known"), Column("length", style="each")), known)
+
+
+def _count(found: LoopEquations) -> str:
+    loops, others = len(found.loops), len(found.auxiliary) + len(found.drivers)
+    sides = f"{2 * loops} equations of {counted(loops, 'loop')} in x and y, and {others} more"
+    verdict = "as many" if found.is_solvable else "not as many"
+    return f"{sides}: {found.equations} for {counted(len(found.unknowns), 'unknown')}, {verdict}."
+
+
+def _unknown(one: Unknown) -> tuple[Cell, ...]:
+    return one.key, f"{_MEANING[one.kind]} {one.owner}" if one.kind == "angle" else f"{_MEANING[one.kind]}, {one.owner}"
+
+
+def _length(length: object) -> float:
+    """A length, of several designs the first."""
+    return float(np.ravel(np.asarray(length))[0])

@@ -1,0 +1,138 @@
+"""The groups in solving order: what each uses and yields, and which way it is assembled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from compoundkin.kinematics.groups import DYADS
+from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
+from compoundkin.view.report.report_data import Block, Paragraph, Section, Step
+from compoundkin.view.report.wording import counted, listed
+
+if TYPE_CHECKING:
+    from compoundkin.kinematics import Motion
+
+# How a motion's tracker names the reason for an assembly mode, in a report's words.
+CHOSEN_BY = {
+    "sign": "chosen by sign",
+    "drawing": "nearest to the drawing",
+    "hint": "nearest to the hint",
+    "default": "taken by default",
+    "first found": "the first that was found",
+    "redundant": "in which the redundant pairs close",
+    "number": "chosen by number",
+    "configuration": "that of the configuration given",
+}
+
+
+def solving_section(structure: Structure, motion: Motion | None, design: int = 0) -> Section:
+    """The frame with its driven links, then every group."""
+    known = _letters(structure, structure.ground.links)
+    steps = [_ground(structure.ground, known)]
+    for k, group in enumerate(structure.groups):
+        new = [letter for letter in _letters(structure, group.links) if letter not in known]
+        known.update(dict.fromkeys(new))
+        mode = _mode(motion, k, design) if motion else ()
+        steps.append(Step(f"{k + 1}  {_title(group)}", (*_facts(structure, group, new), *mode)))
+    blocks: tuple[Block, ...] = Paragraph(_summary(structure)), *_left_out(structure), *steps
+    return Section("groups", "Groups in solving order", blocks)
+
+
+def _left_out(structure: Structure) -> Iterator[Paragraph]:
+    """What is redundant, and what stands in its place."""
+    for part in structure.relaxation.dropped if structure.relaxation else ():
+        instead = f", with {part.kept.name} in its place" if part.kept else ""
+        yield Paragraph(f"Left out is {part}{instead}: other pairs hold it, which is checked along the motion.")
+
+
+def _summary(structure: Structure) -> str:
+    if not structure.groups:
+        return "No part of it can be solved." if structure.faults else "The driven links are all there is."
+    highest = roman(max(group.class_ for group in structure.groups))
+    if structure.faults:
+        return f"{counted(len(structure.groups), 'group')} can be solved in what is determined."
+    return f"{counted(len(structure.groups), 'group')} after the driven links; the mechanism is of class {highest}."
+
+
+def _letters(structure: Structure, links: Iterable[str]) -> dict[str, None]:
+    return {letter: None for link in links for letter in structure.mechanism.links[link].points}
+
+
+def _title(group: Group) -> str:
+    return f"{group.name} {'dyad' if group.name in DYADS else 'group'}: {listed(group.links)}"
+
+
+def _ground(ground: Body, letters: Iterable[str]) -> Step:
+    driven = tuple(("driver", _driven(step)) for step in ground.driven if not step.is_passive)
+    title = "0  The frame and its driven links" if driven else "0  The frame"
+    return Step(title, (*driven, ("yields", _yields(ground.links, letters))))
+
+
+def _driven(step: DrivenPair) -> str:
+    drive, pair = step.drive, step.pair
+    name = f"{drive.name}: " if drive.name != drive.link else ""
+    return f"{name}{drive.link} on {drive.on}, the {' and '.join(pair.free)} of {pair.title} {pair.name}"
+
+
+def _facts(structure: Structure, group: Group, new: list[str]) -> Iterator[tuple[str, str]]:
+    yield "class", f"{roman(group.class_)}, order {group.order}"
+    inner = f"; inner {', '.join(pair.name for pair in group.inner)}" if group.inner else ""
+    yield "pairs", f"outer {', '.join(pair.name for pair in group.outer)}{inner}"
+    for body in group.bodies:
+        driven = [step for step in body.driven if not step.is_passive]
+        passive = [step for step in body.driven if step.is_passive]
+        if passive:
+            yield "passive", "; ".join(f"{step.drive.link} may turn about {step.pair.letters[0]}" for step in passive)
+        if driven:
+            yield "driven", "; ".join(map(_driven, driven))
+            yield "body", f"{listed(body.links)} are one link of changing shape"
+    yield "uses", "; ".join(_used(structure, group))
+    yield "yields", _yields(group.links, new)
+
+
+def _used(structure: Structure, group: Group) -> Iterator[str]:
+    """The points of known links by which the group is attached."""
+    own = set(group.links)
+    for pair in group.outer:
+        for link in pair.members:
+            if link not in own:
+                points = structure.mechanism.links[link].points
+                letters = [letter for letter in pair.letters if letter in points]
+                prefix = "" if pair.name.startswith(pair.letters[0]) else f"{pair.name}: "
+                yield f"{prefix}{', '.join(letters)}{' on ' if letters else ''}{link}"
+
+
+def _yields(links: Iterable[str], letters: Iterable[str]) -> str:
+    letters = list(letters)
+    points = f"; {'point' if len(letters) == 1 else 'points'} {', '.join(letters)}" if letters else ""
+    return f"{', '.join(links)}{points}"
+
+
+def _mode(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]]:
+    """Which assembly mode it is in, what that means, and what chose it."""
+    tracker = motion.tracker
+    why = CHOSEN_BY.get(tracker.chosen_by.get(k, ""), "")
+    step = tracker.plan.steps[k]
+    if step.modes == 0:
+        yield "mode", f"{why or 'found'}, by iteration, and followed along the motion"
+    elif step.modes == 1:
+        yield "mode", "the only one"
+    else:
+        sign = _sign(motion, k, design)
+        meaning = step.sign_means if sign > 0 else f"the other one; in +1, {step.sign_means}"
+        yield "mode", f"{sign:+d}, {why} ({meaning}){_changes(motion, k, design)}"
+
+
+def _sign(motion: Motion, k: int, design: int) -> int:
+    """The sign at the first pose."""
+    sign = motion.tracker.sign(k, np.array([[design]]), np.array([[0.0]]))
+    return int(np.ravel(sign)[0])
+
+
+def _changes(motion: Motion, k: int, design: int) -> str:
+    flips = motion.tracker.flips.get(k)
+    count = 0 if flips is None else int(np.count_nonzero(np.isfinite(flips[design])))
+    return f"; it changes at {counted(count, 'change point')}" if count else ""

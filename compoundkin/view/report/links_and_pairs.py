@@ -1,0 +1,92 @@
+"""The parts of a mechanism: sections on its links, its pairs, and faults of its structure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.structure import DrivenPair, Structure, links_by_pairs, pair_counts
+from compoundkin.view.report.digits import number
+from compoundkin.view.report.report_data import Alert, Block, Column, Paragraph, Section, Table
+from compoundkin.view.report.wording import counted, joined, kind_of_link, listed
+
+# A coordinate below this part of the mechanism's size is the rounding of a zero.
+ROUNDING = 1e-12
+
+
+def links_section(structure: Structure, design: int = 0) -> Section:
+    """The links: what each is called by its number of pairs, its points in its own frame, its pairs."""
+    pairs, floor = _pairs_by_link(structure), ROUNDING * structure.mechanism.geometry.size
+    rows = tuple(
+        (name, kind_of_link(count), _points(structure, name, floor, design), ", ".join(pairs[name]))
+        for name, count in pair_counts(structure).items()
+    )
+    columns = (Column("link"), Column("kind"), Column("points, in the link's own frame"), Column("pairs"))
+    return Section("links", "Links", (Paragraph(_by_kind(structure)), Table(columns, rows)))
+
+
+def _by_kind(structure: Structure) -> str:
+    kinds = [f"{len(names)} {kind_of_link(count)}" for count, names in links_by_pairs(structure).items()]
+    return f"{counted(len(structure.mechanism.links), 'link')}, the frame among them: {listed(kinds)}."
+
+
+def _points(structure: Structure, link: str, floor: float, design: int) -> str:
+    points = structure.mechanism.geometry.points[link]
+    return "  ".join(f"{name} {_place(p, floor, design)}" for name, p in points.items())
+
+
+def _place(point: Number, floor: float, design: int) -> str:
+    """A point as (x, y); one that changes along the motion or between designs as it is at the first pose."""
+    if np.ndim(point):
+        rows = np.asarray(point).reshape(-1, np.shape(point)[-1])
+        point = rows[min(design, len(rows) - 1), 0]
+    x, y = (0.0 if abs(v) <= floor else float(v) for v in (point.real, point.imag))
+    return f"({number(x)}, {number(y)})"
+
+
+def _pairs_by_link(structure: Structure) -> dict[str, list[str]]:
+    """The pairs of every link: the pins by their letters, then those written out."""
+    mechanism = structure.mechanism
+    found: dict[str, list[str]] = {name: [] for name in mechanism.links}
+    named = [*mechanism.pins.items(), *((pair.name, pair.members) for pair in mechanism.written_pairs)]
+    for name, links in named:
+        for link in links:
+            found[link].append(name)
+    return found
+
+
+def pairs_section(structure: Structure) -> Section:
+    """The pairs: what kind each is, which links it joins and where, and what drives it."""
+    drivers = {step.pair.name: name for name, step in driven_pairs(structure).items()}
+    rows = tuple(
+        (pair.name, f"{pair.code}, {pair.title.removesuffix(' pair')}", joined(pair.members),
+         ", ".join(pair.letters), drivers.get(pair.name, ""))
+        for pair in structure.pairs
+    )  # fmt: skip
+    columns = (Column("pair"), Column("kind"), Column("joins"), Column("at"), Column("driven by"))
+    return Section("pairs", "Pairs", (*_multiple_pins(structure), Table(columns, rows)))
+
+
+def driven_pairs(structure: Structure) -> dict[str, DrivenPair]:
+    """The driven pair of every driver that has its place in the structure, by the driver's name."""
+    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
+    return {step.drive.name: step for body in bodies for step in body.driven if not step.is_passive}
+
+
+def _multiple_pins(structure: Structure) -> Iterator[Block]:
+    for letter, links in structure.mechanism.pins.items():
+        if len(links) > 2:
+            text = f"{letter} joins {listed(links)}: a multiple pin of {len(links)} links"
+            yield Paragraph(f"{text}, counted as {len(links) - 1} pairs.")
+
+
+def faults_section(structure: Structure) -> Section:
+    """What keeps the structure from being solved, with remedies."""
+    alerts = tuple(Alert(_sentence(fault.text), fault.remedy) for fault in structure.faults)
+    return Section("faults", "What stands in the way", (Paragraph("The mechanism cannot be solved as it is."), *alerts))
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:] + "."

@@ -1,0 +1,108 @@
+"""Mobility, loops, and equations against unknowns: what is counted before anything is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from compoundkin.structure import Structure, loop_count
+from compoundkin.view.report.report_data import Block, Column, Formula, Paragraph, Section, Table
+from compoundkin.view.report.wording import counted
+
+# Beyond these a report lists only the first: a reader has seen enough.
+MOST_LOOPS = 20
+
+
+@dataclass(frozen=True)
+class EquationCount:
+    """The position equations of a mechanism against their unknowns, with the angles of the links as unknowns.
+
+    Unknown are the angle of every moving link and the displacement of every pair that slides or of every contact. Each
+    loop closes in x and in y; each pair that slides without turning ties the angles of its two links, an auxiliary
+    equation, and so does a gear or belt, whose loop does not count; each driver prescribes one coordinate.
+    Source: vector loops as in R. L. Norton, Design of Machinery, chapter 4, and E. Soylemez, Mechanisms.
+
+    >>> count = EquationCount(loops=2, angles=5, displacements=1, auxiliary=1, drivers=1)
+    >>> count.equations, count.unknowns
+    (6, 6)
+    """
+
+    loops: int
+    angles: int
+    displacements: int
+    auxiliary: int
+    drivers: int
+
+    @property
+    def equations(self) -> int:
+        """How many equations there are."""
+        return 2 * self.loops + self.auxiliary + self.drivers
+
+    @property
+    def unknowns(self) -> int:
+        """How many coordinates are unknown."""
+        return self.angles + self.displacements
+
+
+def equation_count(structure: Structure) -> EquationCount:
+    """Count the equations and unknowns of a structure.
+
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import link
+    >>> from compoundkin.structure import decompose
+    >>> bars = link("frame", A=0, D=4), link("crank", A=0, B=1), link("rod", B=0, C=3), link("arm", C=0, D=3)
+    >>> count = equation_count(decompose(Mechanism("m", *bars)))
+    >>> count.equations, count.unknowns
+    (2, 3)
+    """
+    geared = [pair for pair in structure.pairs if pair.counts_turns and pair.held == 1]
+    running = [pair for pair in structure.pairs if pair not in geared and not (pair.is_simple and pair.free_is_angle)]
+    guided = [pair for pair in running if pair.held > 1]
+    loops, angles = loop_count(structure) - len(geared), len(structure.mechanism.links) - 1 - len(structure.passive)
+    return EquationCount(loops, angles, len(running), len(guided) + len(geared), structure.mobility.drivers)
+
+
+def loops_section(structure: Structure) -> Section:
+    """The independent loops as chains, and the equations against the unknowns."""
+    count = equation_count(structure)
+    links, pairs, loops = len(structure.mechanism.links), len(structure.pairs), loop_count(structure)
+    euler = Formula(f"L = p - n + 1 = {pairs} - {links} + 1 = {pairs - links + 1}")
+    blocks: list[Block] = [euler]
+    if loops != pairs - links + 1:
+        text = f"The links fall into separate pieces, so that there are {counted(loops, 'loop')}."
+        blocks.append(Paragraph(text))
+    if count.loops < loops:
+        through = counted(loops - count.loops, "loop")
+        blocks.append(Paragraph(f"Of these, {through} through gears or belts: an auxiliary equation of angles each."))
+    rows = tuple((k, str(loop)) for k, loop in enumerate(structure.loops[:MOST_LOOPS], 1))
+    if rows:
+        blocks.append(Table((Column("loop", style="each"), Column("chain: link -pair- link")), rows))
+    if loops > MOST_LOOPS:
+        blocks.append(Paragraph(f"... and {loops - MOST_LOOPS} more."))
+    blocks += _equations(count)
+    if structure.relaxation and not structure.faults:
+        blocks.append(Paragraph("At these dimensions what is too much follows from the rest."))
+    return Section("loops", "Loops and equations", tuple(blocks))
+
+
+def _equations(count: EquationCount) -> tuple[Block, ...]:
+    terms = (count.angles, "link angle"), (count.displacements, "displacement")
+    unknowns = f"unknowns:  {_sum(terms, count.unknowns)}"
+    wanted = (2 * count.loops, "for loops (x and y)"), (count.auxiliary, "auxiliary"), (count.drivers, "for drivers")
+    equations = f"equations: {_sum(wanted, count.equations)}"
+    return Formula(f"{unknowns}\n{equations}"), *_verdict(count)
+
+
+def _sum(terms: tuple[tuple[int, str], ...], total: int) -> str:
+    parts = [f"{number} {word}{'s' if number != 1 and word.split()[-1] in ('angle', 'displacement') else ''}"
+             for number, word in terms if number]  # fmt: skip
+    return f"{' + '.join(parts) or '0'} = {total}"
+
+
+def _verdict(count: EquationCount) -> tuple[Block, ...]:
+    auxiliary = " An auxiliary equation ties angles: of a block and its guide, of two gears." if count.auxiliary else ""
+    if count.equations == count.unknowns:
+        return (Paragraph(f"As many equations as unknowns.{auxiliary}"),)
+    gap = abs(count.equations - count.unknowns)
+    there = f"{'There is' if gap == 1 else 'There are'} {counted(gap, 'equation')}"
+    side = "too many" if count.equations > count.unknowns else "too few"
+    return (Paragraph(f"{there} {side} for the unknowns.{auxiliary}"),)

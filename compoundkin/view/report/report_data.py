@@ -1,0 +1,136 @@
+"""A report as data: sections of paragraphs, formulas, steps and tables; renderers only write it out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from compoundkin.base.display import Shows
+
+Cell: TypeAlias = str | int | float | bool | tuple[float, ...] | None
+
+# How the cells of a column are written.
+#   text    words, aligned left
+#   fixed   numbers, all with the same decimals: six digits for the largest
+#   each    numbers, each with six significant digits
+#   brief   numbers of which only the magnitude matters: 2.1e-14
+#   passed  True, False, or None where it cannot be said
+Style: TypeAlias = Literal["text", "fixed", "each", "brief", "passed"]
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """A sentence or several."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A line of mathematics, to be written as it is; `latex` where there is such, without dollar signs."""
+
+    text: str
+    latex: str = ""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table; numbers not above `floor` in size are rounding and are written as zero.
+
+    `follows` keeps it beside the column before it where a table is split.
+    """
+
+    name: str
+    unit: str = ""
+    style: Style = "text"
+    floor: float = 0.0
+    follows: bool = False
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it is aligned right."""
+        return self.style in ("fixed", "each", "brief")
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of cells. The first `keys` columns are repeated where a table is split for its width.
+
+    `shown` are the indices of the rows that a reader needs, where those are not all: the JSON report has all.
+    """
+
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    keys: int = 0
+    shown: tuple[int, ...] | None = None
+
+    @property
+    def shown_rows(self) -> tuple[tuple[Cell, ...], ...]:
+        """The rows that a reader needs.
+
+        >>> Table((Column("a"),), (("x",), ("y",)), shown=(1,)).shown_rows
+        (('y',),)
+        """
+        return self.rows if self.shown is None else tuple(self.rows[k] for k in self.shown)
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of several: a title, and what is to be said of it by keyword."""
+
+    title: str
+    facts: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class Alert:
+    """What is wrong, and how to mend it."""
+
+    text: str
+    remedy: str = ""
+
+
+Block: TypeAlias = Paragraph | Formula | Table | Step | Alert
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a report; `key` is its name in the JSON report."""
+
+    key: str
+    title: str
+    blocks: tuple[Block, ...]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a report comes to, for those who only ask that: `passed` covers checks and published numbers."""
+
+    solvable: bool
+    poses: int
+    assembled: int
+    checks: int
+    checks_passed: int
+    published: int
+    published_passed: int
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed and every published number was reproduced."""
+        return self.checks == self.checks_passed and self.published == self.published_passed
+
+
+@dataclass(frozen=True)
+class Report(Shows):
+    """What there is to say about a mechanism, in the order in which it is read."""
+
+    title: str
+    sections: tuple[Section, ...]
+    outcome: Outcome
+
+    def section(self, key: str) -> Section | None:
+        """The section of a key, where the report has it."""
+        return next((section for section in self.sections if section.key == key), None)
+
+    def __repr__(self) -> str:
+        return f"Report({self.title!r}: {', '.join(section.key for section in self.sections)})"

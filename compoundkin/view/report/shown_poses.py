@@ -1,0 +1,111 @@
+"""One design of a motion, its drivers and the poses of it that a table shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.quantities import Quantity, quantity
+from compoundkin.view.report.report_data import Column
+
+# A table over the cycle has at most this many rows besides the last pose.
+ROWS = 25
+# Numbers below this part of what is natural for the mechanism are rounding, and shown as zero.
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """One design of a motion.
+
+    Raises InvalidInput for a design that the motion does not have.
+    """
+
+    motion: Motion
+    design: int = 0
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.design < self.motion.inputs.designs:
+            known = f"0 to {self.motion.inputs.designs - 1}" if self.motion.inputs.designs > 1 else "there is only 0"
+            raise InvalidInput(Problem("design", f"there is no design {self.design}", known))
+
+    @property
+    def poses(self) -> int:
+        """How many poses it has."""
+        return self.motion.inputs.poses
+
+    def of(self, values: Any) -> Any:
+        """This design's part of an array of the motion's shape: one entry a pose."""
+        full = np.broadcast_to(values, self.motion.shape)
+        return full.reshape(self.motion.inputs.designs, self.poses)[self.design]
+
+    def quantity(self, name: str) -> Quantity:
+        """A quantity of this design, angles in degrees."""
+        found = quantity(self.motion, name).shown
+        return Quantity(found.name, self.of(found.values), found.unit, found.order, found.is_angle)
+
+    @cached_property
+    def assembled(self) -> Any:
+        """Which poses are assembled."""
+        return self.of(self.motion.assembled)
+
+    @cached_property
+    def drivers(self) -> tuple[Quantity, ...]:
+        """The values of the drivers, angles in degrees."""
+        unit = self.motion.mechanism.unit or "length"
+        found = [(name, drive, "rad" if drive.is_angle else unit) for name, drive in self.motion.drives.items()]
+        made = [Quantity(name, self.of(d.value), unit, 0, d.is_angle).shown for name, d, unit in found]
+        return tuple(made)
+
+    @cached_property
+    def varying(self) -> tuple[Quantity, ...]:
+        """The drivers that change along the motion, all of them where there is but one pose."""
+        return tuple(d for d in self.drivers if self.poses == 1 or np.ptp(d.values) > 0)
+
+    @cached_property
+    def times(self) -> Any:
+        """The times of its poses; None for a motion that is not in time."""
+        return None if self.motion.time is None else self.of(self.motion.time)
+
+    @cached_property
+    def places(self) -> tuple[Column, Any]:
+        """What tells poses apart: the time, the value of the only driver that changes, else their numbers, from 0."""
+        if self.times is not None:
+            return Column("time", "s", "fixed"), self.times
+        if len(self.varying) == 1:
+            return self.driver_column(self.varying[0]), self.varying[0].values
+        return Column("pose", style="each"), np.arange(self.poses)
+
+    @cached_property
+    def every(self) -> int:
+        """A table shows every k-th pose: this is k."""
+        return max(1, -(-(self.poses - 1) // (ROWS - 1)))
+
+    @cached_property
+    def rows(self) -> tuple[int, ...]:
+        """The poses a table shows, the last one among them."""
+        shown = list(range(0, self.poses, self.every))
+        return tuple(shown if shown[-1] == self.poses - 1 else [*shown, self.poses - 1])
+
+    def driver_column(self, driver: Quantity) -> Column:
+        """The column of a driver in a table."""
+        return Column(driver.name, driver.unit, "fixed", ROUNDING * float(np.max(np.abs(driver.values), initial=0.0)))
+
+    def floor(self, found: Quantity) -> float:
+        """Below which a quantity is rounding: by the mechanism's size, its drivers' rates, and its own vectors."""
+        size = 1.0 if found.unit.startswith(("deg", "rad")) else self.motion.mechanism.geometry.size
+        values = np.abs(found.values)
+        largest = float(np.max(values, initial=0.0, where=np.isfinite(values))) if found.is_vector else 0.0
+        return ROUNDING * max(largest, size * self._rate**found.order)
+
+    @cached_property
+    def _rate(self) -> float:
+        """The greatest rate of a driver, slides by the mechanism's size."""
+        size = self.motion.mechanism.geometry.size
+        rates = [(drive, self.motion.inputs.drives[name][1]) for name, drive in self.motion.drives.items()]
+        return max((float(np.max(np.abs(r))) / (1.0 if d.is_angle else size) for d, r in rates), default=0.0)

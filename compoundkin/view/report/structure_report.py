@@ -1,0 +1,82 @@
+"""The report of a structure or of a motion, section by section."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from compoundkin.kinematics import Motion
+from compoundkin.structure import Structure, roman
+from compoundkin.structure.redundancy import relaxed
+from compoundkin.view.report.chain_section import chain_section
+from compoundkin.view.report.groups_section import solving_section
+from compoundkin.view.report.links_and_pairs import faults_section, links_section, pairs_section
+from compoundkin.view.report.mobility_count import loops_section
+from compoundkin.view.report.mobility_section import mobility_section
+from compoundkin.view.report.outputs_section import drivers_section
+from compoundkin.view.report.report_data import Outcome, Paragraph, Report, Section
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.wording import counted
+
+
+def report(subject: Structure | Motion, outputs: Sequence[str] = (), design: int = 0) -> Report:
+    """The report of a motion, or of a structure before it is solved (one with faults included).
+
+    `outputs` are quantities such as "G.velocity"; without any, those that the mechanism names. Of a motion
+    with several designs one is reported, by its index in the order of the motion's axes before the last;
+    the checks cover all.
+
+    Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
+
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.structure import decompose
+    >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> [section.key for section in report(decompose(crank)).sections]
+    ['about', 'links', 'pairs', 'mobility', 'chain', 'loops', 'groups', 'drivers']
+    """
+    if isinstance(subject, Structure):
+        return _of_structure(subject)
+    # what a motion takes is not loaded for the report of a structure
+    from compoundkin.view.report.motion_report import report_of_motion
+
+    return report_of_motion(Sample(subject, design), outputs)
+
+
+def _of_structure(structure: Structure) -> Report:
+    structure = relaxed(structure)
+    outcome = Outcome(not structure.faults, 0, 0, 0, 0, 0, 0)
+    about = about_section(structure, structure_in_short(structure))
+    faults = [faults_section(structure)] if structure.faults else []
+    solving = solving_section(structure, None), drivers_section(structure, None)
+    return Report(structure.mechanism.title, (about, *counted_sections(structure), *faults, *solving), outcome)
+
+
+def counted_sections(structure: Structure, design: int = 0, motion: Motion | None = None) -> tuple[Section, ...]:
+    """The parts of a mechanism and what counting them tells."""
+    parts = links_section(structure, design), pairs_section(structure)
+    return (*parts, mobility_section(structure, motion), chain_section(structure), loops_section(structure))
+
+
+def about_section(structure: Structure, in_short: str, more: str = "") -> Section:
+    """What the mechanism is, in which units, and what the report comes to."""
+    mechanism = structure.mechanism
+    said = (
+        mechanism.description,
+        f"Source: {mechanism.source}" if mechanism.source else "",
+        f"Lengths in {mechanism.unit or 'the unit of the file (none is named)'}, angles in degrees, time in seconds.",
+        more,
+        in_short,
+    )
+    return Section("about", "", tuple(Paragraph(text) for text in said if text))
+
+
+def structure_in_short(structure: Structure) -> str:
+    """The one line that says what it is made of."""
+    links, freedoms = len(structure.mechanism.links), structure.mobility.freedoms
+    text = f"In short: {counted(links, 'link')}, mobility {freedoms}"
+    if structure.relaxation and not structure.faults:
+        drivers = structure.mobility.drivers
+        text = f"In short: {counted(links, 'link')}, mobility {drivers} ({freedoms} by the count)"
+    if structure.groups:
+        text += f", {counted(len(structure.groups), 'group')}, class {roman(max(g.class_ for g in structure.groups))}"
+    return f"{text}; it cannot be solved." if structure.faults else f"{text}."

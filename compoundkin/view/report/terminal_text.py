@@ -1,0 +1,142 @@
+"""A report as text for a terminal of 80 columns or more; colour only where it is asked for."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from functools import singledispatch
+from typing import Literal
+
+from rich.box import Box
+from rich.console import Console, RenderableType
+from rich.padding import Padding
+from rich.table import Table as Grid
+from rich.text import Text
+
+from compoundkin.view.report.digits import written
+from compoundkin.view.report.report_data import Alert, Column, Formula, Paragraph, Report, Section, Step, Table
+
+WIDTH = 80
+# Between two columns of a table.
+GAP = 2
+# A rule under the heads and nothing else, in ASCII so that it survives any terminal and pipe.
+RULE = Box("    \n    \n -- \n" + "    \n" * 5, ascii=True)
+STYLES = {"pass": "green", "FAIL": "bold red"}
+
+
+def text(report: Report, width: int = WIDTH, colour: bool = False) -> str:
+    """The report as text, no line longer than `width`.
+
+    >>> from compoundkin.view.report.report_data import Outcome
+    >>> one = Report("Crank", (Section("about", "", (Paragraph("Watch B."),)),), Outcome(True, 0, 0, 0, 0, 0, 0))
+    >>> print(text(one))
+    Crank
+    =====
+    <BLANKLINE>
+    Watch B.
+    <BLANKLINE>
+    """
+    out = io.StringIO()
+    console = Console(file=out, width=width, force_terminal=colour, color_system="standard" if colour else None,
+                      highlight=False, emoji=False, markup=False, legacy_windows=False)  # fmt: skip
+    console.print(Text(report.title, "bold"), Text("=" * min(len(report.title), width), "bold"), sep="\n")
+    for section in report.sections:
+        _print(console, section, width)
+    return "\n".join(line.rstrip() for line in out.getvalue().split("\n"))
+
+
+def _print(console: Console, section: Section, width: int) -> None:
+    if section.title:
+        console.print(Text(f"\n{section.title}\n{'-' * len(section.title)}", "bold"))
+    for block in section.blocks:
+        console.print()
+        for part in _block(block, width):
+            console.print(part)
+
+
+@singledispatch
+def _block(block: object, width: int) -> Iterator[RenderableType]:
+    raise TypeError(f"{type(block).__name__} is not a part of a report")
+
+
+@_block.register
+def _(block: Paragraph, width: int) -> Iterator[RenderableType]:
+    yield Text(block.text)
+
+
+@_block.register
+def _(block: Formula, width: int) -> Iterator[RenderableType]:
+    yield Padding(Text(block.text), (0, 0, 0, 2))
+
+
+@_block.register
+def _(block: Alert, width: int) -> Iterator[RenderableType]:
+    remedy = Text(f"\nRemedy: {block.remedy}.") if block.remedy else Text("")
+    yield Padding(Text(block.text, "bold red").append_text(remedy), (0, 0, 0, 2))
+
+
+@_block.register
+def _(block: Step, width: int) -> Iterator[RenderableType]:
+    yield Text(block.title, "bold")
+    grid = Grid.grid(padding=(0, GAP, 0, 0))
+    grid.add_column(style="dim", no_wrap=True)
+    grid.add_column()
+    for term, fact in block.facts:
+        grid.add_row(Text(term), Text(fact))
+    yield Padding(grid, (0, 0, 0, 3))
+
+
+@_block.register
+def _(block: Table, width: int) -> Iterator[RenderableType]:
+    rows = block.shown_rows
+    cells = [written(column, [row[k] for row in rows], between="\n") for k, column in enumerate(block.columns)]
+    heads = [_heading(column) for column in block.columns]
+    for number, panel in enumerate(_panels(block, heads, cells, width)):
+        if number:
+            yield Text("")
+        yield _grid([block.columns[k] for k in panel], [heads[k] for k in panel], [cells[k] for k in panel])
+
+
+def _panels(block: Table, heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> list[list[int]]:
+    """Which columns go side by side: a table of numbers too wide is split, its first columns repeated."""
+    keys = list(range(block.keys))
+    wide = [_width((head, *column)) + GAP for head, column in zip(heads, cells, strict=True)]
+    panels: list[list[int]] = [[*keys]]
+    for part in _inseparable(block):
+        if keys and len(panels[-1]) > len(keys) and sum(wide[j] for j in [*panels[-1], *part]) > width:
+            panels.append([*keys])
+        panels[-1] += part
+    return panels
+
+
+def _inseparable(block: Table) -> list[list[int]]:
+    """The columns after the first ones, those that follow one another together."""
+    parts: list[list[int]] = []
+    for k, column in enumerate(block.columns[block.keys :], block.keys):
+        if column.follows and parts:
+            parts[-1].append(k)
+        else:
+            parts.append([k])
+    return parts
+
+
+def _width(texts: Iterable[str]) -> int:
+    return max(len(line) for text in texts for line in text.split("\n"))
+
+
+def _grid(columns: Sequence[Column], heads: Sequence[str], cells: Sequence[Sequence[str]]) -> Grid:
+    grid = Grid(box=RULE, padding=(0, GAP - 1, 0, 0), pad_edge=False, show_edge=False, header_style="bold")
+    for column, head in zip(columns, heads, strict=True):
+        side: Literal["left", "right"] = "right" if column.is_number else "left"
+        grid.add_column(Text(head), justify=side, no_wrap=column.is_number, overflow="fold")
+    for row in zip(*cells, strict=True):
+        grid.add_row(*(Text(cell, STYLES.get(cell, "")) for cell in row))
+    return grid
+
+
+def _heading(column: Column) -> str:
+    """A number's name over several short lines, its unit under it."""
+    name = column.name
+    if column.is_number:
+        name = name.replace(".", "\n").replace("_", "\n").replace(" ", "\n")
+    return f"{name}\n[{column.unit}]" if column.unit else name

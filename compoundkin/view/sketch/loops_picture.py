@@ -1,0 +1,132 @@
+"""The independent loops: each one as a closed polygon of vectors, from pair to pair, over the faint mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Series
+from compoundkin.model.elements import FRAME
+from compoundkin.structure import Loop, Structure
+from compoundkin.view.sketch.graph_picture import APART, NODE, node, spread
+from compoundkin.view.sketch.link_shapes import edges, skeleton
+from compoundkin.view.sketch.loop_panels import Corner, Panel, chain, panel_of, parts_of
+from compoundkin.view.sketch.painter import Painter
+from compoundkin.view.sketch.picture import Picture, checked_size
+from compoundkin.view.sketch.rows import in_rows
+from compoundkin.view.sketch.scene import Scene, groups_of, numbers_of
+from compoundkin.view.sketch.shapes import Group, Shape, Strokes
+from compoundkin.view.sketch.sketch_labels import below, lines_of_text
+from compoundkin.view.sketch.sketch_layers import ghost, layered, window_on
+from compoundkin.view.sketch.strokes import sheet
+from compoundkin.view.sketch.window import Window, fitted
+
+# More loops than this nobody looks at one by one.
+MOST = 40
+# Panels are drawn in this part of the size of a sketch, and no larger than this, in picture units: two of them, or
+# three where there are more than a few loops, stand side by side.
+SMALLER, TWO, THREE, FEW = 0.52, 420.0, 250.0, 4
+# The marks of more links than this would run together in a panel: links are thin lines then.
+MOST_MARKED = 16
+# Places nearer to each other than this part of a loop's size are one.
+SAME = 1e-9
+
+
+def loops(scene: Scene, size: float | None) -> Picture:
+    """The picture of all independent loops of a mechanism at a pose, a panel each."""
+    first = window_on(scene)
+    scale = min(SMALLER, _longest(scene.structure) / max(first.width, first.height))
+    whole = Window(first.scale * scale, first.corner, first.width * scale, first.height * scale)
+    is_crowd = len(scene.mechanism.links) > MOST_MARKED
+    every = _thin(scene, whole) if is_crowd else ghost(scene, whole)
+
+    def behind(loop: Loop) -> list[Shape]:
+        own = [] if is_crowd else layered(Painter(scene, whole, frozenset(loop.links)))
+        return [every, Group(tuple(own), "ghost")]
+
+    def at(loop: Loop) -> list[Corner]:
+        return [Corner(complex(whole.at(corner.at)), corner.letter) for corner in polygon(scene, loop)]
+
+    panels = [panel_of(k, loop, behind(loop), at(loop)) for k, loop in _shown(scene.structure)]
+    return _picture(scene.structure, panels, [], size)
+
+
+def loops_in_graph(structure: Structure, size: float | None) -> Picture:
+    """As `loops`, in the kinematic graph: of a mechanism that is not drawn and cannot be solved."""
+    numbers, groups = numbers_of(structure), groups_of(structure)
+    spots = np.array(spread(list(numbers), structure.pairs))
+    wide, tall = float(np.ptp(spots.real)), float(np.ptp(spots.imag))
+    scale = min(SMALLER, _longest(structure) / max(wide, tall, APART))
+    window = fitted(Window(scale, 0j, 0.0, 0.0), spots * scale)
+    places = {name: complex(window.at(np.conjugate(p))) for name, p in zip(numbers, spots, strict=True)}
+    lines = [(places[pair.members[0]], places[pair.members[1]]) for pair in structure.pairs]
+    nodes = [node(name, places[name], numbers[name], groups[name]) for name in numbers]
+
+    def at(loop: Loop) -> list[Corner]:
+        return [Corner(places[name], "") for name in loop.links]
+
+    notes = [f"{number} {name}" for name, number in numbers.items()]
+    behind = [Strokes(tuple(lines), "edge"), *nodes]
+    panels = [panel_of(k, loop, behind, at(loop), NODE) for k, loop in _shown(structure)]
+    return _picture(structure, panels, notes, size)
+
+
+def polygon(scene: Scene, loop: Loop) -> list[Corner]:
+    """The corners of a loop's polygon at a pose, in the mechanism's plane.
+
+    On each link a vector leads from pair to pair; across a pair that is no pin, from its point on one link to that on
+    the next.
+    """
+    sides = list(_sides(scene, loop))
+    places = np.array([scene.at(link, p) for link, p in sides])
+    nothing = SAME * float(np.max(np.abs(places - places[0])))
+    found = [Corner(complex(at), _letter(scene, *side, nothing)) for side, at in zip(sides, places, strict=True)]
+    kept = found[:1] + [own for last, own in pairwise(found) if abs(own.at - last.at) > nothing]
+    return kept[:-1] if len(kept) > 1 and abs(kept[-1].at - kept[0].at) <= nothing else kept
+
+
+def _sides(scene: Scene, loop: Loop) -> Iterator[tuple[str, complex]]:
+    """The links of a loop in order, each with its points of the pair before and of the pair after it."""
+    for link, *pairs in zip(loop.links, (loop.pairs[-1], *loop.pairs), loop.pairs, strict=False):
+        for pair in pairs:
+            point = scene.ends[pair.name][pair.members.index(link)].point
+            yield link, complex(point.c[0] if isinstance(point, Series) else point)
+
+
+def _letter(scene: Scene, link: str, point: complex, nothing: float) -> str:
+    """The name of a link's point at a place of the link."""
+    return next((name for name, p in scene.points[link].items() if abs(p - point) <= nothing), "")
+
+
+def _longest(structure: Structure) -> float:
+    """How large a panel may be."""
+    return TWO if len(structure.loops) <= FEW else THREE
+
+
+def _thin(scene: Scene, window: Window) -> Group:
+    """All links as faint thin lines."""
+    links = [name for name in scene.mechanism.links if name != FRAME]
+    lines = [line for name in links for line in edges(skeleton(scene, window, name))]
+    return Group((Strokes(tuple(lines), "thin0"),), "ghost")
+
+
+def _shown(structure: Structure) -> list[tuple[int, Loop]]:
+    """The loops that are drawn, with their numbers; raises InvalidInput where there are none."""
+    if not structure.loops:
+        what = f"{structure.mechanism.title!r} has no closed loop"
+        raise InvalidInput(Problem("structure", what, "its links are an open chain"))
+    return list(enumerate(structure.loops[:MOST], start=1))
+
+
+def _picture(structure: Structure, panels: Sequence[Panel], notes: Sequence[str], size: float | None) -> Picture:
+    found = structure.loops
+    shapes, width, height = in_rows(parts_of(panels))
+    notes = [*notes, *([f"and {len(found) - MOST} more loops"] if len(found) > MOST else [])]
+    texts, height = below(lines_of_text(notes, width - 32.0), height)
+    paper = sheet(width, height)
+    title = f"{structure.mechanism.title}: independent loops"
+    described = "; ".join(chain(loop) for loop in found)
+    return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))

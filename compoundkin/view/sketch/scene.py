@@ -1,0 +1,230 @@
+"""What is to be seen of a mechanism at one pose: where links and points are, and the marks of its pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series, constant
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.inputs import fit
+from compoundkin.model.elements import FRAME
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.symbols import Mark
+from compoundkin.structure import DrivenPair, Structure
+
+# Two poses are one if no link differs by more than this, in parts of the mechanism's size and in radians.
+SAME_PLACE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A mark of a pair, and the links that the pair joins."""
+
+    pair: Pair
+    mark: Mark
+    members: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A mechanism at one pose of one design.
+
+    `whole` holds the pose of each link along the motion, arrays (poses,) of the assembled ones; `here` at the pose
+    shown, numbers with all their rates. `shown` is a motion with that pose, at the index `pose`; None for a mechanism
+    that is shown as drawn.
+    """
+
+    structure: Structure
+    whole: Mapping[str, Pose]
+    here: Mapping[str, Pose]
+    points: Mapping[str, Mapping[str, complex]]
+    ends: Mapping[str, Ends]
+    shown: Motion | None = None
+    pose: tuple[int, int] = (0, 0)
+    known: Number = None  # the indices of the assembled poses
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism."""
+        return self.structure.mechanism
+
+    def at(self, link: str, p: Number) -> complex:
+        """Where a point of a link is at the pose shown."""
+        return complex(self.here[link].at(p).c[0])
+
+    def turned(self, link: str, along: Number) -> complex:
+        """A direction on a link, in the world."""
+        return complex((self.here[link].u * along).c[0])
+
+    def places(self, letter: str) -> Number:
+        """Where a point is along the motion, (poses,)."""
+        link = self.mechanism.carriers[letter][0]
+        return np.atleast_1d(self.whole[link].at(self.points[link][letter]).c[0])
+
+    def path(self, letter: str) -> list[Number]:
+        """The path of a point along the motion, in pieces where poses between cannot be assembled."""
+        places = self.places(letter)
+        if self.known is None or len(places) != len(self.known):
+            return [places]
+        return np.split(places, np.flatnonzero(np.diff(self.known) > 1) + 1)
+
+    @cached_property
+    def letters(self) -> Mapping[str, complex]:
+        """Where every point is, at the pose shown; without points of the frame that no pair needs."""
+        used = {letter for pair in self.structure.pairs for letter in pair.letters}
+        found = {}
+        for letter, links in self.mechanism.carriers.items():
+            if links != (FRAME,) or letter in used:
+                found[letter] = self.at(links[0], self.points[links[0]][letter])
+        return found
+
+    @cached_property
+    def seen(self) -> tuple[Seen, ...]:
+        """The marks of all pairs."""
+        return tuple(
+            Seen(pair, mark, pair.members)
+            for pair in self.structure.pairs
+            for mark in pair.glyph(self.ends[pair.name], tuple(self.whole[name] for name in pair.members))
+        )
+
+    @cached_property
+    def numbers(self) -> Mapping[str, int]:
+        """The numbers of the links: the frame is 1, the others follow as they are written."""
+        return numbers_of(self.structure)
+
+    @cached_property
+    def groups(self) -> Mapping[str, int]:
+        """Which group each link belongs to: 0 for the frame and driven links, then in solving order."""
+        return groups_of(self.structure)
+
+    @cached_property
+    def driven(self) -> tuple[DrivenPair, ...]:
+        """The driven pairs."""
+        bodies = (self.structure.ground, *(body for group in self.structure.groups for body in group.bodies))
+        return tuple(step for body in bodies for step in body.driven if not step.is_passive)
+
+    def ghost(self, k: int) -> Scene:
+        """The same scene at the k-th assembled pose of the motion."""
+        poses = {name: picked(pose, k) for name, pose in self.whole.items()}
+        return Scene(self.structure, self.whole, poses, self.points, self.ends, known=self.known)
+
+    @property
+    def count(self) -> int:
+        """How many assembled poses the motion has."""
+        return 1 if self.known is None else max(1, len(self.known))
+
+    @property
+    def closes(self) -> bool:
+        """Whether every link is at the last assembled pose where it was at the first."""
+        size = self.mechanism.geometry.size
+        ends = [(np.atleast_1d(pose.z.c[0]), np.atleast_1d(pose.u.c[0])) for pose in self.whole.values()]
+        return all(abs(z[-1] - z[0]) <= SAME_PLACE * size and abs(u[-1] - u[0]) <= SAME_PLACE for z, u in ends)
+
+    def rate(self, letter: str, k: int) -> complex:
+        """The k-th derivative of where a point is, at the pose shown."""
+        link = self.mechanism.carriers[letter][0]
+        return complex(self.here[link].derivative(self.points[link][letter], k))
+
+    def driver_value(self, name: str, k: int = 0) -> float:
+        """The value of a driver at the pose shown, or its speed (k = 1)."""
+        if self.shown is None:
+            return 1.0 if k else 0.0
+        return float(_number(self.shown.inputs.drives[name][k], self.pose))
+
+
+def numbers_of(structure: Structure) -> dict[str, int]:
+    """The numbers of the links: the frame is 1, the others follow as they are written."""
+    others = [name for name in structure.mechanism.links if name != FRAME]
+    return {name: k for k, name in enumerate([FRAME, *others], start=1)}
+
+
+def groups_of(structure: Structure) -> dict[str, int]:
+    """Which group each link belongs to: 0 for the frame and driven links, then in solving order."""
+    found = dict.fromkeys(structure.mechanism.links, 0)
+    for k, group in enumerate(structure.groups, start=1):
+        found.update(dict.fromkeys(group.links, k))
+    return found
+
+
+def scene_of_motion(motion: Motion, shown: Motion, design: int, pose: int) -> Scene:
+    """The scene of a pose of `shown`, with the guides used as in the whole `motion`."""
+    known = np.flatnonzero(motion.failed[min(design, len(motion.failed) - 1)] == 0)
+    at = min(design, shown.inputs.designs - 1), pose
+    geometry = motion.mechanism.geometry
+    points = {
+        link: {k: complex(_number(p, at, shown)) for k, p in placed.items()} for link, placed in geometry.points.items()
+    }
+    ends = {
+        name: tuple(End(*(_side(v, at) for v in end)) for end in sides) for name, sides in shown.inputs.ends.items()
+    }
+    whole = {name: _along(pose, design, known) for name, pose in motion.poses.items()}
+    here = {name: _at(pose, at) for name, pose in shown.poses.items()}
+    return Scene(motion.structure, whole, here, points, ends, shown, at, known)
+
+
+def scene_as_drawn(structure: Structure) -> Scene:
+    """The scene of the drawing of a mechanism; raises InvalidInput where the drawing does not show every link."""
+    geometry = structure.mechanism.geometry
+    here: dict[str, Pose] = {}
+    for name, placed in geometry.points.items():
+        letter = next((k for k in placed if k in geometry.sketch), None)
+        if name in geometry.drawn:
+            here[name] = _at(geometry.drawn[name], (0, 0))
+        elif letter is not None and len(placed) == 1:
+            here[name] = Pose.of(complex(np.ravel(geometry.sketch[letter])[0]) - _first(placed[letter]), 1 + 0j)
+        else:
+            what = f"{name!r} is not drawn, and the mechanism cannot be solved"
+            raise InvalidInput(Problem(f"links.{name}", what, "draw its points with drawn(...)"))
+    points = {link: {k: complex(_first(p)) for k, p in placed.items()} for link, placed in geometry.points.items()}
+    ends = {pair.name: tuple(End(*map(_first_side, end)) for end in pair.ends(geometry)) for pair in structure.pairs}
+    return Scene(structure, here, here, points, ends)
+
+
+def picked(pose: Pose, k: int) -> Pose:
+    """One pose of an array of them."""
+    z, u = (complex(np.ravel(c)[k if np.size(c) > 1 else 0]) for c in (pose.z.c[0], pose.u.c[0]))
+    return Pose.of(z, u)
+
+
+def _along(pose: Pose, design: int, known: Number) -> Pose:
+    """A pose along the motion of one design, those places of it that are known."""
+    parts = [None if v is None else np.atleast_2d(v.c[0]) for v in (pose.z, pose.u, pose.theta)]
+    cut = [None if v is None else v[min(design, len(v) - 1)] for v in parts]
+    z, u, theta = (None if v is None else constant(v[known] if len(v) > 1 else v) for v in cut)
+    return Pose(z or constant(0j), u or constant(1 + 0j), theta)
+
+
+def _at(pose: Pose, at: tuple[int, int]) -> Pose:
+    """A pose with its rates at one place, numbers."""
+    z, u = (Series(tuple(complex(_number(c, at)) for c in v.c)) for v in (pose.z, pose.u))
+    theta = None if pose.theta is None else Series(tuple(float(_number(c, at)) for c in pose.theta.c))
+    return Pose(z, u, theta)
+
+
+def _number(value: Number, at: tuple[int, int], motion: Motion | None = None) -> Number:
+    """A number of an array (1 or designs, 1 or poses), or of one that broadcasts with a motion's shape."""
+    if np.ndim(value) == 0:
+        return value
+    if motion is not None:
+        value = fit(motion.shape)(value)
+    return value[min(at[0], value.shape[0] - 1), min(at[1], value.shape[1] - 1)]
+
+
+def _side(value: Number, at: tuple[int, int]) -> Number:
+    return None if value is None else _number(value.c[0] if isinstance(value, Series) else value, at)
+
+
+def _first(value: Number) -> Number:
+    return np.ravel(value)[0]
+
+
+def _first_side(value: Number) -> Number:
+    return None if value is None else _first(value.c[0] if isinstance(value, Series) else value)

@@ -1,0 +1,160 @@
+"""Which pose is shown: that of given driver values, of an index, or the one nearest to the drawing."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import (
+    InvalidInput,
+    NotAssembled,
+    NotDetermined,
+    Problem,
+    UnassembledPoses,
+    UnknownName,
+    nearest,
+)
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion, solve
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure import Structure, decompose
+from compoundkin.view.sketch.scene import Scene, scene_as_drawn, scene_of_motion
+
+# A driver value is that of a pose if it differs by no more than this part of the driver's range.
+SAME = 1e-9
+# Places nearer to each other than this part of the size are one.
+ROUNDING = 1e-6
+
+
+def scene_of(what: Motion | Mechanism | Structure, at: Any, pose: int | None, design: int) -> Scene:
+    """The scene that is asked for; raises InvalidInput, UnknownName or NotAssembled where there is none."""
+    if at is not None and pose is not None:
+        raise InvalidInput(Problem("pose", "driver values `at` are given too", "leave one of them out"))
+    if isinstance(what, Motion):
+        return scene_in(what, at, pose, design)
+    if not isinstance(what, Mechanism | Structure):
+        raise InvalidInput(Problem("draw", f"{what!r} is no motion and no mechanism", "load() one from a file"))
+    motion = solved_over(what)
+    if motion is not None:
+        return scene_in(motion, at, pose, design)
+    structure = what if isinstance(what, Structure) else decompose(what)
+    if at is not None:
+        return scene_in(solve(what, _by_name(structure, at)), None, None, design)
+    return scene_as_drawn(structure)
+
+
+def solved_over(what: Mechanism | Structure) -> Motion | None:
+    """The motion over the drivers' own ranges; None where they have none, or it cannot be solved."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UnassembledPoses)
+            return solve(what)
+    except (InvalidInput, NotAssembled, NotDetermined):
+        return None
+
+
+def scene_in(motion: Motion, at: Any, pose: int | None, design: int) -> Scene:
+    """The scene of a motion at driver values, at an index, or nearest to the drawing."""
+    if isinstance(design, bool) or not isinstance(design, int) or not 0 <= design < motion.inputs.designs:
+        known = f"0 to {motion.inputs.designs - 1}" if motion.inputs.designs > 1 else "there is only 0"
+        raise InvalidInput(Problem("design", f"there is no design {design!r}", known))
+    failed = np.broadcast_to(motion.failed, (motion.inputs.designs, motion.inputs.poses))[design]
+    if pose is not None:
+        if isinstance(pose, bool) or not isinstance(pose, int) or not -len(failed) <= pose < len(failed):
+            raise InvalidInput(Problem("pose", f"there is no pose {pose!r}", f"0 to {len(failed) - 1}"))
+        shown, index = motion, pose % len(failed)
+    elif at is None:
+        shown, index = motion, _nearest_to_drawing(motion, design, failed)
+    else:
+        shown, index = _at_values(motion, _by_name(motion.structure, at), design)
+    known = np.broadcast_to(shown.failed, (shown.inputs.designs, shown.inputs.poses)) == 0
+    if not known[min(design, len(known) - 1)][index]:
+        raise NotAssembled(Problem("pose", "the mechanism cannot be assembled there", "gaps() tells where and why"))
+    return scene_of_motion(motion, shown, design, index)
+
+
+def _by_name(structure: Structure, at: Any) -> dict[str, float]:
+    """Driver values by name, numbers; raises for what does not fit."""
+    names = [drive.name for drive in structure.mechanism.drives]
+    if not isinstance(at, Mapping):
+        if len(names) != 1:
+            what = f"there are {len(names)} drivers" if names else "the mechanism has no driver"
+            raise InvalidInput(Problem("at", what, "name them: at={'driver': value}"))
+        at = {names[0]: at}
+    for name, value in at.items():
+        if name not in names:
+            raise UnknownName(Problem(f"at.{name}", "there is no such driver", nearest(str(name), names)))
+        if isinstance(value, bool) or np.ndim(value) or not np.isfinite(np.real(value)):
+            raise InvalidInput(Problem(f"at.{name}", f"{value!r} is not a number", "give the value at one pose"))
+    return {name: float(value) for name, value in at.items()}
+
+
+def _nearest_to_drawing(motion: Motion, design: int, failed: Number) -> int:
+    """The assembled pose nearest to the drawn points; without a drawing, some way into the motion."""
+    known = np.flatnonzero(failed == 0)
+    if not known.size:
+        raise NotAssembled(Problem("draw", "the motion has no assembled pose", "gaps() tells why"))
+    sketch = {k: v for k, v in motion.mechanism.sketch.items() if k in motion.mechanism.carriers}
+    off = np.zeros(motion.inputs.poses)
+    for letter, drawn in sketch.items():
+        places = np.asarray(motion.points[letter].position).reshape(motion.inputs.designs, -1)[design]
+        off = off + np.abs(places - np.ravel(drawn)[0]) ** 2
+    # a crank at zero hides behind the frame: without a drawing, an eighth of the motion is a better view
+    # the first of those that are equally near but for rounding, as the first and the last pose of a full turn are
+    near = known[off[known] <= off[known].min() + (ROUNDING * motion.size) ** 2]
+    return int(near[0]) if sketch else int(known[len(known) // 8])
+
+
+def _at_values(motion: Motion, at: dict[str, float], design: int) -> tuple[Motion, int]:
+    """The motion with its pose at driver values, or one that is solved there in the same assembly modes."""
+    poses = motion.inputs.poses
+    values = {}
+    for name, numbers in motion.inputs.drives.items():
+        rows = np.atleast_2d(numbers[0])
+        values[name] = np.broadcast_to(rows[min(design, len(rows) - 1)], (poses,))
+    off = np.zeros(poses)
+    for name, value in at.items():
+        span = float(np.ptp(values[name])) or 1.0
+        off = np.maximum(off, np.abs(values[name] - value) / span)
+    index = int(np.argmin(off))
+    if off[index] <= SAME:
+        return motion, index
+    wanted = {name: at.get(name, float(row[index])) for name, row in values.items()}
+    drives = motion.inputs.drives.items()
+    rates: Any = {
+        key: {name: _rate(numbers, k, design, index) for name, numbers in drives}
+        for k, key in enumerate(("speed", "acceleration", "jerk"), start=1)
+    }
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnassembledPoses)
+        return solve(motion.structure, wanted, **rates, order=motion.order, hint=_hint(motion, design, index)), 0
+
+
+def _rate(numbers: tuple[Number, ...], k: int, design: int, index: int) -> float:
+    rows = np.atleast_2d(numbers[k]) if k < len(numbers) else np.zeros((1, 1))
+    row = rows[min(design, len(rows) - 1)]
+    return float(row[min(index, len(row) - 1)])
+
+
+def _hint(motion: Motion, design: int, index: int) -> dict[str, complex]:
+    """Where the points are at the pose, which tells the assembly modes; nothing where it is not assembled."""
+    found = {}
+    for letter in motion.mechanism.carriers:
+        rows = np.asarray(motion.points[letter].position).reshape(motion.inputs.designs, -1)
+        found[letter] = complex(rows[design, index])
+    return found if all(map(np.isfinite, found.values())) else {}
+
+
+def pose_notes(scene: Scene) -> list[str]:
+    """The drivers' values at the pose shown."""
+    if scene.shown is None:
+        return []
+    unit, found = scene.mechanism.unit, []
+    for step in scene.driven:
+        value = scene.driver_value(step.drive.name)
+        shown = f"{np.rad2deg(value):.5g}°" if step.pair.free_is_angle else f"{value:.6g} {unit}".rstrip()
+        found.append(f"{step.drive.name} at {shown}")
+    return found

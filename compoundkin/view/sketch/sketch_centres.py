@@ -1,0 +1,126 @@
+"""Instant centres on a sketch, with the lines on which they lie."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.analysis.centres import Centres, instant_centres
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.view.sketch.label_places import Label, around, text_half
+from compoundkin.view.sketch.scene import Scene
+from compoundkin.view.sketch.shapes import Circle, Polyline, Shape
+from compoundkin.view.sketch.sketch_style import SMALL
+from compoundkin.view.sketch.window import Window
+
+# Centres nearer to each other than this, in picture units, are named together.
+TOGETHER = 3.0
+DOT = 3.2
+
+
+@dataclass(frozen=True)
+class ShownCentres:
+    """The centres that are on the picture by their names, the lines that give them, and what is said of the others."""
+
+    places: dict[str, complex]
+    lines: tuple[tuple[complex, complex], ...]
+    notes: list[str]
+
+
+def shown_centres(scene: Scene, window: Window) -> ShownCentres:
+    """The instant centres of the pose shown; raises InvalidInput for a mechanism without a motion."""
+    if scene.shown is None:
+        what = "a mechanism that is shown as drawn has no motion"
+        raise InvalidInput(Problem("centres", what, "give it drivers"))
+    centres = instant_centres(scene.shown)
+    near: dict[str, complex] = {}
+    far: list[str] = []
+    infinite: list[str] = []
+    for pair in centres:
+        name, centre = centre_name(scene, *pair), centres[pair]
+        homogeneous = _at(scene, centre.homogeneous)
+        if not _at(scene, centre.found):
+            continue
+        if _at(scene, centre.at_infinity):
+            infinite.append(name)
+            continue
+        place = complex(window.at(complex(homogeneous[0], homogeneous[1]) / homogeneous[2]))
+        if window.holds(place, 2.0):
+            near[name] = place
+        else:
+            far.append(name)
+    notes = [f"at infinity: {', '.join(infinite)}"] if infinite else []
+    notes += [f"outside: {', '.join(far)}"] if far else []
+    return ShownCentres(near, tuple(_lines(scene, window, centres, near)), notes)
+
+
+def centre_places(scene: Scene) -> list[complex]:
+    """Where the instant centres are, those that are not at infinity."""
+    if scene.shown is None:
+        return []
+    centres = instant_centres(scene.shown)
+    found = [complex(_at(scene, centres[pair].point)) for pair in centres]
+    return [place for place in found if np.isfinite(place)]
+
+
+def centre_name(scene: Scene, one: str, two: str) -> str:
+    """The name of a centre by the numbers of its links: 13, or 3,12."""
+    first, second = sorted((scene.numbers[one], scene.numbers[two]))
+    return f"{first}{second}" if second < 10 else f"{first},{second}"
+
+
+def _at(scene: Scene, values: Number) -> Number:
+    """What an array of the shown motion's shape holds at the pose."""
+    assert scene.shown is not None
+    inputs = scene.shown.inputs
+    full = np.asarray(values)
+    rest = full.shape[len(scene.shown.shape) :]
+    return np.asarray(full.reshape(inputs.designs, inputs.poses, *rest)[scene.pose])
+
+
+def _lines(
+    scene: Scene, window: Window, centres: Centres, near: dict[str, complex]
+) -> Iterator[tuple[complex, complex]]:
+    """For each secondary centre on the picture, from it to the known centres on the two lines that give it."""
+    # a step names centres by their links: (crank frame)
+    names = {f"({a} {b})": centre_name(scene, a, b) for one, two in centres for a, b in ((one, two), (two, one))}
+    drawn: set[tuple[str, ...]] = set()
+    for step in centres.derivation():
+        own = centre_name(scene, *step.centre)
+        if own not in near or step.kind == "primary":
+            continue
+        for line in step.lines:
+            known = [near[names[text]] for text in line if names.get(text) in near]
+            points = [near[own], *known]
+            key = tuple(sorted(f"{p:.0f}" for p in points))
+            if len(points) > 1 and key not in drawn:
+                drawn.add(key)
+                yield _span(points)
+
+
+def _span(points: list[complex]) -> tuple[complex, complex]:
+    """The two ends of points on a line."""
+    first = max(points, key=lambda p: abs(p - points[0]))
+    return first, max(points, key=lambda p: abs(p - first))
+
+
+def centre_shapes(found: ShownCentres) -> list[Shape]:
+    """The lines and a dot for each centre."""
+    dots = {(round(p.real), round(p.imag)): p for p in found.places.values()}
+    return [*(Polyline(line, "ray") for line in found.lines), *(Circle(p, DOT, "centre") for p in dots.values())]
+
+
+def centre_labels(found: ShownCentres) -> list[Label]:
+    """The names of the centres, those at one place together."""
+    places: list[tuple[list[str], complex]] = []
+    for name, place in found.places.items():
+        same = next((names for names, other in places if abs(other - place) < TOGETHER), None)
+        if same is None:
+            places.append(([name], place))
+        else:
+            same.append(name)
+    joined = [(" ".join(names), place) for names, place in places]
+    return [around(f"centre {text}", place, text_half(text, SMALL), 5.0, 1 + 1j) for text, place in joined]

@@ -1,0 +1,137 @@
+"""The one visual language: what every class of shapes looks like, on light and on dark paper.
+
+Widths and sizes are in picture units; a picture of many links has more of them (`window`), so that its lines are finer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from compoundkin.view.sketch.shapes import Arc, Circle, Group, Polygon, Polyline, Shape, Strokes, Text
+
+# Sizes that shapes are made with, in picture units.
+PIN = 4.5
+STUD = 4.0
+BAR = 5.0
+BLOCK = (26.0, 15.0)
+HATCH = 6.0
+LETTER = 14.0
+SMALL = 11.0
+LINE = 16.0  # from line to line of a text
+NUMBER = 8.5  # radius of the circle around a link's number
+
+# Colours on light and on dark paper. Those of groups keep a contrast of at least 3 : 1 with their paper and differ in
+# lightness too, for readers who do not see all colours (after M. Okabe and K. Ito, Color Universal Design).
+PAPER = "#ffffff", "#14171c"
+INK = "#1b1f24", "#e6e9ee"
+FRAME = "#5b6470", "#a3adba"
+FAINT = "#8d96a2", "#78828f"
+COLOURS: tuple[tuple[str, str], ...] = (
+    ("#343a43", "#d5dae1"),  # frame and driven links
+    ("#0067b1", "#5db1f2"),
+    ("#c04a00", "#ff9450"),
+    ("#007a5a", "#3fc79d"),
+    ("#a8327f", "#ee83c6"),
+    ("#8a6500", "#e0b53c"),
+    ("#5b4bc4", "#a79bff"),
+    ("#b3261e", "#ff8a80"),
+)
+VELOCITY = "#b3261e", "#ff8a80"
+ACCELERATION = "#5b4bc4", "#a79bff"
+
+_LINE = "fill:none;stroke-linecap:round;stroke-linejoin:round"
+
+# What each class looks like: its rules, `{}` standing for its colour.
+CLASSES: Mapping[str, tuple[str, tuple[str, str]]] = {
+    "paper": ("fill:{}", PAPER),
+    "pin": ("fill:{};stroke-width:2", PAPER),
+    "knock": (f"{_LINE};stroke:{{}};stroke-width:7", PAPER),
+    "ink": (f"{_LINE};stroke:{{}};stroke-width:2", INK),
+    "dot": ("fill:{}", INK),
+    "frame": (f"{_LINE};stroke:{{}};stroke-width:2", FRAME),
+    "frame-face": ("fill:{};fill-opacity:.14", FRAME),
+    "frame-track": (f"{_LINE};stroke:{{}};stroke-width:12", FRAME),
+    "outer": (f"{_LINE};stroke:{{}};stroke-width:1.2;stroke-dasharray:3 3", INK),
+    "bold": (f"{_LINE};stroke:{{}};stroke-width:3.6", INK),
+    "strap": (f"{_LINE};stroke:{{}};stroke-width:2.2", INK),
+    "hatch": (f"{_LINE};stroke:{{}};stroke-width:1", FRAME),
+    "path": (f"{_LINE};stroke:{{}};stroke-width:1.6", ("#b0004e", "#ff6fa5")),
+    "drive": (f"{_LINE};stroke:{{}};stroke-width:2.2", INK),
+    "drive-head": ("fill:{}", INK),
+    "velocity": (f"{_LINE};stroke:{{}};stroke-width:2", VELOCITY),
+    "velocity-head": ("fill:{}", VELOCITY),
+    "acceleration": (f"{_LINE};stroke:{{}};stroke-width:2", ACCELERATION),
+    "acceleration-head": ("fill:{}", ACCELERATION),
+    "centre": ("fill:{}", ("#b3261e", "#ff8a80")),
+    "ray": (f"{_LINE};stroke:{{}};stroke-width:.9;stroke-dasharray:5 4", FAINT),
+    "edge": (f"{_LINE};stroke:{{}};stroke-width:1.6", FAINT),
+    "letter": (f"fill:{{}};font-size:{LETTER:g}px;font-style:italic", INK),
+    "number": (f"fill:{{}};font-size:{SMALL:g}px", INK),
+    "note": (f"fill:{{}};font-size:{SMALL:g}px", FRAME),
+    "heading": (f"fill:{{}};font-size:{LETTER:g}px;font-weight:bold", INK),
+    "code": (f"fill:{{}};font-size:{SMALL:g}px;font-style:italic", FRAME),
+    "halo": ("stroke:{};stroke-width:3.5;stroke-linejoin:round", PAPER),
+    "centre-name": (f"fill:{{}};font-size:{SMALL:g}px", ("#b3261e", "#ff8a80")),
+}
+# The same for every group of links, by the number of the group.
+GROUPED: Mapping[str, str] = {
+    "bar": f"{_LINE};stroke:{{}};stroke-width:{BAR:g}",
+    "plate": "fill:{};fill-opacity:.22;stroke:{};stroke-width:2.5;stroke-linejoin:round",
+    "line": f"{_LINE};stroke:{{}};stroke-width:2",
+    "thin": f"{_LINE};stroke:{{}};stroke-width:1.2",
+    "track": f"{_LINE};stroke:{{}};stroke-width:12",
+    "ring": "stroke:{}",
+}
+
+
+def style_of(kind: str, group: int | None = None) -> str:
+    """The classes of a shape; a number of a group adds its colour.
+
+    >>> style_of("bar", 9)
+    'bar2'
+    """
+    return kind if group is None else f"{kind}{group if group == 0 else (group - 1) % (len(COLOURS) - 1) + 1}"
+
+
+def css(shapes: Iterable[Shape]) -> str:
+    """The style sheet of some shapes: their classes only, on light paper and, where a reader prefers it, on dark.
+
+    Of two classes of one shape the later in the alphabet counts: "pin" fills what "ink" or "frame" strokes.
+    """
+    used = sorted({name for style in _styles(shapes) for name in style.split()})
+    light, dark = _sheets(used)
+    return f"{light}\n@media (prefers-color-scheme: dark) {{\n{dark}\n}}"
+
+
+def page_css() -> str:
+    """The style sheet of all pictures of a page, whose root may say `data-theme="light"` or "dark"; light on paper."""
+    grouped = [f"{kind}{k}" for kind in GROUPED for k in range(len(COLOURS))]
+    light, dark = _sheets(["ghost", *CLASSES, *grouped])
+    asked = "\n".join(f":root[data-theme=dark] {rule}" for rule in dark.splitlines())
+    system = "\n".join(f":root:not([data-theme=light]) {rule}" for rule in dark.splitlines())
+    return f"{light}\n@media screen {{\n{asked}\n}}\n@media screen and (prefers-color-scheme: dark) {{\n{system}\n}}"
+
+
+def _sheets(names: Iterable[str]) -> tuple[str, str]:
+    """The rules of classes on light paper, and those that differ on dark."""
+    both = [(_rule(name, 0), _rule(name, 1)) for name in sorted(names)]
+    return "\n".join(light for light, _ in both), "\n".join(dark for light, dark in both if light != dark)
+
+
+def _rule(name: str, paper: int) -> str:
+    if name == "ghost":
+        return ".ck-ghost{opacity:.22}"
+    if name in CLASSES:
+        rules, colour = CLASSES[name]
+        return f".ck-{name}{{{rules.replace('{}', colour[paper])}}}"
+    kind, number = name.rstrip("0123456789"), int(name[len(name.rstrip("0123456789")) :])
+    return f".ck-{name}{{{GROUPED[kind].replace('{}', COLOURS[number][paper])}}}"
+
+
+def _styles(shapes: Iterable[Shape]) -> Iterable[str]:
+    for shape in shapes:
+        if isinstance(shape, Group):
+            yield shape.style
+            yield from _styles(shape.shapes)
+        elif isinstance(shape, Polyline | Polygon | Strokes | Circle | Arc | Text):
+            yield shape.style

@@ -1,0 +1,111 @@
+"""Slides as shapes: blocks on guides, rods through blocks, cylinders."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from compoundkin.model.elements import FRAME
+from compoundkin.model.pairs.symbols import Sliding
+from compoundkin.view.sketch.painter import Laid, Layer, Painter
+from compoundkin.view.sketch.scene import Seen
+from compoundkin.view.sketch.shapes import Polygon, Polyline
+from compoundkin.view.sketch.sketch_style import BLOCK
+from compoundkin.view.sketch.strokes import box, hatching
+
+# A guide goes on by this much beyond the places that the block takes, in picture units.
+BEYOND = 22.0
+CYLINDER = 17.0
+# A cylinder ends at this part of the shortest length, and its piston keeps this distance from both ends.
+BARREL = 0.92
+PISTON = 7.0
+
+
+def sliding(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
+    """A block on its guide; a driven one between moving links is a cylinder with its rod."""
+    guide, block = seen.members
+    if not (painter.shows(guide) and painter.shows(block)):
+        yield from _half(painter, seen, mark)
+    elif painter.is_cylinder(seen):
+        yield from _cylinder(painter, seen, mark)
+    elif painter.is_rod(seen):
+        # the link that carries the guide is the block, and the guide the rod that runs through it
+        yield Laid(Layer.BAR, Polyline(rod_line(painter, block, mark), painter.style("bar", block)), block)
+        yield painter.block_at(guide, painter.place(guide, mark.at), painter.along(guide, mark.along))
+    else:
+        yield from _guide(painter, guide, mark)
+        yield painter.block_at(block, painter.place(block, mark.block), painter.along(guide, mark.along))
+
+
+def _half(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
+    """A slide of which one link is drawn alone: the guide, or the block on the line of its guide."""
+    guide, block = seen.members
+    if painter.shows(guide):
+        yield from _guide(painter, guide, mark)
+    elif painter.shows(block):
+        middle, e = painter.place(block, mark.block), painter.along(guide, mark.along)
+        yield Laid(Layer.BACK, Polyline((middle - e * 2.0 * BEYOND, middle + e * 2.0 * BEYOND), "ray"), block)
+        yield painter.block_at(block, middle, e)
+
+
+def rod_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
+    """The two ends of a rod that runs through a block."""
+    ends = [painter.place(link, mark.block - mark.turn * s) for s in (mark.low, mark.high)]
+    e = painter.along(link, mark.turn)
+    return _spanned((ends[1] - e * BEYOND, ends[0] + e * BEYOND, painter.place(link, mark.block)), e)
+
+
+def guide_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
+    """The two ends of a guide on a moving link: from where it starts there as far as the block goes."""
+    e = painter.along(link, mark.along)
+    span = min(mark.low, 0.0), max(mark.high, 0.0)
+    start, stop = (painter.place(link, mark.at + mark.along * s) for s in span)
+    return start - e * (BEYOND if mark.low < 0 else 0.0), stop + e * (BEYOND if mark.high > 0 else 0.0)
+
+
+def _spanned(points: tuple[complex, ...], e: complex) -> tuple[complex, complex]:
+    """The outermost of points on a line."""
+    ordered = sorted(points, key=lambda p: (np.conjugate(e) * p).real)
+    return ordered[0], ordered[-1]
+
+
+def _guide(painter: Painter, link: str, mark: Sliding) -> Iterator[Laid]:
+    e = painter.along(link, mark.along)
+    if link != FRAME:
+        yield Laid(Layer.BAR, Polyline(guide_line(painter, link, mark), painter.style("bar", link)), link)
+        yield from painter.stub(link, painter.place(link, mark.at))
+        return
+    low, high = (painter.place(link, mark.at + mark.along * s) for s in (mark.low, mark.high))
+    side = _outer_side(e, (low + high) / 2.0, painter.middle)
+    down = 1j * e * side * BLOCK[1] / 2.0
+    start, stop = low - e * BEYOND, high + e * BEYOND
+    yield Laid(Layer.FRAME, Polyline((start + down, stop + down), "frame"), FRAME)
+    yield Laid(Layer.FRAME, Polyline((start - down, stop - down), "hatch"), FRAME)
+    yield Laid(Layer.BACK, hatching(start + down, stop + down, side), FRAME)
+
+
+def _outer_side(e: complex, place: complex, middle: complex) -> float:
+    """On which side of a fixed guide its hatching is: below, or beside an upright one away from the mechanism."""
+    across = 1j * e
+    if abs(across.imag) > 0.5:
+        return 1.0 if across.imag > 0 else -1.0
+    return 1.0 if (np.conjugate(across) * (place - middle)).real > 0 else -1.0
+
+
+def _cylinder(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
+    """A cylinder from its foot, and the rod with its piston."""
+    barrel, rod = seen.members
+    foot, eye, e = painter.place(barrel, mark.at), painter.place(rod, mark.block), painter.along(barrel, mark.along)
+    scale = painter.window.scale
+    shortest, longest = sorted((abs(mark.low) * scale, abs(mark.high) * scale))
+    out = e if (np.conjugate(e) * (eye - foot)).real >= 0 else -e
+    length = BARREL * shortest if shortest > 2.0 * BLOCK[0] else max(0.6 * longest, BLOCK[0])
+    here = float((np.conjugate(out) * (eye - foot)).real)
+    piston = min(max(PISTON + here - shortest, PISTON), length - PISTON)
+    rim = box(foot + out * length / 2.0, out, length, CYLINDER)
+    yield Laid(Layer.BAR, Polygon(rim, painter.style("plate", barrel)), barrel)
+    style = painter.style("bar", rod)
+    yield Laid(Layer.BAR, Polyline((foot + out * piston, eye), style), rod)
+    across = 1j * out * (CYLINDER / 2.0 - 1.5)
+    yield Laid(Layer.BAR, Polyline((foot + out * piston - across, foot + out * piston + across), style), rod)

@@ -1,0 +1,124 @@
+"""Shapes as SVG: small, readable, the same every time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from html import escape
+
+from compoundkin.view.sketch.shapes import Arc, Circle, Group, Polygon, Polyline, Shape, Strokes, Text
+from compoundkin.view.sketch.sketch_style import css
+
+FONT = "font-family:Helvetica,Arial,sans-serif"
+# Pixels for a picture unit where texts are as large as those of a page.
+NATURAL = 1.1
+# From the middle of a line of text to its baseline, in parts of the size of the letters.
+BASELINE = 0.35
+
+
+def svg(shapes: Sequence[Shape], width: float, height: float, size: float, title: str, description: str = "") -> str:
+    """The source of a picture of `width` by `height` picture units; its longer side is shown `size` pixels long.
+
+    >>> print(svg((), 100, 50, 200, "Empty").splitlines()[1])
+    <title>Empty</title>
+    """
+    return document(elements(shapes), shapes, width, height, size, title, description)
+
+
+def document(
+    lines: Iterable[str],
+    styled: Sequence[Shape],
+    width: float,
+    height: float,
+    size: float,
+    title: str,
+    description: str = "",
+) -> str:
+    """The source of a picture whose elements are there already, with the style sheet of some shapes."""
+    shown = size / max(width, height)
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {number(width)} {number(height)}" '
+        f'width="{number(width * shown)}" height="{number(height * shown)}" role="img" style="{FONT}">'
+    )
+    about = [f"<title>{escape(title)}</title>", *([f"<desc>{escape(description)}</desc>"] if description else [])]
+    sheet = f"<style>\n{css(styled)}\n</style>"
+    return "\n".join([head, *about, sheet, *lines, "</svg>", ""])
+
+
+def inline(shapes: Sequence[Shape], width: float, height: float, title: str, description: str = "") -> str:
+    """A picture as part of a page: as wide as there is room, its style that of the page, its links told.
+
+    >>> inline((Group((), links=("bar", "block")),), 100, 50, "A").splitlines()[2]
+    '<g data-links="bar,block">'
+    """
+    name = escape(f"{title}. {description}" if description else title)
+    head = (
+        f'<svg viewBox="0 0 {number(width)} {number(height)}" style="max-width:{number(width * NATURAL)}px;{FONT}" '
+        f'role="img" aria-label="{name}">'
+    )
+    return "\n".join([head, f"<title>{escape(title)}</title>", *elements(shapes, tagged=True), "</svg>"])
+
+
+def link_names(names: Iterable[str]) -> str:
+    """The names of links as one attribute of an element of a page; no name has a comma in it.
+
+    >>> link_names(["bar", "block"])
+    'bar,block'
+    """
+    return escape(",".join(names))
+
+
+def number(value: float) -> str:
+    """A number to a tenth of a picture unit, which no eye can tell, without idle zeros.
+
+    >>> number(12.04), number(-0.01), number(3.25)
+    ('12', '0', '3.2')
+    """
+    text = f"{value:.1f}"
+    text = text.removesuffix(".0")
+    return "0" if text == "-0" else text
+
+
+def elements(shapes: Iterable[Shape], *, tagged: bool = False) -> Iterator[str]:
+    """The elements of shapes, line by line; `tagged` tells the links that groups of them show."""
+    for shape in shapes:
+        if isinstance(shape, Group):
+            tag = f' data-links="{link_names(shape.links)}"' if tagged and shape.links else ""
+            if shape.style or shape.title or tag:
+                yield f"<g{_class(shape.style)}{tag}>"
+            if shape.title:
+                yield f"<title>{escape(shape.title)}</title>"
+            yield from elements(shape.shapes, tagged=tagged)
+            if shape.style or shape.title or tag:
+                yield "</g>"
+        else:
+            yield _element(shape)
+
+
+def _element(shape: Polyline | Polygon | Strokes | Circle | Arc | Text) -> str:
+    style = _class(shape.style)
+    if isinstance(shape, Text):
+        x, y = number(shape.at.real), number(shape.at.imag)
+        anchor = f' text-anchor="{shape.anchor}"' if shape.anchor != "start" else ""
+        return f'<text{style} x="{x}" y="{y}" dy="{BASELINE:g}em"{anchor}>{escape(shape.text)}</text>'
+    if isinstance(shape, Circle):
+        x, y = number(shape.centre.real), number(shape.centre.imag)
+        return f'<circle{style} cx="{x}" cy="{y}" r="{number(shape.radius)}"/>'
+    if isinstance(shape, Arc):
+        radius = number(shape.radius)
+        way = f"M{_pair(shape.start)}A{radius} {radius} 0 0 {int(shape.sweep)} {_pair(shape.stop)}"
+        return f'<path{style} d="{way}"/>'
+    if isinstance(shape, Strokes):
+        return f'<path{style} d="{"".join(_way(line) for line in shape.lines)}"/>'
+    return f'<path{style} d="{_way(shape.points)}{"Z" if isinstance(shape, Polygon) else ""}"/>'
+
+
+def _way(points: Sequence[complex]) -> str:
+    return "M" + "L".join(_pair(point) for point in points)
+
+
+def _pair(point: complex) -> str:
+    return f"{number(point.real)} {number(point.imag)}"
+
+
+def _class(style: str) -> str:
+    return f' class="{" ".join(f"ck-{name}" for name in style.split())}"' if style else ""

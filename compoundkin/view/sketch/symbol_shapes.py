@@ -1,0 +1,143 @@
+"""The marks of pairs as shapes: grooves, wheels, racks, belts, profiles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from compoundkin.model.elements import FRAME
+from compoundkin.model.pairs.symbols import Disc, Groove, Mark, Outline, Sliding, Strap, Stud, Track
+from compoundkin.view.sketch.painter import Laid, Layer, Painter
+from compoundkin.view.sketch.scene import Seen
+from compoundkin.view.sketch.shapes import Circle, Polygon, Polyline, Strokes
+from compoundkin.view.sketch.sketch_style import PIN, STUD
+from compoundkin.view.sketch.slide_shapes import BEYOND, sliding
+from compoundkin.view.sketch.strokes import direction, hatching, ticks
+
+# Teeth nearer than this to each other are not drawn one by one.
+CLOSEST = 7.0
+TOOTH = 3.0
+RIM = 9.0
+# A wheel of a smaller radius does not show how it is turned.
+TINY = 9.0
+# Wheels that differ by less than this, in picture units, are one.
+ONE = 1.0
+
+
+def marks(painter: Painter) -> Iterator[Laid]:
+    """All marks that are shown, a wheel that several pairs share once."""
+    drawn: list[tuple[str, complex, float]] = []
+    for seen in painter.scene.seen:
+        if not isinstance(seen.mark, Sliding) and not painter.shows(seen.members[seen.mark.member]):
+            continue
+        if isinstance(seen.mark, Disc):
+            link = seen.members[seen.mark.member]
+            middle, radius = painter.place(link, seen.mark.at), float(seen.mark.radius * painter.window.scale)
+            if any(link == o[0] and abs(middle - o[1]) < ONE and abs(radius - o[2]) < ONE for o in drawn):
+                continue
+            drawn.append((link, middle, radius))
+        painted = PAINTED.get(type(seen.mark))
+        if painted is not None:
+            yield from painted(painter, seen, seen.mark)
+
+
+def _groove(painter: Painter, seen: Seen, mark: Groove) -> Iterator[Laid]:
+    link = seen.members[mark.member]
+    line = painter.line(link, mark.line)
+    # a groove of a bar covers it; one of the frame is behind all bars
+    layer = Layer.FRAME if link == FRAME else Layer.GROOVE
+    yield Laid(layer, Polyline(line, painter.style("track", link)), link)
+    yield Laid(layer, Polyline(line, "knock"), link)
+    own = [painter.place(link, p) for p in painter.scene.points[link].values()]
+    if link != FRAME and min(abs(p - q) for p in own for q in line) > 2.0 * PIN:
+        yield from painter.stub(link, min(line, key=lambda q: min(abs(p - q) for p in own)))
+
+
+def _stud(painter: Painter, seen: Seen, mark: Stud) -> Iterator[Laid]:
+    link = seen.members[mark.member]
+    yield Laid(Layer.PIN, Circle(painter.place(link, mark.at), STUD, "dot"), link)
+
+
+def _disc(painter: Painter, seen: Seen, mark: Disc) -> Iterator[Laid]:
+    link = seen.members[mark.member]
+    middle, radius = painter.place(link, mark.at), float(mark.radius * painter.window.scale)
+    e = painter.along(link, 1 + 0j)
+    if mark.is_ring:
+        yield Laid(Layer.WHEEL, Circle(middle, radius, painter.style("line", link)), link)
+        yield Laid(Layer.WHEEL, Circle(middle, radius + RIM, painter.style("line", link)), link)
+        if link == FRAME:
+            count = max(12, round(2.0 * np.pi * radius / (2.0 * CLOSEST)))
+            lines = ticks(middle, radius + RIM, 0.0, count, 0.0, RIM / 1.5)
+            yield Laid(Layer.BACK, Strokes(tuple((a, b + 1j * (b - a) * 0.7) for a, b in lines), "hatch"), link)
+        else:
+            spoke = Polyline((middle + e * radius, middle + e * (radius + RIM)), painter.style("bar", link))
+            yield Laid(Layer.WHEEL, spoke, link)
+    else:
+        yield Laid(Layer.WHEEL, Circle(middle, radius, painter.style("plate", link)), link)
+        if radius > TINY and link != FRAME:
+            hand = Polyline((middle + e * radius * 0.62, middle + e * radius), painter.style("line", link))
+            yield Laid(Layer.WHEEL, hand, link)
+    if mark.teeth:
+        fewer = max(1, int(np.ceil(mark.teeth * CLOSEST / (2.0 * np.pi * radius))))
+        lines = ticks(middle, radius, float(np.angle(e)), max(6, round(mark.teeth / fewer)), -TOOTH, TOOTH)
+        yield Laid(Layer.WHEEL, Strokes(lines, "hatch" if link == FRAME else painter.style("thin", link)), link)
+
+
+def _track(painter: Painter, seen: Seen, mark: Track) -> Iterator[Laid]:
+    link = seen.members[mark.member]
+    e = painter.along(link, mark.along)
+    low, high = (mark.low, mark.high) if link == FRAME else (min(mark.low, 0.0), max(mark.high, 0.0))
+    start, stop = (painter.place(link, mark.at + mark.along * s) for s in (low, high))
+    start, stop = start - e * BEYOND, stop + e * BEYOND
+    # what runs on it is to the left, which on paper, y downward, is -1j
+    under = 1j * e * mark.side
+    if link == FRAME and not mark.pitch:
+        yield Laid(Layer.FRAME, Polyline((start, stop), "frame"), link)
+        yield Laid(Layer.BACK, hatching(start, stop, mark.side), link)
+        return
+    side = Polygon((start, stop, stop + under * RIM, start + under * RIM), painter.style("plate", link))
+    yield Laid(Layer.BAR, side, link)
+    if mark.pitch:
+        step = mark.pitch * painter.window.scale
+        step *= max(1, int(np.ceil(CLOSEST / step)))
+        origin = painter.place(link, mark.at)
+        first = int(np.ceil((np.conjugate(e) * (start - origin)).real / step))
+        last = int(np.floor((np.conjugate(e) * (stop - origin)).real / step))
+        feet = [origin + e * step * k for k in range(first, last + 1)]
+        teeth = Strokes(tuple((p - under * TOOTH, p + under * TOOTH) for p in feet), painter.style("thin", link))
+        yield Laid(Layer.BAR, teeth, link)
+
+
+def _strap(painter: Painter, seen: Seen, mark: Strap) -> Iterator[Laid]:
+    link = seen.members[mark.member]
+    yield Laid(Layer.BAR, Polyline(painter.line(link, mark.line), "strap"), link)
+
+
+def _outline(painter: Painter, seen: Seen, mark: Outline) -> Iterator[Laid]:
+    link = seen.members[mark.member]
+    line = painter.line(link, mark.line)
+    if mark.is_hollow:
+        middle = complex(np.mean(line))
+        outside = tuple(p + RIM * direction(p - middle) for p in line)
+        yield Laid(Layer.WHEEL, Polygon(line, painter.style("line", link)), link)
+        yield Laid(Layer.WHEEL, Polygon(outside, painter.style("line", link)), link)
+    elif mark.closed:
+        yield Laid(Layer.WHEEL, Polygon(line, painter.style("plate", link)), link)
+    else:
+        yield Laid(Layer.WHEEL, Polyline(line, painter.style("line", link)), link)
+    own = [painter.place(link, p) for p in painter.scene.points[link].values()]
+    if not mark.closed and own:
+        yield from painter.stub(link, min(line, key=lambda q: min(abs(p - q) for p in own)))
+
+
+PAINTED: dict[type[Mark], Callable[[Painter, Seen, Any], Iterator[Laid]]] = {
+    Sliding: sliding,
+    Groove: _groove,
+    Stud: _stud,
+    Disc: _disc,
+    Track: _track,
+    Strap: _strap,
+    Outline: _outline,
+}

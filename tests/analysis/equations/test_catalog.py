@@ -1,0 +1,85 @@
+"""The written terms with the solved positions of every shipped mechanism put in: sums of vectors must be zero."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.analysis.equations import LoopEquations, Vector, latex, loop_equations, text
+from compoundkin.analysis.equations.pair_terms import crossing
+from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.view.report.mobility_count import equation_count
+
+# Residuals of solved positions, of the size of the mechanism or in radians.
+ZERO = 1e-9
+
+
+def solved(name: str) -> ck.Motion:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        return ck.solve(load_named(name), order=1)
+
+
+def values_of(motion: ck.Motion, equations: LoopEquations) -> dict[str, np.ndarray]:
+    """The unknowns as the solved poses show them: lengths and directions by the places of points, not by pairs."""
+    values = {name: link.angle for name, link in motion.links.items()}
+    geometry = motion.mechanism.geometry
+    for pair in equations.structure.pairs:
+        how = crossing(pair, pair.ends(geometry))
+        if how is None or how.unknown is None:
+            continue
+        first, second = (motion.links[name].at(p).position for name, p in zip(pair.members, how.points, strict=False))
+        gap = np.asarray(second - first)
+        if how.unknown.kind == "parameter":
+            values[how.unknown.key] = motion.pairs[pair.name].value
+            continue
+        zero = {**values, how.unknown.key: 0.0}
+        free = next(arm for arm in how.arms if (isinstance(arm, Vector) and not arm.symbol) or len(how.arms) == 1)
+        if how.unknown.kind == "displacement":
+            along = free.sign * np.exp(1j * free.angle.at(zero))
+            others = sum((arm.at(zero) for arm in how.arms if arm is not free), 0j)
+            values[how.unknown.key] = ((gap - others) * np.conj(along)).real
+        else:
+            values[how.unknown.key] = np.unwrap(np.angle(gap * np.exp(-1j * free.angle.at(zero))))
+    return values
+
+
+@pytest.mark.parametrize("name", names())
+def test_solved_positions_satisfy_every_equation(name):
+    motion = solved(name)
+    equations = loop_equations(motion.structure)
+    values, size, good = values_of(motion, equations), motion.mechanism.geometry.size, motion.assembled
+    for loop in equations.loops:
+        assert np.max(np.abs(np.broadcast_to(loop.at(values), good.shape)[good])) < ZERO * size, str(loop.loop)
+    for auxiliary in equations.auxiliary:
+        left = np.broadcast_to(auxiliary.at(values), good.shape)[good]
+        # a phase that is read off the drawing is taken on by whole turns: it may be another constant
+        gap = left - left[0] if auxiliary.counts_turns else left
+        assert np.max(np.abs(gap)) < ZERO * size, auxiliary.pair
+    for driven in equations.drivers:
+        left = driven.at(values, ck.quantity(motion, f"{driven.driver}.value").values)
+        assert np.max(np.abs(np.broadcast_to(left, good.shape)[good])) < ZERO * size, driven.driver
+
+
+@pytest.mark.parametrize("name", names())
+def test_there_are_as_many_equations_as_unknowns_and_as_the_report_counts(name):
+    structure = ck.decompose(load_named(name))
+    if structure.faults:
+        return  # a driver that closes on others has no place among the equations
+    equations, count = loop_equations(structure), equation_count(structure)
+    assert (equations.equations, len(equations.unknowns)) == (count.equations, count.unknowns)
+    assert equations.is_solvable == (count.equations == count.unknowns)
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_unknown_is_written_somewhere(name):
+    equations = loop_equations(ck.decompose(load_named(name)))
+    written = [text(one) for one in (*equations.loops, *equations.auxiliary, *equations.drivers)]
+    for unknown in equations.unknowns:
+        assert any(unknown.key in line for line in written), unknown.key
+    for one in (*equations.loops, *equations.auxiliary, *equations.drivers):
+        formula = latex(one)
+        assert formula.count("{") == formula.count("}")

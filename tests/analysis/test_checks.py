@@ -1,0 +1,116 @@
+"""The checks must fail when a motion is wrong: every kind of corruption is caught."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Series
+
+FOUR_BAR = ck.Mechanism(
+    "Four-bar",
+    ck.link("frame", A=(0, 0), D=(4, 0)),
+    ck.link("crank", A=0, B=1),
+    ck.link("coupler", B=0, C=3, P=(1, 1)),
+    ck.link("rocker", D=0, C=3),
+    ck.drive("crank", speed=2.0, acceleration=-3.0, jerk=1.0),
+)
+
+
+def corrupted(motion, link, what, k, change):
+    """The motion with one coefficient of one link's pose changed at one pose."""
+    pose = motion.poses[link]
+    coefficients = list(getattr(pose, what).c)
+    coefficients += [0j] * (motion.order + 1 - len(coefficients))
+    array = np.array(np.broadcast_to(coefficients[k], (1, *motion.shape)), dtype=complex)
+    array[0, 7] = change(array[0, 7])
+    coefficients[k] = array
+    parts = {"z": pose.z, "u": pose.u, what: Series(tuple(coefficients))}
+    return replace(motion, poses={**motion.poses, link: Pose(parts["z"], parts["u"])})
+
+
+def test_a_sound_motion_passes_in_every_order():
+    check = ck.verify(ck.solve(FOUR_BAR, order=3))
+    assert check.passed
+    assert check.poses == 73
+    assert check.singular == 0
+    assert {f.name for f in check.findings} >= {"closure", "velocity", "acceleration", "jerk"}
+    exact = [f for f in check.findings if "differences" not in f.name and "continuity" not in f.name]
+    assert max(f.value for f in exact) < 1e-13
+    assert {f.name for f in check.findings} >= {
+        "velocities from centres",
+        "Kennedy collinearity",
+        "velocity, differences",
+        "acceleration, differences",
+        "jerk, differences",
+        "continuity",
+    }
+
+
+@pytest.mark.parametrize(("k", "order"), [(0, "closure"), (1, "velocity"), (2, "acceleration"), (3, "jerk")])
+@pytest.mark.parametrize("what", ["z", "u"])
+@pytest.mark.parametrize("link", ["crank", "coupler", "rocker"])
+def test_a_wrong_coefficient_is_found_in_its_order_at_its_pose(link, what, k, order):
+    motion = ck.solve(FOUR_BAR, order=3)
+    wrong = corrupted(motion, link, what, k, lambda c: c + 1e-4 * (1 + 2j))
+    failed = [f for f in ck.verify(wrong).findings if not f.passed]
+    assert any(f.name.endswith(order) and f.pose == (7,) for f in failed)
+
+
+def test_a_wrong_driver_is_found():
+    motion = ck.solve(FOUR_BAR, {"crank": [0.3, 0.4]})
+    other = ck.solve(FOUR_BAR, {"crank": [0.3, 0.41]})
+    failed = [f for f in ck.verify(replace(motion, poses=other.poses)).findings if not f.passed]
+    assert failed[0].name == "drivers, closure"
+    assert {f.pose for f in failed} == {(1,)}
+
+
+def test_a_leap_to_the_other_branch_is_found():
+    motion, other = ck.solve(FOUR_BAR), ck.solve(FOUR_BAR, modes={"rocker": -1})
+    poses = {}
+    for link, pose in motion.poses.items():
+        parts = []
+        for what in ("z", "u"):
+            pair = zip(getattr(pose, what).c, getattr(other.poses[link], what).c, strict=True)
+            parts.append(Series(tuple(np.where(np.arange(73)[None] < 40, a, b) for a, b in pair)))
+        poses[link] = Pose(*parts)
+    failed = [f for f in ck.verify(replace(motion, poses=poses)).findings if not f.passed]
+    assert ("continuity", (40,)) in [(f.name, f.pose) for f in failed]
+
+
+def test_differences_alone_find_a_wrong_acceleration():
+    """A link that no pair holds in its second derivative: only the differences can tell."""
+    motion = ck.solve(FOUR_BAR)
+    wrong = corrupted(motion, "crank", "u", 2, lambda c: c + 1e-3j)
+    failed = {f.name for f in ck.verify(wrong).findings if not f.passed}
+    assert "acceleration, differences" in failed
+
+
+def test_not_a_number_does_not_pass():
+    motion = corrupted(ck.solve(FOUR_BAR), "coupler", "u", 0, lambda c: complex(np.nan))
+    assert not ck.verify(motion).passed
+
+
+def test_a_motion_without_any_assembled_pose_does_not_pass():
+    with pytest.warns(ck.UnassembledPoses):
+        motion = ck.solve(FOUR_BAR.replace(ck.link("rocker", D=0, C=30)))
+    assert not ck.verify(motion).passed
+
+
+def test_a_mechanism_at_rest_passes():
+    assert ck.verify(ck.solve(FOUR_BAR, speed=0.0, acceleration=0.0, jerk=0.0, order=3)).passed
+
+
+def test_scale_does_not_matter():
+    small = FOUR_BAR.replace(
+        ck.link("frame", A=(0, 0), D=(4e-6, 0)),
+        ck.link("crank", A=0, B=1e-6),
+        ck.link("coupler", B=0, C=3e-6, P=(1e-6, 1e-6)),
+        ck.link("rocker", D=0, C=3e-6),
+    )
+    motion = ck.solve(small, speed=1e4, order=3)
+    assert ck.verify(motion).passed
+    wrong = corrupted(motion, "coupler", "z", 1, lambda c: c * (1 + 1e-4))
+    assert not ck.verify(wrong).passed

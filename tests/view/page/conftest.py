@@ -1,0 +1,119 @@
+"""A browser for the tests of pages, and pages to look at."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import compoundkin as ck
+from compoundkin.files import shipped_mechanisms
+from compoundkin.view.page import page
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+# No sandbox where tests run as root in a container; nothing that reaches for the network of its own accord.
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+DESK, PHONE = (1440, 900), (360, 740)
+
+# A name that would run a script wherever it is not written as text.
+HOSTILE = "<script>hacked=1</script>\"'&</p><img src=x onerror=hacked=2>"
+
+
+def _missing(why: str) -> None:
+    """Skip what needs a browser, or fail where one is required."""
+    if os.environ.get("COMPOUNDKIN_BROWSER") == "required":
+        pytest.fail(f"{why}, and COMPOUNDKIN_BROWSER=required")
+    pytest.skip(f"{why}: apt-get install chromium")
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """Chromium as the system has it; none is ever downloaded."""
+    found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    if found is None:
+        _missing("there is no Chromium on this machine")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        started = driver.chromium.launch(executable_path=found, args=list(FLAGS))
+        yield started
+        started.close()
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """The pages of mechanisms by name, each made once."""
+    folder, known = tmp_path_factory.mktemp("pages"), {}
+
+    def of(name: str) -> Path:
+        if name not in known:
+            known[name] = folder / f"{name}.html"
+            page(ck.solve(shipped_mechanisms.load_named(name))).save(known[name])
+        return known[name]
+
+    return of
+
+
+class Opened:
+    """A page in the browser, with all that it asked for and complained about."""
+
+    def __init__(self, context: Any, path: Path) -> None:
+        self.context, self.path = context, path
+        self.requests: list[str] = []
+        self.complaints: list[str] = []
+        self.view = context.new_page()
+        self.view.on("request", lambda request: self.requests.append(request.url))
+        self.view.on("console", lambda message: self.complaints.append(message.text))
+        self.view.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.view.goto(path.as_uri())
+
+    def value(self, script: str, *arguments: Any) -> Any:
+        """What a script in the page gives."""
+        return self.view.evaluate(script, *arguments)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.view, name)
+
+
+@pytest.fixture
+def opened(browser: Any) -> Iterator[Callable[..., Opened]]:
+    """Open a file in a new window; all windows are closed afterwards."""
+    contexts = []
+
+    def of(path: Path, size: tuple[int, int] = DESK, script: str = "", **how: Any) -> Opened:
+        contexts.append(browser.new_context(viewport={"width": size[0], "height": size[1]}, **how))
+        if script:
+            contexts[-1].add_init_script(script)
+        return Opened(contexts[-1], path)
+
+    yield of
+    for context in contexts:
+        context.close()
+
+
+@pytest.fixture(scope="session")
+def hostile() -> ck.Mechanism:
+    """A four-bar whose title, description and names try to be markup."""
+    return ck.Mechanism(
+        f"Title {HOSTILE}",
+        ck.link("frame", A=0, D=4),
+        ck.link(f"crank {HOSTILE}", A=0, B=1),
+        ck.link("rod", B=0, C=3),
+        ck.link("arm", D=0, C=3),
+        ck.drive(f"crank {HOSTILE}"),
+        description=f"Description {HOSTILE}",
+        source=f"Source {HOSTILE}",
+    )

@@ -1,0 +1,68 @@
+"""Formulas as MathML: all that reports write, read as it was meant."""
+
+from __future__ import annotations
+
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+import compoundkin as ck
+from compoundkin.analysis.equations import latex, loop_equations, text
+from compoundkin.files import shipped_mechanisms
+from compoundkin.structure.redundancy import solvable
+from compoundkin.view.page import page_of
+from compoundkin.view.page.mathml import Unread, mathml
+from compoundkin.view.report.report_data import Formula, Outcome, Report, Section
+
+# The names of elements that MathML Core has, of those that formulas need.
+KNOWN = {"math", "mrow", "mi", "mn", "mo", "mtext", "msub", "msup", "msubsup"}
+
+
+def read(formula: str) -> ElementTree.Element:
+    """The elements of a formula; scripts must have as many children as they take."""
+    root = ElementTree.fromstring(f"<all>{mathml(formula)}</all>")
+    for element in root.iter():
+        assert element.tag in KNOWN | {"all"}
+        wanted = {"msub": 2, "msup": 2, "msubsup": 3}.get(element.tag)
+        assert wanted is None or len(element) == wanted
+    return root
+
+
+def words(equation: object) -> set[str]:
+    """The names and numbers in an equation as text."""
+    return set(re.findall(r"[A-Za-z]{2,}|\d+\.\d+", text(equation))) - {"deg", "value", "of", "Re"}
+
+
+@pytest.mark.parametrize("name", sorted(shipped_mechanisms.names()))
+def test_every_equation_of_the_catalog_is_read_with_all_its_names(name: str) -> None:
+    found = loop_equations(solvable(shipped_mechanisms.load_named(name)))
+    for equation in (*found.loops, *found.auxiliary, *found.drivers):
+        said = "".join(read(latex(equation)).itertext())
+        assert all(word in said for word in words(equation)), said
+        # as many equals signs, pluses and minuses at the top as the text has
+        assert said.count("=") == text(equation).count("=")
+
+
+def test_scripts_and_signs() -> None:
+    root = read(r"-2.5 \theta_{\text{a}} + \overline{\text{AB}}\,e^{i(\theta_{\text{b}} + 35^\circ)} = 0")
+    assert [element.tag for element in root] == ["math"] * 3
+    assert "".join(root.itertext()) == "−2.5θa +ABei(θb+35°) =0"
+    assert [element.get("class") for element in root.iter("mtext")] == [None, "over", None]
+    assert [child.tag for child in root[1]] == ["mo", "mtext", "msup"]
+
+
+@pytest.mark.parametrize("name", ["a_b", "50% {x}", "a#b&c$d", "x^2~", "<b>"])
+def test_names_come_through_as_they_are(name: str) -> None:
+    parts = ck.link("frame", A=0, D=4), ck.link(name, A=0, B=1), ck.link("rod", B=0, C=3), ck.link("arm", D=0, C=3)
+    found = loop_equations(ck.decompose(ck.Mechanism("m", *parts, ck.drive(name))))
+    assert name in [element.text for element in read(latex(found.loops[0])).iter("mtext")]
+
+
+@pytest.mark.parametrize("formula", [r"\frac{1}{2}", r"\text", r"a_{b", r"\text{<b>"])
+def test_what_it_does_not_know_is_shown_as_text(formula: str) -> None:
+    with pytest.raises(Unread):
+        mathml(formula)
+    section = Section("s", "S", (Formula("a < b", formula),))
+    html = page_of(Report("R", (section,), Outcome(True, 0, 0, 0, 0, 0, 0))).html
+    assert '<p class="formula"><code>a &lt; b</code></p>' in html

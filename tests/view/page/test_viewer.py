@@ -1,0 +1,291 @@
+"""The moving sketch and the plots in a real browser: where the solver is, and what the switches do."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.view.page import page, player
+
+PLAYER = "compoundkin.players[0]"
+
+
+def set_slider(view: Any, k: int) -> None:
+    """Move the slider as a hand would: the input event tells."""
+    view.value(
+        "k => { const s = document.querySelector('.slider'); s.value = k; s.dispatchEvent(new Event('input')); }", k
+    )
+
+
+def until(view: Any, script: str) -> None:
+    """Wait until a script is true; the page's policy lets the browser's driver evaluate no text of its own."""
+    for _ in range(200):
+        if view.value(script):
+            return
+        view.wait_for_timeout(50)
+    pytest.fail(f"never true: {script}")
+
+
+@pytest.mark.parametrize("name", ["six-bar", "jansen-leg", "planetary-train", "class-iii-six-bar"])
+def test_the_slider_takes_every_point_where_the_solver_has_it(name: str, made: Any, opened: Any) -> None:
+    motion = ck.solve(load_named(name))
+    view = opened(made(name))
+    letters = view.value(f"Object.keys({PLAYER}.points)")
+    assert letters
+    for k in np.linspace(0, motion.inputs.poses - 1, 9).round().astype(int):
+        set_slider(view, int(k))
+        drawn = view.value(f"names => names.map(name => {PLAYER}.drawn(name))", letters)
+        for letter, (x, y) in zip(letters, drawn, strict=True):
+            assert abs(x + 1j * y - motion.points[letter].position[k]) < 1e-6
+    assert view.complaints == []
+
+
+def test_bars_turn_with_their_links(made: Any, opened: Any) -> None:
+    """What the browser paints: the bar of a link ends in the circles of its pins, to a tenth of a unit as written."""
+    view = opened(made("six-bar"))
+    set_slider(view, 40)
+    off = view.value(f"""() => {{
+        const player = {PLAYER}, inverse = player.svg.getScreenCTM().inverse();
+        const rocker = player.parts.find((part) => part.dataset.links === "rocker" && part.querySelector(".ck-bar1"));
+        const bar = rocker.querySelector("path");
+        const through = (length) => bar.getPointAtLength(length)
+            .matrixTransform(bar.getScreenCTM()).matrixTransform(inverse);
+        const ends = [through(0), through(bar.getTotalLength())];
+        const pins = ["A", "B"].map((letter) => player.paper(player.place(letter)));
+        const gaps = pins.map(([x, y]) => Math.min(...ends.map((end) => Math.hypot(end.x - x, end.y - y))));
+        return Math.max(...gaps);
+    }}""")
+    assert off < 0.2
+
+
+def test_keys_and_buttons_move_it(made: Any, opened: Any) -> None:
+    view = opened(made("six-bar"))
+    view.focus(".slider")
+    start = view.value(f"{PLAYER}.pose")
+    view.keyboard.press("ArrowRight")
+    assert view.value(f"{PLAYER}.pose") == start + 1
+    view.keyboard.press("End")
+    assert view.value(f"{PLAYER}.pose") == 72
+    view.click(".forth")
+    assert view.value(f"{PLAYER}.pose") == 0
+    view.click(".back")
+    assert view.value(f"{PLAYER}.pose") == 72
+    assert view.get_attribute(".slider", "aria-valuetext") == "crank 360°"
+    assert view.text_content(".where") == "crank 360°"
+
+
+def test_it_plays_and_stops(made: Any, opened: Any) -> None:
+    view = opened(made("six-bar"))
+    play = view.locator(".play")
+    play.click()
+    assert play.get_attribute("aria-pressed") == "true"
+    assert play.text_content() == "Pause"
+    until(view, f"{PLAYER}.pose > 3")
+    part = "document.querySelector('.parts > g:last-child').getAttribute('transform')"
+    view.value(f"window.before = {part}")
+    until(view, f"{part} !== window.before")
+    play.click()
+    at = view.value(f"{PLAYER}.pose")
+    view.wait_for_timeout(150)
+    assert view.value(f"{PLAYER}.pose") == at
+    assert play.get_attribute("aria-pressed") == "false"
+
+
+def test_a_motion_that_does_not_close_goes_there_and_back(opened: Any, tmp_path: Path) -> None:
+    motion = ck.solve(load_named("six-bar"), {"crank": ck.deg(range(0, 91, 10))})
+    page(motion).save(tmp_path / "part.html")
+    view = opened(tmp_path / "part.html")
+    view.value("""() => {
+        window.seen = [];
+        compoundkin.players[0].data.seconds = 0.3;
+        compoundkin.players[0].listeners.push((k) => window.seen.push(k));
+    }""")
+    view.click(".play")
+    until(view, "seen.includes(9) && seen.indexOf(9) < seen.length - 1")
+    seen = view.value("seen")
+    peak = seen.index(9)
+    after = seen[peak + 1]
+    assert after < 9, "from the last pose it goes back"
+    assert after > 0, "not to the first one at once"
+
+
+def test_velocities_and_accelerations_are_those_of_the_solver(made: Any, opened: Any) -> None:
+    motion = ck.solve(load_named("six-bar"))
+    view = opened(made("six-bar"))
+    set_slider(view, 17)
+    for order, kind in ((1, "velocity"), (2, "acceleration")):
+        for letter in ("G", "D", "A", "C"):
+            x, y = view.value(f"([letter, order]) => {PLAYER}.rate(letter, order)", [letter, order])
+            solved = complex(motion.points[letter].derivative(order)[17])
+            assert abs(x + 1j * y - solved) < 2e-6 * abs(solved), (letter, kind)
+
+
+def test_switches_show_and_hide(made: Any, opened: Any) -> None:
+    view = opened(made("six-bar"))
+    for key, selector in (
+        ("velocity", ".velocities .ck-velocity-head"),
+        ("acceleration", ".accelerations .ck-acceleration-head"),
+        ("centres", ".dots .ck-centre"),
+        ("path G", ".traces .ck-path"),
+    ):
+        assert view.locator(selector).count() == 0
+        view.value("() => document.querySelector('.switches details').open = true")
+        view.check(f"[data-show='{key}']")
+        assert view.locator(selector).count() > 0, key
+        view.uncheck(f"[data-show='{key}']")
+        assert view.locator(selector).count() == 0, key
+    assert view.locator(".name").first.is_visible()
+    view.uncheck("[data-show=names]")
+    assert not view.locator(".name").first.is_visible()
+    assert view.complaints == []
+
+
+def test_centres_are_drawn_where_they_are(made: Any, opened: Any) -> None:
+    motion = ck.solve(load_named("six-bar"))
+    view = opened(made("six-bar"))
+    set_slider(view, 7)
+    view.check("[data-show=centres]")
+    dots = view.value(f"""() => [...document.querySelectorAll(".dots .ck-centre")].map((dot) => {{
+        const window = {PLAYER}.data.window;
+        return [dot.cx.baseVal.value / window.scale + window.x, window.y - dot.cy.baseVal.value / window.scale];
+    }})""")
+    centres = ck.instant_centres(motion)
+    known = np.array([complex(centres[couple].point[7]) for couple in centres])
+    assert len(dots) > 5
+    for x, y in dots:
+        assert np.abs(known[np.isfinite(known)] - (x + 1j * y)).min() < 1e-3
+
+
+def test_the_path_of_a_point_is_its_coupler_curve(made: Any, opened: Any) -> None:
+    motion = ck.solve(load_named("jansen-leg"))
+    view = opened(made("jansen-leg"))
+    view.value("() => document.querySelector('.switches details').open = true")
+    view.check("[data-show='path foot']")
+    d = view.get_attribute(".traces .ck-path", "d")
+    window = view.value(f"{PLAYER}.data.window")
+    places = [complex(*map(float, part.split())) for part in d[1:].split("L")]
+    foot = np.asarray(motion.points["foot"].position)
+    paper = np.conjugate((foot - (window["x"] + 1j * window["y"])) * window["scale"])
+    np.testing.assert_allclose(places, paper, atol=0.01)
+
+
+def test_plots_have_a_cursor_that_follows_and_leads(made: Any, opened: Any) -> None:
+    view = opened(made("six-bar"))
+    set_slider(view, 36)
+    place = "[...document.querySelectorAll('.plot .cursor')].map(c => c.getBoundingClientRect().x)"
+    at = view.value(place)
+    assert len(at) >= 3
+    over = view.locator(".plot .u-over").first
+    over.scroll_into_view_if_needed()
+    box = over.bounding_box()
+    # crank 180 is in the middle of 0 to 360
+    assert view.value(place)[0] == pytest.approx(box["x"] + box["width"] / 2, abs=2)
+    view.mouse.move(box["x"] + box["width"] * 0.25, box["y"] + 40)
+    view.mouse.down()
+    assert view.value(f"{PLAYER}.pose") == 18
+    view.mouse.move(box["x"] + box["width"] * 0.75, box["y"] + 40)
+    view.mouse.up()
+    assert view.value(f"{PLAYER}.pose") == 54
+    assert view.input_value(".slider") == "54"
+    assert "crank 270°" in view.text_content(".where")
+
+
+def test_plots_show_the_outputs(made: Any, opened: Any) -> None:
+    motion = ck.solve(load_named("six-bar"))
+    view = opened(made("six-bar"))
+    data = view.value("compoundkin.plots.panels.map((panel) => panel.plot.data)")
+    velocity = np.asarray(motion.points["G"].velocity)
+    np.testing.assert_allclose(data[1][1], velocity.real, rtol=1e-6, atol=1e-4)
+    np.testing.assert_allclose(data[1][2], velocity.imag, rtol=1e-6, atol=1e-4)
+    np.testing.assert_allclose(data[1][3], np.abs(velocity), rtol=1e-6, atol=1e-4)
+    np.testing.assert_allclose(data[0][0], np.arange(0, 361, 5), atol=1e-9)
+
+
+def test_any_other_quantity_can_be_plotted(made: Any, opened: Any) -> None:
+    motion = ck.solve(load_named("six-bar"))
+    view = opened(made("six-bar"))
+    before = view.locator(".plot").count()
+    view.select_option(".quantity", "rocker.angular_acceleration")
+    view.click(".add")
+    assert view.locator(".plot").count() == before + 1
+    data = view.value("compoundkin.plots.panels.at(-1).plot.data[1]")
+    np.testing.assert_allclose(data, motion.links["rocker"].angular_acceleration, rtol=1e-6, atol=1e-5)
+    view.select_option(".quantity", "A.position")
+    view.click(".add")
+    data = view.value("compoundkin.plots.panels.at(-1).plot.data[2]")
+    np.testing.assert_allclose(data, motion.points["A"].y, atol=1e-9)
+    view.locator(".remove").last.click()
+    view.locator(".remove").last.click()
+    assert view.locator(".plot").count() == before
+    assert view.complaints == []
+
+
+def test_every_choice_of_a_quantity_draws_a_plot(made: Any, opened: Any) -> None:
+    view = opened(made("planetary-train"))
+    names = view.value("[...document.querySelector('.quantity').options].map((option) => option.value)")
+    assert len(names) > 10
+    for name in names:
+        drawn = view.value("name => compoundkin.plots.add(name).plot.data.slice(1)", name)
+        assert all(value is None or np.isfinite(value) for row in drawn for value in row), name
+        assert any(value is not None for row in drawn for value in row), name
+    assert view.complaints == []
+
+
+def test_poses_that_cannot_be_assembled_are_said(opened: Callable[..., Any], tmp_path: Path) -> None:
+    rocker = ck.with_driver(load_named("crank-rocker"), "rocker")
+    with pytest.warns(ck.UnassembledPoses):
+        motion = ck.solve(rocker, {rocker.drives[0].name: ck.deg(range(0, 360, 5))})
+    page(motion).save(tmp_path / "rocker.html")
+    view = opened(tmp_path / "rocker.html")
+    missing = int(np.flatnonzero(~motion.assembled)[0])
+    set_slider(view, missing)
+    assert "cannot be assembled" in view.text_content(".said")
+    assert "unassembled" in view.get_attribute(".sketch", "class")
+    assert "cannot be assembled" in view.get_attribute(".slider", "aria-valuetext")
+    set_slider(view, int(np.flatnonzero(motion.assembled)[0]))
+    assert view.text_content(".said") == ""
+    gaps = view.value("compoundkin.plots.panels[0].plot.data[1].filter((value) => value === null).length")
+    assert gaps == int((~motion.assembled).sum())
+    assert view.complaints == []
+
+
+def test_names_grow_on_a_small_screen(made: Any, opened: Any) -> None:
+    view = opened(made("six-bar"), size=(360, 740))
+    tall = view.value("document.querySelector('.name text').getBoundingClientRect().height")
+    assert tall >= 10
+    assert view.value("document.scrollingElement.scrollWidth") <= 360
+
+
+def test_a_driver_that_goes_back_and_forth_is_plotted_over_poses(opened: Callable[..., Any], tmp_path: Path) -> None:
+    there = np.concatenate([np.arange(0, 91, 10), np.arange(80, -1, -10)])
+    page(ck.solve(load_named("six-bar"), {"crank": ck.deg(there)})).save(tmp_path / "back.html")
+    view = opened(tmp_path / "back.html")
+    assert view.value("compoundkin.plots.panels[0].plot.data[0]") == list(range(19))
+    page(ck.solve(load_named("six-bar"), {"crank": ck.deg(range(90, -1, -10))})).save(tmp_path / "down.html")
+    view = opened(tmp_path / "down.html")
+    np.testing.assert_allclose(view.value("compoundkin.plots.panels[0].plot.data[0]"), range(0, 91, 10), atol=1e-9)
+    set_slider(view, 2)
+    assert "crank 70°" in view.text_content(".where")
+
+
+def test_the_player_of_a_notebook_plays(opened: Callable[..., Any], tmp_path: Path) -> None:
+    motion = ck.solve(load_named("six-bar"))
+    (tmp_path / "alone.html").write_text(player(motion), encoding="utf-8")
+    view = opened(tmp_path / "alone.html")
+    set_slider(view, 30)
+    x, y = view.value(f"{PLAYER}.drawn('G')")
+    assert abs(x + 1j * y - motion.points["G"].position[30]) < 1e-6
+    framed = motion._repr_html_()
+    assert framed is not None
+    (tmp_path / "notebook.html").write_text(f"<!DOCTYPE html><title>n</title>{framed}", encoding="utf-8")
+    view = opened(tmp_path / "notebook.html")
+    inside = view.frame_locator("iframe")
+    inside.locator(".play").click()
+    view.wait_for_timeout(300)
+    assert inside.locator(".play").text_content() == "Pause"
+    assert inside.locator(".where").text_content() != "crank 0°"
+    assert view.complaints == []

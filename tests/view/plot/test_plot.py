@@ -1,0 +1,351 @@
+"""What is drawn is the data of the motion, and what is marked is where it belongs."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("matplotlib")
+
+import compoundkin as ck
+from compoundkin.analysis.coupler import centrodes as solved_centrodes
+from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.view import plot
+
+ROOT = Path(__file__).parents[3]
+# where coupler and rocker of the catalog's triple rocker are in line, by the cosine rule
+LIMIT = np.rad2deg(np.arccos((4**2 + 7**2 - 8**2) / (2 * 4 * 7)))
+
+
+def solved(name: str, values: Any = None, **options: Any) -> ck.Motion:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        return ck.solve(load_named(name), values, **options)
+
+
+@pytest.fixture(scope="module")
+def six_bar() -> ck.Motion:
+    return solved("six-bar", order=3)
+
+
+@pytest.fixture(scope="module")
+def rocker() -> ck.Motion:
+    return solved("triple-rocker", np.deg2rad(np.arange(0.0, 361.0, 2.5)))
+
+
+@pytest.fixture(scope="module")
+def sweep() -> ck.Motion:
+    """Five lengths of the coupler."""
+    return ck.solve(
+        ck.Mechanism(
+            "Four-bar",
+            ck.link("frame", A=0, D=80),
+            ck.link("crank", A=0, B=25),
+            ck.link("coupler", B=0, C=np.linspace(60, 90, 5)[:, None], P=30 + 20j),
+            ck.link("rocker", D=0, C=50),
+            ck.drive("crank"),
+        )
+    )
+
+
+def curves(axes: Any) -> dict[str, tuple[Any, Any]]:
+    """The lines of an axes that run through poses, by their labels."""
+    lines = [line for line in axes.get_lines() if line.get_linestyle() == "-"]
+    return {line.get_label(): (np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in lines}
+
+
+def texts(axes: Any) -> list[str]:
+    return [text.get_text() for text in axes.texts]
+
+
+# --- over the driver, time, other quantities ------------------------------------------------------------
+
+
+def test_the_lines_are_the_motions_arrays(six_bar: ck.Motion) -> None:
+    first, second = ck.plot(six_bar, "bar.angle", "G.velocity").figure.axes
+    (angle,) = curves(first).values()
+    np.testing.assert_allclose(angle[0], np.rad2deg(six_bar.drives["crank"].value), rtol=1e-12)
+    np.testing.assert_allclose(angle[1], np.rad2deg(six_bar.links["bar"].angle), rtol=1e-12)
+    velocity = np.asarray(six_bar.points["G"].velocity)
+    drawn = curves(second)
+    for name, values in (("x", velocity.real), ("y", velocity.imag), ("length", abs(velocity))):
+        np.testing.assert_array_equal(drawn[name][1], values)
+
+
+def test_units_and_names_are_on_the_axes(six_bar: ck.Motion) -> None:
+    axes = ck.plot(six_bar, "bar.angle", "bar.angular_acceleration", "G.acceleration", "slot.rate").figure.axes
+    labels = [one.get_ylabel().replace("\n", " ") for one in axes]
+    wanted = ["bar.angle [deg]", "bar.angular_acceleration [rad/s²]", "G.acceleration [mm/s²]", "slot.rate [mm/s]"]
+    assert labels == wanted
+    assert [one.get_xlabel() for one in axes] == ["", "", "", "crank [deg]"]
+
+
+def test_against_a_quantity(six_bar: ck.Motion) -> None:
+    (axes,) = six_bar.plot("G.velocity.x", against="bar.angle").figure.axes
+    ((x, y),) = curves(axes).values()
+    np.testing.assert_allclose(x, np.rad2deg(six_bar.links["bar"].angle), rtol=1e-12)
+    np.testing.assert_array_equal(y, six_bar.points["G"].velocity.real)
+    assert axes.get_xlabel() == "bar.angle [deg]"
+
+
+def test_a_motion_in_time_is_drawn_over_time_unless_told() -> None:
+    crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank", speed=3.0))
+    motion = ck.solve(crank, time=np.linspace(0.0, 1.0, 21))
+    (axes,) = ck.plot(motion, "B.x").figure.axes
+    ((x, _),) = curves(axes).values()
+    np.testing.assert_array_equal(x, motion.time)
+    assert axes.get_xlabel() == "time [s]"
+    (axes,) = ck.plot(motion, "B.x", against="driver").figure.axes
+    ((x, _),) = curves(axes).values()
+    np.testing.assert_allclose(x, np.rad2deg(3.0 * np.linspace(0.0, 1.0, 21)))
+    (axes,) = ck.plot(motion, "B.x", against="pose").figure.axes
+    assert next(iter(curves(axes).values()))[0].tolist() == list(range(21))
+
+
+def test_quantities_of_one_unit_share_a_panel(six_bar: ck.Motion) -> None:
+    names = ("bar.angle", "G.speed", "plate.angle")
+    first, second = ck.plot(six_bar, *names, stacked=False).figure.axes
+    assert (first.get_ylabel(), second.get_ylabel()) == ("[deg]", "G.speed [mm/s]")
+    assert list(curves(first)) == ["bar.angle", "plate.angle"]
+
+
+def test_designs_are_a_family_of_curves(sweep: ck.Motion) -> None:
+    x, y, length = ck.plot(sweep, "P.velocity", designs=list("abcde")).figure.axes
+    assert [one.get_ylabel().replace("\n", " ") for one in (x, y, length)] == [
+        "P.velocity.x [length/s]",
+        "P.velocity.y [length/s]",
+        "P.velocity.length [length/s]",
+    ]
+    drawn = [values for _, values in curves(y).values()]
+    np.testing.assert_array_equal(drawn, sweep.points["P"].velocity.imag)
+    figure = x.figure
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == list("abcde")
+
+
+def test_extremes_are_marked_with_their_values(six_bar: ck.Motion) -> None:
+    (axes,) = ck.plot(six_bar, "bar.angle").figure.axes
+    fine = np.rad2deg(solved("six-bar", np.deg2rad(np.linspace(0, 360, 36001))).links["bar"].angle)
+    assert texts(axes) == [f"{fine.max():.4g}", f"{fine.min():.4g}"]
+    assert texts(ck.plot(six_bar, "bar.angle", extremes=False).figure.axes[0]) == []
+
+
+def test_what_is_nothing_but_rounding_is_drawn_as_constant() -> None:
+    motion = solved("parallelogram")
+    (axes,) = ck.plot(motion, "follower.angular_velocity").figure.axes
+    assert axes.get_ylim() == (pytest.approx(0.5), pytest.approx(1.5))
+    assert texts(axes) == []
+
+
+# --- gaps, limit positions, change points ---------------------------------------------------------------
+
+
+def test_gaps_are_shaded_between_the_limits(rocker: ck.Motion) -> None:
+    (axes,) = ck.plot(rocker, "rocker.angle").figure.axes
+    (shade,) = axes.patches
+    edges = shade.get_x(), shade.get_x() + shade.get_width()
+    assert edges == (pytest.approx(LIMIT, abs=1e-6), pytest.approx(360 - LIMIT, abs=1e-6))
+    names = [text.get_text() for legend in axes.figure.legends for text in legend.get_texts()]
+    assert names == ["cannot be assembled", "next to a limit position"]
+
+
+def test_gaps_of_a_motion_in_time_are_shaded_at_their_times() -> None:
+    motion = solved("triple-rocker", {"driver": 0.0}, speed=2.0, time=np.linspace(0.0, 1.5, 61))
+    (axes,) = ck.plot(motion, "rocker.angle").figure.axes
+    (shade,) = axes.patches
+    assert shade.get_x() == pytest.approx(np.deg2rad(LIMIT) / 2.0, abs=1e-6)
+    assert shade.get_x() + shade.get_width() == 1.5
+
+
+def test_rings_are_at_the_poses_next_to_limits(rocker: ck.Motion) -> None:
+    (axes,) = ck.plot(rocker, "rocker.angle").figure.axes
+    (ring,) = [line for line in axes.get_lines() if line.get_markerfacecolor() == "white"]
+    assert ring.get_xdata().tolist() == pytest.approx([87.5, 272.5])
+
+
+def test_rates_that_grow_without_limit_do_not_flatten_the_rest() -> None:
+    driver = np.deg2rad(np.append(np.arange(0.0, LIMIT, 1.0), LIMIT - 1e-5))
+    motion = solved("triple-rocker", driver)
+    (axes,) = ck.plot(motion, "rocker.angular_acceleration").figure.axes
+    assert np.nanmax(np.abs(motion.links["rocker"].angular_acceleration)) > 1e6
+    assert max(map(abs, axes.get_ylim())) < 1e3
+    assert "cut off" in axes.get_title("left")
+
+
+def test_change_points_are_dashed() -> None:
+    (axes,) = ck.plot(solved("parallelogram"), "follower.angle").figure.axes
+    dashed = [float(line.get_xdata()[0]) for line in axes.get_lines() if line.get_linestyle() == "--"]
+    # a parallelogram is flat where its crank is in line with the frame
+    assert all(min(abs(x - k) for k in (0, 180, 360)) < 1e-6 for x in dashed)
+    assert any(abs(x - 180) < 1e-6 for x in dashed)
+
+
+# --- curves in the plane ----------------------------------------------------------------------------------
+
+
+def test_a_phase_plot_is_a_quantity_against_its_rate(six_bar: ck.Motion) -> None:
+    for name, rate in (("bar.angle", "bar.angular_velocity"), ("G.y", "G.velocity.y"), ("slot", "slot.rate")):
+        (axes,) = plot.phase(six_bar, name).figure.axes
+        assert (axes.get_xlabel().split()[0], axes.get_ylabel().split()[0]) == (name, rate)
+    ((x, y),) = curves(plot.phase(six_bar, "bar.angle").figure.axes[0]).values()
+    np.testing.assert_allclose(x, np.rad2deg(six_bar.links["bar"].angle), rtol=1e-12)
+    np.testing.assert_allclose(y, six_bar.links["bar"].angular_velocity)
+
+
+def test_a_hodograph_is_the_velocity_in_the_plane(six_bar: ck.Motion) -> None:
+    (axes,) = plot.hodograph(six_bar, "G.velocity", every=9).figure.axes
+    x, y = curves(axes)["G.velocity"]
+    np.testing.assert_array_equal(x + 1j * y, np.asarray(six_bar.points["G"].velocity))
+    assert axes.get_aspect() == 1.0
+    (marks,) = [line for line in axes.get_lines() if line.get_marker() == "o"]
+    # eight marks, the ninth being the first one again
+    np.testing.assert_array_equal(marks.get_xdata(), x[:-1:9])
+
+
+def test_a_polar_plot_has_the_driver_for_its_angle(six_bar: ck.Motion) -> None:
+    (axes,) = plot.polar(six_bar, "G.velocity").figure.axes
+    angle, radius = curves(axes)["G.velocity.length"]
+    np.testing.assert_allclose(angle, six_bar.drives["crank"].value, atol=1e-12)
+    np.testing.assert_array_equal(radius, np.abs(six_bar.points["G"].velocity))
+    assert axes.get_ylim()[0] == 0.0
+    assert plot.polar(six_bar, "bar.angular_velocity").figure.axes[0].get_ylim()[0] < 0.0
+
+
+def test_paths_of_letters_and_of_places_on_links(six_bar: ck.Motion) -> None:
+    (axes,) = plot.paths(six_bar, "G", ("plate", (20, 10)), ("bar", 55)).figure.axes
+    drawn = curves(axes)
+    assert list(drawn) == ["G", "plate (20, 10)", "bar (55, 0)"]
+    g, tip = drawn["G"], drawn["bar (55, 0)"]
+    np.testing.assert_array_equal(g[0] + 1j * g[1], np.asarray(six_bar.points["G"].position))
+    np.testing.assert_allclose(np.add(tip[0], 1j * tip[1]), np.asarray(six_bar.points["G"].position), rtol=1e-12)
+    assert {"E", "B", "F"} <= set(texts(axes))
+
+
+def test_a_path_seen_from_another_link(six_bar: ck.Motion) -> None:
+    (axes,) = plot.paths(six_bar, "C", on="bar").figure.axes
+    x, y = curves(axes)["C"]
+    # the block slides along the bar's own line, at its distance from F
+    np.testing.assert_allclose(y, 0.0, atol=1e-9)
+    np.testing.assert_allclose(x, abs(six_bar.points["C"].position - (-34j)), rtol=1e-9)
+
+
+def test_centrodes_touch_at_the_pole() -> None:
+    motion = solved("elliptic-trammel")
+    (axes,) = plot.centrodes(motion, "rod", pose=7).figure.axes
+    drawn = curves(axes)
+    fixed, moving = (np.add(x, 1j * np.asarray(y)) for x, y in drawn.values())
+    np.testing.assert_allclose(fixed, solved_centrodes(motion, "rod").fixed, atol=1e-12)
+    assert moving[7] == pytest.approx(fixed[7], abs=1e-9)
+    # Cardan's circles: the moving one has half the radius, inside the fixed one
+    np.testing.assert_allclose(abs(moving - fixed[7] / 2), 1.5, rtol=1e-9)
+
+
+def test_every_kind_draws_designs(sweep: ck.Motion) -> None:
+    for picture in (
+        plot.phase(sweep, "rocker.angle"),
+        plot.hodograph(sweep, "P.velocity"),
+        plot.polar(sweep, "rocker.angular_velocity"),
+        plot.paths(sweep, "P"),
+    ):
+        assert len([line for line in picture.figure.axes[0].get_lines() if len(line.get_xdata()) == 73]) == 5
+    assert plot.centrodes(sweep, "coupler", design=4).content("png").startswith(b"\x89PNG")
+
+
+# --- files, style, mistakes -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("form", ["svg", "png", "pdf"])
+def test_the_same_plot_is_the_same_file(six_bar: ck.Motion, tmp_path: Path, form: str) -> None:
+    for name in ("a", "b"):
+        ck.plot(six_bar, "bar.angle", "G.velocity").save(tmp_path / f"{name}.{form}")
+    first, second = (tmp_path.joinpath(f"{name}.{form}").read_bytes() for name in ("a", "b"))
+    assert first == second
+    assert len(first) > 5000
+
+
+def test_an_svg_does_not_tell_when_it_was_made(six_bar: ck.Motion) -> None:
+    assert "<dc:date>" not in ck.plot(six_bar, "bar.angle")._repr_svg_()
+
+
+def test_the_users_settings_neither_matter_nor_change(six_bar: ck.Motion) -> None:
+    import matplotlib
+
+    plain = ck.plot(six_bar, "bar.angle").content("svg")
+    with matplotlib.rc_context({"font.size": 20, "axes.facecolor": "black", "svg.fonttype": "none"}):
+        before = dict(matplotlib.rcParams)
+        assert ck.plot(six_bar, "bar.angle").content("svg") == plain
+        assert dict(matplotlib.rcParams) == before
+
+
+def test_a_name_is_not_read_as_mathematics() -> None:
+    crank = ck.Mechanism("$x^$ 100%", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank"))
+    assert ck.plot(ck.solve(crank), "B").content("png").startswith(b"\x89PNG")
+
+
+def mistakes() -> list[tuple[Callable[[ck.Motion], Any], type[Exception], str]]:
+    return [
+        (lambda m: ck.plot(m, "bar.angel"), ck.UnknownName, "did you mean 'bar.angle'"),
+        (lambda m: ck.plot(m, "G.velocity.lenth"), ck.UnknownName, "G.velocity.lenth"),
+        (lambda m: ck.plot(m, "bar.angle.x"), ck.UnknownName, "bar.angle is no vector"),
+        (lambda m: ck.plot(m, "G", against="tme"), ck.UnknownName, "did you mean 'time'"),
+        (lambda m: ck.plot(m, "G", against="time"), ck.InvalidInput, "no motion in time"),
+        (lambda m: ck.plot(m, "bar", against="G"), ck.InvalidInput, "G.length"),
+        (lambda m: ck.plot(m, "bar", designs=["a", "b"]), ck.InvalidInput, "1 designs and 2 names"),
+        (lambda m: ck.plot(m, "bar").save("bar.gif"), ck.InvalidInput, ".png, .svg, .pdf"),
+        (lambda m: ck.plot(m, "bar").save("/no/such/folder/bar.png"), ck.InvalidInput, "cannot be written"),
+        (lambda m: plot.phase(m, "G.velocity"), ck.UnknownName, "G.velocity.x"),
+        (lambda m: plot.phase(m, "G.speed"), ck.UnknownName, "rate has a name"),
+        (lambda m: plot.phase(m, "G.x", "G.velocity"), ck.InvalidInput, "it is a vector"),
+        (lambda m: plot.phase(m, "bar", every=0), ck.InvalidInput, "every"),
+        (lambda m: plot.hodograph(m, "bar.angle"), ck.InvalidInput, "no vector"),
+        (lambda m: plot.hodograph(m, "G.velocity", "G.jerk"), ck.InvalidInput, "one by one"),
+        (lambda m: plot.polar(m, "bar.angle", "G.speed"), ck.InvalidInput, "one by one"),
+        (lambda m: plot.polar(m, "bar.angle", around="slot"), ck.InvalidInput, "no angle"),
+        (lambda m: plot.paths(m, "g"), ck.UnknownName, "there is no such point"),
+        (lambda m: plot.paths(m, ("plaet", 1)), ck.UnknownName, "did you mean 'plate'"),
+        (lambda m: plot.centrodes(m, "plate", pose=99), ck.InvalidInput, "0 to 72"),
+        (lambda m: plot.centrodes(m, "plate", "plate"), ck.InvalidInput, "relative to itself"),
+    ]
+
+
+@pytest.mark.parametrize(("draw", "error", "told"), mistakes(), ids=[told for _, _, told in mistakes()])
+def test_mistakes_are_told(
+    six_bar: ck.Motion, draw: Callable[[ck.Motion], Any], error: type[Exception], told: str
+) -> None:
+    with pytest.raises(error) as caught:
+        draw(six_bar)
+    assert told in str(caught.value)
+
+
+def test_a_single_pose_is_no_plot() -> None:
+    with pytest.raises(ck.InvalidInput, match="single pose"):
+        ck.plot(solved("six-bar", 0.3), "bar.angle")
+
+
+def test_without_matplotlib_the_remedy_is_told(six_bar: ck.Motion, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(ck.InvalidInput, match=r"pip install 'compoundkin\[plot\]'"):
+        ck.plot(six_bar, "bar.angle")
+
+
+def loaded_by(statement: str) -> set[str]:
+    code = f"import sys\n{statement}\nprint(*sys.modules)"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    return set(result.stdout.split())
+
+
+def test_matplotlib_is_loaded_by_drawing_only() -> None:
+    assert "matplotlib" not in loaded_by("import compoundkin, compoundkin.view.plot; compoundkin.plot")
+    drawn = loaded_by(
+        "import compoundkin as ck\n"
+        "m = ck.Mechanism('m', ck.link('frame', A=0), ck.link('c', A=0, B=1), ck.drive('c'))\n"
+        "ck.solve(m).plot('B').content('png')"
+    )
+    assert "matplotlib" in drawn
+    assert "matplotlib.pyplot" not in drawn

@@ -1,0 +1,176 @@
+from __future__ import annotations
+
+import json
+import re
+import warnings
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.view.report import FORMATS, rendered, report
+from compoundkin.view.report.digits import written
+from compoundkin.view.report.report_data import Column, Outcome, Paragraph, Report, Section, Table
+from compoundkin.view.report.terminal_text import text
+from tests.view.report.support import four_bar
+
+ESCAPE = "\x1b"
+
+
+def made_of(*blocks: Any) -> Report:
+    return Report("Title", (Section("key", "Section", blocks),), Outcome(True, 0, 0, 0, 0, 0, 0))
+
+
+@cache
+def all_reports() -> list[Report]:
+    solved = [report(ck.solve(load_named(name))) for name in names()]
+    unsolved = [report(ck.decompose(load_named(name))) for name in names()]
+    return [*solved, *unsolved, report(ck.decompose(four_bar()))]
+
+
+# --- text -----------------------------------------------------------------------------------------------
+
+
+def test_lines_fit_and_nothing_is_cut_off_or_blank_at_the_end(broken: ck.Motion, sweep: ck.Motion) -> None:
+    """All in one test, for reports take long to make and workers do not share them."""
+    for made in [*all_reports(), report(broken), report(sweep, design=1)]:
+        whole = text(made)
+        lines = whole.splitlines()
+        assert max(map(len, lines)) <= 80, made.title
+        assert "…" not in whole
+        assert all(line == line.rstrip() for line in lines)
+        # every name of a link stands somewhere whole
+        links = next(block for block in made.section("links").blocks if isinstance(block, Table))  # type: ignore[union-attr]
+        assert all(str(row[0]) in whole for row in links.rows)
+    for made in all_reports()[::4]:
+        assert max(len(line) for line in text(made, 100).splitlines()) <= 100, made.title
+
+
+def test_text_is_plain_unless_colour_is_asked_for(six_bar: ck.Motion) -> None:
+    made = report(six_bar)
+    assert ESCAPE not in text(made)
+    coloured = text(made, colour=True)
+    assert ESCAPE in coloured
+    assert re.sub(r"\x1b\[[0-9;]*m", "", coloured).split() == text(made).split()
+
+
+def test_text_is_ascii_where_the_mechanism_is(six_bar: ck.Motion) -> None:
+    assert text(report(six_bar)).isascii()
+
+
+def test_the_same_report_is_the_same_text(six_bar: ck.Motion) -> None:
+    again = report(ck.solve(load_named("six-bar")))
+    for name in FORMATS:
+        assert rendered(report(six_bar), name) == rendered(again, name)
+
+
+def test_a_wide_table_is_split_with_its_keys_repeated_and_vectors_together() -> None:
+    numbers = [Column(f"quantity-{k}.{part}", "mm", "fixed", follows=part == "y") for k in range(6) for part in "xy"]
+    found = Table((Column("crank", "deg", "fixed"), *numbers), ((5.0, *map(float, range(12))),), keys=1)
+    lines = text(made_of(found)).splitlines()
+    heads = [line.split() for line in lines if line.startswith("crank")]
+    assert len(heads) > 1
+    assert all(head[1:] == ["x", "y"] * ((len(head) - 1) // 2) for head in heads)
+    assert [line.split()[1:] for line in lines if re.match(r" +5 ", line)] == [
+        [str(k) for k in part] for part in np.split(np.arange(12), np.cumsum([len(h) - 1 for h in heads])[:-1])
+    ]
+
+
+def test_names_that_look_like_markup_stay_as_they_are() -> None:
+    made = made_of(Paragraph("[bold]x[/bold] :smile: *a*"), Table((Column("[red]h"),), (("[b]",),)))
+    for part in ("[bold]x[/bold] :smile: *a*", "[red]h", "[b]"):
+        assert part in text(made)
+
+
+# --- numbers --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("cells", "expected"),
+    [
+        ([0.0, 5.0, 360.0], ["0", "5", "360"]),
+        ([0.0, 2.5, 360.0], ["0.0", "2.5", "360.0"]),
+        ([-1276.8949837, 61.06], ["-1276.89", "61.06"]),
+        ([1e-7, 2e-8], ["1.00000e-07", "2.00000e-08"]),
+        ([1.5e9, 0.0], ["1.50000e+09", "0"]),
+        ([float("nan"), 1.0], ["-", "1"]),
+        ([None, -1e-20], ["-", "0"]),
+        ([-0.00001, 300.0], ["0", "300"]),
+        ([], []),
+    ],
+)
+def test_a_column_has_as_many_decimals_as_say_something(cells: list[Any], expected: list[str]) -> None:
+    assert written(Column("x", style="fixed", floor=1e-15), cells) == expected
+
+
+# --- Markdown -------------------------------------------------------------------------------------------
+
+
+def pipes(line: str) -> int:
+    return len(re.findall(r"(?<!\\)\|", line))
+
+
+def test_markdown_tables_are_well_formed(broken: ck.Motion) -> None:
+    for made in [*all_reports(), report(broken)]:
+        for block in rendered(made, "markdown").split("\n\n"):
+            lines = block.splitlines()
+            if lines[0].startswith("|"):
+                assert len(lines) >= 2
+                assert set(lines[1]) <= set("|-: ")
+                assert len({pipes(line) for line in lines}) == 1, block
+
+
+def test_markdown_escapes_what_is_markup() -> None:
+    mechanism = ck.Mechanism("a | b *c* <d> `e`", ck.link("frame", A=0), ck.link("x|y", A=0, B=1), ck.drive("x|y"))
+    found = rendered(report(ck.solve(mechanism)), "markdown")
+    assert found.startswith(r"# a \| b \*c\* \<d\> \`e\`")
+    assert r"x\|y" in found
+
+
+# --- JSON -----------------------------------------------------------------------------------------------
+
+
+def parsed(made: Report) -> Any:
+    def refuse(name: str) -> Any:
+        raise AssertionError(f"{name} is not JSON")
+
+    return json.loads(rendered(made, "json"), parse_constant=refuse)
+
+
+def test_json_holds_the_numbers_of_the_motion(six_bar: ck.Motion) -> None:
+    document = parsed(report(six_bar, ["bar.angle", "G.acceleration"]))
+    found = next(b for b in document["sections"]["outputs"]["blocks"] if b["kind"] == "table")
+    assert [c["unit"] for c in found["columns"]] == ["deg", "deg", "mm/s^2", "mm/s^2"]
+    rows = np.array(found["rows"])
+    np.testing.assert_allclose(np.deg2rad(rows[:, 1]), six_bar.links["bar"].angle[::3], rtol=1e-15)
+    np.testing.assert_array_equal(rows[:, 2] + 1j * rows[:, 3], six_bar.points["G"].acceleration[::3])
+    assert document["outcome"]["passed"] is True
+
+
+def test_json_has_every_published_number(six_bar: ck.Motion) -> None:
+    document = parsed(report(six_bar))
+    found = next(b for b in document["sections"]["published"]["blocks"] if b["kind"] == "table")
+    assert len(found["rows"]) == 55
+    assert found["rows"][0][2] == pytest.approx([37.27745008226299, 6.4399766983660784], abs=1e-12)
+
+
+def test_json_says_null_where_nothing_is_assembled(broken: ck.Motion) -> None:
+    with warnings.catch_warnings(action="ignore"):
+        document = parsed(report(broken))
+    rows = next(b for b in document["sections"]["outputs"]["blocks"] if b["kind"] == "table")["rows"]
+    assert [row[-1] is None for row in rows] == [not ok for ok in broken.assembled[::3].tolist()]
+
+
+def test_every_report_is_json() -> None:
+    for made in all_reports():
+        document = parsed(made)
+        assert list(document["sections"]) == [section.key for section in made.sections]
+
+
+def test_only_parts_of_a_report_are_rendered() -> None:
+    for name in FORMATS:
+        with pytest.raises(TypeError, match="not a part of a report"):
+            rendered(made_of("text"), name)
