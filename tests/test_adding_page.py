@@ -17,7 +17,11 @@ from compoundkin.model.pairs import Pair
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "adding.md").read_text(encoding="utf-8")
 PAIR, EXAMPLE, GROUP = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-CONTRACTS = ("tests/pairs/test_contract.py", "tests/centres/test_pairs.py", "tests/drawing/test_parts.py")
+CONTRACTS = (
+    "tests/model/pairs/test_contract.py",
+    "tests/analysis/centres/test_pairs.py",
+    "tests/view/sketch/test_parts.py",
+)
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +31,7 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name in ("compoundkin", "tests", "docs", "catalog"):
         shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("__pycache__", "gallery"))
     shutil.copy(ROOT / "pyproject.toml", root)
-    (root / "compoundkin" / "pairs" / "oldham.py").write_text(PAIR, encoding="utf-8")
+    (root / "compoundkin" / "model" / "pairs" / "oldham.py").write_text(PAIR, encoding="utf-8")
     for change in re.findall(r"```diff\n(.*?)```", PAGE, re.DOTALL):
         apply(root, change)
     return root
@@ -68,13 +72,13 @@ def test_its_example_is_true(extended: Path) -> None:
 
 
 def test_its_docstrings_and_style(extended: Path) -> None:
-    file = "compoundkin/pairs/oldham.py"
+    file = "compoundkin/model/pairs/oldham.py"
     run(extended, "-m", "doctest", file)
     run(extended, "-m", "ruff", "check", "--no-cache", file)
 
 
 def test_the_group_it_shows_is_the_real_one() -> None:
-    assert (ROOT / "compoundkin" / "groups" / "prp.py").read_text(encoding="utf-8") == GROUP
+    assert (ROOT / "compoundkin" / "kinematics" / "groups" / "prp.py").read_text(encoding="utf-8") == GROUP
 
 
 def test_it_names_everything_that_must_be_answered() -> None:

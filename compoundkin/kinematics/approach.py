@@ -70,9 +70,9 @@ def _counted_on(plan: Plan, way: Inputs, rounds: Mapping[str, Number], turns: Ma
     for name, pair in plan.pairs.items():
         ahead = tuple(turns.get(member, 0.0) for member in pair.members)
         if pair.counts_turns and name in rounds:
-            ends[name] = pair.rounded(ends[name], geometry, rounds[name])
+            ends[name] = pair.with_driver_turns(ends[name], geometry, rounds[name])
         elif pair.counts_turns and any(np.any(turn != 0.0) for turn in ahead):
-            ends[name] = pair.turned(ends[name], geometry, ahead)
+            ends[name] = pair.with_link_turns(ends[name], geometry, ahead)
     return replace(way, ends=ends)
 
 

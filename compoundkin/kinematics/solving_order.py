@@ -43,7 +43,7 @@ class Plan:
             own = next(j for j, name in enumerate(higher.members) if name in group.links)
             if higher.is_affine(lower, own):
                 return AffineStep(k, group, lower, higher)
-            if higher.leads and lower.is_simple and higher.equivalent(self.ends[higher.name]) is None:
+            if higher.has_profile and lower.is_simple and higher.equivalent(self.ends[higher.name]) is None:
                 return FollowerStep(k, group, lower, higher, self.size)
             found = higher.equivalent(self.ends[higher.name])
             if found is not None:

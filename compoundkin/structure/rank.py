@@ -59,10 +59,10 @@ class RankTest:
 
     def deficiency(self, part: Part) -> Deficiency | None:
         """What is wrong with a part that counts as determined, or None if it is."""
-        make_up = self._make_up(part)
-        if make_up not in self.known:
-            self.known[make_up] = self._is_regular(part)
-        return None if self.known[make_up] else self.analysed(part)
+        rank_key = self._rank_key(part)
+        if rank_key not in self.known:
+            self.known[rank_key] = self._is_regular(part)
+        return None if self.known[rank_key] else self.analysed(part)
 
     def analysed(self, part: Part) -> Deficiency:
         """The redundancy and freedom of any part; by count alone, and for all of it, where it is large."""
@@ -109,7 +109,7 @@ class RankTest:
             return False
         return bool(np.min(pivots) > RANK_TOLERANCE * np.max(pivots))
 
-    def _make_up(self, part: Part) -> tuple[Any, ...]:
+    def _rank_key(self, part: Part) -> tuple[Any, ...]:
         """All that the rank depends on: not the order of constraints, nor which body on a pin is named first."""
         place = {unknown: k for k, unknown in enumerate(part.unknowns)}
         times = Counter(c.letter for c in part.constraints)
@@ -117,7 +117,7 @@ class RankTest:
         number = {letter: k for k, letter in enumerate(shared)}
         made: list[tuple[int, ...]] = []
         for c in part.constraints:
-            kind = self.kinds.setdefault(c.pair.make_up, len(self.kinds))
+            kind = self.kinds.setdefault(c.pair.rank_key, len(self.kinds))
             places = [place.get(side, -1) for side in c.sides]
             made.append((kind, number.get(c.letter, -1), *(sorted(places) if c.letter else places)))
         return tuple([self.system.freedoms[u] for u in part.unknowns]), tuple(sorted(made))

@@ -505,11 +505,11 @@ def test_problems_are_told(make: Callable[[], Curve], told: str) -> None:
 
 
 def test_stretches_between_breaks() -> None:
-    """Between the places where derivatives jump the index is one; on a closed curve the last stretch is the first."""
+    """Between the places where derivatives jump the index is one; on a closed curve the last piece is the first."""
     circle = Analytic(Series.turn, 0.0, 2 * np.pi, True, (1.0, 3.0))
     places = np.array([0.5, 1.5, 2.9, 3.1, 6.2, 0.5 + 2 * np.pi])
-    assert circle.stretch(places).tolist() == [0, 1, 1, 0, 0, 0]
+    assert circle.smooth_piece(places).tolist() == [0, 1, 1, 0, 0, 0]
     assert circle.offset(0.5).breaks == (1.0, 3.0)
     arc = Analytic(Series.turn, 0.0, 2.0, False, (1.0,))
-    assert arc.stretch(np.array([0.5, 1.5])).tolist() == [0, 1]
-    assert Analytic(Series.turn, 0.0, 2.0, False).stretch(0.5) == 0
+    assert arc.smooth_piece(np.array([0.5, 1.5])).tolist() == [0, 1]
+    assert Analytic(Series.turn, 0.0, 2.0, False).smooth_piece(0.5) == 0

@@ -79,10 +79,10 @@ def _largest(motion: Motion, k: int) -> Number:
                 found = np.maximum(found, np.abs(series.c[k]) / size)
     for pair in motion.structure.pairs:
         # in a sharp hollow the contact is faster than any link
-        if pair.leads:
+        if pair.has_profile:
             poses = tuple(motion.poses[name] for name in pair.members)
             series = pair.coordinate(motion.inputs.ends[pair.name], poses)
-            found = np.maximum(found, np.abs(series.c[k]) / pair.spread) if series.order >= k else found
+            found = np.maximum(found, np.abs(series.c[k]) / pair.coordinate_scale) if series.order >= k else found
     return found
 
 
@@ -107,9 +107,9 @@ def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
     good: Number = np.ones(motion.failed.shape, dtype=bool)
     for pair in motion.structure.pairs:
         ends = motion.inputs.ends[pair.name]
-        found = [pair.stretch(ends, tuple(poses[name] for name in pair.members)) for poses in stencils]
-        for stretch in found[1:]:
-            good = good & (stretch == found[0])
+        found = [pair.smooth_piece(ends, tuple(poses[name] for name in pair.members)) for poses in stencils]
+        for piece in found[1:]:
+            good = good & (piece == found[0])
     return good
 
 

@@ -38,19 +38,19 @@ def residuals(motion: Motion) -> Iterator[Finding]:
         if motion.structure.redundant:
             relative = {pair.name: _pair(motion, pair, k) / scale for pair in motion.structure.redundant}
             yield worst(motion, f"redundant pairs, {ORDERS[k]}", FITS, relative, counted)
-    fits = dict(_misfits(motion))
+    fits = dict(_distance_errors(motion))
     if fits:
         scale = _scale(motion, 0, motion.failed == 0)
         relative = {_off(name, gap, FITS * scale): gap / scale for name, gap in fits.items()}
         yield worst(motion, "fit of racks and wheels", FITS, relative, motion.failed == 0)
 
 
-def _misfits(motion: Motion) -> Iterator[tuple[str, Number]]:
+def _distance_errors(motion: Motion) -> Iterator[tuple[str, Number]]:
     """By pair, how far a length is off that no pair holds, such as a pinion's distance from its rack."""
     for name, pair in motion.tracker.plan.pairs.items():
-        misfit = pair.misfit(motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members))
-        if misfit is not None:
-            yield name, np.abs(misfit.c[0])
+        error = pair.distance_error(motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members))
+        if error is not None:
+            yield name, np.abs(error.c[0])
 
 
 def _off(name: str, gap: Number, limit: Number) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compoundkin.analysis.equations.loop_equations import Driven, LoopEquations, VectorLoop, loop_equations
+from compoundkin.analysis.equations.loop_equations import DriverEquation, LoopEquations, VectorLoop, loop_equations
 from compoundkin.analysis.equations.pair_terms import Auxiliary
 from compoundkin.analysis.equations.terms import Curved, Sum, Unknown, Vector
 from compoundkin.analysis.equations.written_equations import latex, text
@@ -10,7 +10,7 @@ from compoundkin.analysis.equations.written_equations import latex, text
 __all__ = [
     "Auxiliary",
     "Curved",
-    "Driven",
+    "DriverEquation",
     "LoopEquations",
     "Sum",
     "Unknown",

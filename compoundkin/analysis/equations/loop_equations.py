@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.equations.pair_terms import Auxiliary, Crossing, angle_of, crossing, difference, relation
+from compoundkin.analysis.equations.pair_terms import Auxiliary, PairTerms, angle_of, crossing, difference, relation
 from compoundkin.analysis.equations.terms import Sum, Term, Unknown, Values, Vector
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
@@ -43,7 +43,7 @@ class VectorLoop:
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class DriverEquation:
     """A driver's equation: a sum of unknowns has the value that the driver is given."""
 
     driver: str
@@ -63,7 +63,7 @@ class LoopEquations:
     structure: Structure
     loops: tuple[VectorLoop, ...]
     auxiliary: tuple[Auxiliary, ...]
-    drivers: tuple[Driven, ...]
+    drivers: tuple[DriverEquation, ...]
     unknowns: tuple[Unknown, ...]
     lengths: Mapping[str, Number]
 
@@ -117,7 +117,7 @@ def loop_equations(mechanism: Mechanism | Structure) -> LoopEquations:
 class _Walk:
     """Walks from pair to pair and writes down the vectors, naming each length once."""
 
-    def __init__(self, crossings: Mapping[str, Crossing], nothing: float) -> None:
+    def __init__(self, crossings: Mapping[str, PairTerms], nothing: float) -> None:
         self.crossings, self.nothing = crossings, nothing
         self.lengths: dict[str, Number] = {}
 
@@ -220,7 +220,7 @@ def _way(pairs: Sequence[Pair], start: str, end: str) -> tuple[list[str], list[P
     return links[::-1], way[::-1]
 
 
-def _drivers(structure: Structure, crossings: Mapping[str, Crossing]) -> Iterator[Driven]:
+def _drivers(structure: Structure, crossings: Mapping[str, PairTerms]) -> Iterator[DriverEquation]:
     bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
     for step in (step for body in bodies for step in body.driven if not step.is_passive):
         free = crossings[step.pair.name].unknown
@@ -231,4 +231,4 @@ def _drivers(structure: Structure, crossings: Mapping[str, Crossing]) -> Iterato
             value = Sum(0.0, ((1.0, free),))
         if step.pair.driven_by(step.drive.link) < 0:
             value = Sum(-value.constant, tuple((-factor, unknown) for factor, unknown in value.parts))
-        yield Driven(step.drive.name, value, step.pair.free_is_angle)
+        yield DriverEquation(step.drive.name, value, step.pair.free_is_angle)

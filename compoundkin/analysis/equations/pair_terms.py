@@ -42,7 +42,7 @@ class Auxiliary:
 
 
 @dataclass(frozen=True, eq=False)
-class Crossing:
+class PairTerms:
     """The points of a pair on its first two members, the vectors from one to the other, and what it adds.
 
     `unknown` is what the pair leaves free, None for a pin. A `label` names each point.
@@ -83,7 +83,7 @@ def difference(first: Sum, second: Sum) -> Sum:
     return Sum(second.constant - first.constant, (*second.parts, *taken))
 
 
-def crossing(pair: Pair, ends: Ends) -> Crossing | None:
+def crossing(pair: Pair, ends: Ends) -> PairTerms | None:
     """How a loop crosses a pair; None for gears, belts and racks, which close no loop of vectors of their own."""
     if pair.is_simple:
         return _simple(pair, ends)
@@ -115,16 +115,16 @@ def _collected(parts: tuple[tuple[Number, Unknown], ...]) -> tuple[tuple[Number,
     return tuple((factor, unknown) for unknown, factor in total.items())
 
 
-def _simple(pair: Pair, ends: Ends) -> Crossing:
+def _simple(pair: Pair, ends: Ends) -> PairTerms:
     """A pin, or a slide along the guide of the first member."""
     points = ends[0].point, ends[1].point
     if pair.free_is_angle:
-        return Crossing(points, (pair.letters[0], pair.letters[0]))
+        return PairTerms(points, (pair.letters[0], pair.letters[0]))
     free = Unknown("displacement", pair.name)
     guide = angle_of(pair.members[0]).plus(_turn(ends[0]))
     block = angle_of(pair.members[1]).plus(_turn(ends[1]))
     arm = Vector("", Sum(0.0, ((1.0, free),)), guide)
-    return Crossing(
+    return PairTerms(
         points, (_guide(pair), pair.letters[0]), (arm,), free, Auxiliary(pair.name, difference(guide, block))
     )
 
@@ -134,7 +134,7 @@ def _guide(pair: Pair) -> str:
     return f"{pair.letters[1]}'"
 
 
-def _by_lower_pairs(pair: Pair, lower: tuple[Pair, Pair], ends: list[Ends]) -> Crossing:
+def _by_lower_pairs(pair: Pair, lower: tuple[Pair, Pair], ends: list[Ends]) -> PairTerms:
     """A pin in a slot, a disc: the block that slides there has its guide's angle, the bar one of its own."""
     outside = [next(k for k, name in enumerate(p.members) if name in pair.members) for p in lower]
     points = _point(ends[0][outside[0]]), _point(ends[1][outside[1]])
@@ -144,17 +144,17 @@ def _by_lower_pairs(pair: Pair, lower: tuple[Pair, Pair], ends: list[Ends]) -> C
     if not slides:
         free = Unknown("direction", pair.name)
         bar = Vector(f"r({pair.name})", Sum(np.abs(inner)), Sum(np.angle(inner), ((1.0, free),)))
-        return Crossing(points, labels, (bar,), free)
+        return PairTerms(points, labels, (bar,), free)
     k = slides[0]
     free = Unknown("displacement", pair.name)
     guide = angle_of(lower[k].members[0]).plus(_turn(ends[k][0]))
     # toward the block where the guide is on the first member, from it where it is on the second
     arm = Vector("", Sum(0.0, ((1.0, free),)), guide, 1 if k == 0 else -1)
     sides = (_guide(lower[0]), labels[1]) if k == 0 else (labels[0], _guide(lower[1]))
-    return Crossing(points, sides, (arm,), free)
+    return PairTerms(points, sides, (arm,), free)
 
 
-def _profiled(pair: Profiled, ends: Ends) -> Crossing:
+def _profiled(pair: Profiled, ends: Ends) -> PairTerms:
     """From the origin of the profile's link to the contact, and on to the roller's middle or the face's point."""
     first, second = (angle_of(name) for name in pair.members)
     labels = f"origin of {pair.members[0]}", pair.letters[0]
@@ -164,7 +164,7 @@ def _profiled(pair: Profiled, ends: Ends) -> Crossing:
         away = ends[1].measure * pair.outward
         contact = Curved(f"profile({free.key})", lambda values: curve.at(values[free.key]).c[0], first)
         normal = Curved(f"normal({free.key})", lambda values: away * curve.normal(values[free.key]).c[0], first)
-        return Crossing(points, labels, (contact, normal) if np.any(away != 0.0) else (contact,), free)
+        return PairTerms(points, labels, (contact, normal) if np.any(away != 0.0) else (contact,), free)
     free = Unknown("displacement", pair.name)
     face = second.plus(_turn(ends[1]))
     toward = difference(first, face)
@@ -175,10 +175,10 @@ def _profiled(pair: Profiled, ends: Ends) -> Crossing:
         return curve.at(curve.support(np.exp(1j * toward.at(values)) * side).c[0]).c[0]
 
     arms = Curved(f"contact({pair.name})", touched, first), Vector("", Sum(0.0, ((1.0, free),)), face, -1)
-    return Crossing(points, labels, arms, free)
+    return PairTerms(points, labels, arms, free)
 
 
-def _rolling_on_line(pair: Pair, ends: Ends) -> Crossing:
+def _rolling_on_line(pair: Pair, ends: Ends) -> PairTerms:
     """Along the line and out to the wheel's middle."""
     free = Unknown("displacement", pair.name)
     on, wheel = (angle_of(name) for name in pair.members)
@@ -187,10 +187,10 @@ def _rolling_on_line(pair: Pair, ends: Ends) -> Crossing:
     turned = tuple((radius * factor, unknown) for factor, unknown in difference(on, wheel).parts)
     rolled = Auxiliary(pair.name, Sum(-ends[0].measure, ((1.0, free), *turned)), counts_turns=True)
     arms = Vector("", Sum(0.0, ((1.0, free),)), along), out
-    return Crossing((ends[0].point, ends[1].point), (_guide(pair), pair.letters[0]), arms, free, rolled)
+    return PairTerms((ends[0].point, ends[1].point), (_guide(pair), pair.letters[0]), arms, free, rolled)
 
 
-def _rolling_on_circle(pair: Pair, ends: Ends) -> Crossing:
+def _rolling_on_circle(pair: Pair, ends: Ends) -> PairTerms:
     """From the middle of the circle to that of the wheel."""
     free = Unknown("direction", pair.name)
     on, wheel = (angle_of(name) for name in pair.members)
@@ -199,4 +199,4 @@ def _rolling_on_circle(pair: Pair, ends: Ends) -> Crossing:
     rolled = Sum(-ends[0].measure, (*turned.parts, (-ends[1].measure, free)))
     arm = Vector(f"r({pair.name})", Sum(np.abs(ends[0].along.c[0])), line)
     points, labels = (ends[0].point, ends[1].point), (pair.letters[1], pair.letters[0])
-    return Crossing(points, labels, (arm,), free, Auxiliary(pair.name, rolled, counts_turns=True))
+    return PairTerms(points, labels, (arm,), free, Auxiliary(pair.name, rolled, counts_turns=True))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from compoundkin.analysis.equations.loop_equations import Driven, VectorLoop
+from compoundkin.analysis.equations.loop_equations import DriverEquation, VectorLoop
 from compoundkin.analysis.equations.pair_terms import Auxiliary
 from compoundkin.analysis.equations.terms import Curved, Sum, Term, Unknown
 from compoundkin.base.series import Number
@@ -16,7 +16,7 @@ ROUNDING = 1e-9
 _LETTERS = {"displacement": "s", "direction": r"\varphi", "parameter": "p"}
 
 
-def text(equation: VectorLoop | Auxiliary | Driven) -> str:
+def text(equation: VectorLoop | Auxiliary | DriverEquation) -> str:
     """An equation as a line of text.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
@@ -27,7 +27,7 @@ def text(equation: VectorLoop | Auxiliary | Driven) -> str:
     return _equation(equation, _TEXT)
 
 
-def latex(equation: VectorLoop | Auxiliary | Driven) -> str:
+def latex(equation: VectorLoop | Auxiliary | DriverEquation) -> str:
     """An equation as LaTeX, without the dollar signs."""
     return _equation(equation, _LATEX)
 
@@ -98,10 +98,10 @@ _TEXT, _LATEX = _Text, _Latex
 _How = type[_Text] | type[_Latex]
 
 
-def _equation(equation: VectorLoop | Auxiliary | Driven, how: _How) -> str:
+def _equation(equation: VectorLoop | Auxiliary | DriverEquation, how: _How) -> str:
     if isinstance(equation, VectorLoop):
         return f"{_vectors(equation.terms, how)} = 0"
-    if isinstance(equation, Driven):
+    if isinstance(equation, DriverEquation):
         return f"{_sum(equation.sum, how, how.angle if equation.is_angle else _plain)} = {how.value(equation.driver)}"
     constant = how.angle if all(unknown.kind in ("angle", "direction") for _, unknown in equation.sum.parts) else _plain
     if equation.path:

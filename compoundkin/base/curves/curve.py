@@ -89,8 +89,8 @@ class Curve(ABC):
         """The parameters, within the period, at which derivatives may jump: none of a curve smooth all along."""
         return ()
 
-    def stretch(self, s: Number, more: tuple[float, ...] = ()) -> Number:
-        """On which smooth stretch between two `breaks`, or some `more`, parameters lie: an index."""
+    def smooth_piece(self, s: Number, more: tuple[float, ...] = ()) -> Number:
+        """Return on which smooth piece between two `breaks`, or some `more`, parameters lie: an index."""
         breaks = np.sort([*self.breaks, *more])
         found = np.searchsorted(breaks, self.wrapped(s))
         return found % breaks.size if self.closed and breaks.size else found

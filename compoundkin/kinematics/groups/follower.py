@@ -44,7 +44,7 @@ class Follower:
 
     def start(self, ends: Ends, at_zero: Poses, freedom: Freedom, sign: Number) -> Number:
         """The coordinate, nearly, in a mode; NaN where there is no contact."""
-        other, one = self.pair.meetings(ends, at_zero, self.own, freedom)
+        other, one = self.pair.contact_candidates(ends, at_zero, self.own, freedom)
         return np.where(sign > 0, one, other)
 
     def polished(self, ends: Ends, placing: Placing, start: Number) -> tuple[Number, Number, Number]:
@@ -59,8 +59,8 @@ class Follower:
                 break
             before = size
         gap, slope = self._gap(ends, placing, coordinate)
-        upright = self.pair.upright(ends, placing(Series((coordinate,))))
-        closed = (np.abs(gap) <= CLOSED * self.size) & upright
+        assembled = self.pair.is_properly_assembled(ends, placing(Series((coordinate,))))
+        closed = (np.abs(gap) <= CLOSED * self.size) & assembled
         return np.where(closed, coordinate, np.nan), closed, slope
 
     def series(self, ends: Ends, placing: Placing, coordinate: Number, slope: Number, order: int) -> Series:

@@ -127,7 +127,7 @@ class General:
             closed = (largest <= CONVERGED) & (_largest(residual) <= CLOSED * self.size)
             if not np.any(~closed & np.isfinite(largest)):
                 break
-        closed = closed & self._upright(bodies, leading)
+        closed = closed & self._properly_assembled(bodies, leading)
         moved = _largest([(v - s) * w for v, s, w in zip(found, start, weights, strict=True)])
         return Solution(np.stack(np.broadcast_arrays(*found), axis=-1), closed, moved)
 
@@ -273,12 +273,12 @@ class General:
         u = (two - one) / (second - first)
         return Pose(one - u * first, u)
 
-    def _upright(self, bodies: Mapping[int, Pose], setting: Setting) -> Number:
+    def _properly_assembled(self, bodies: Mapping[int, Pose], setting: Setting) -> Number:
         """Whether every pair is closed in the way that is meant, such as no guide the wrong way round in its block."""
         good: Number = True
         for number in self.others:
             pair = self.pairs[number]
-            good = good & pair.upright(setting.ends[pair.name], self._links(number, bodies, setting, 0))
+            good = good & pair.is_properly_assembled(setting.ends[pair.name], self._links(number, bodies, setting, 0))
         return good
 
 

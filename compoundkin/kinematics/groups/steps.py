@@ -134,7 +134,7 @@ class FollowerStep:
 
     def explain(self, run: Run, at: int) -> str:
         """Why it cannot be assembled at a pose."""
-        return self.higher.lost()
+        return self.higher.no_contact_reason()
 
 
 class GeneralStep:

@@ -14,7 +14,7 @@ from compoundkin.model.fields import Key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.geared import Geared, two_of
-from compoundkin.model.pairs.symbols import Disc, Mark, Strap, strap_line
+from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, strap_line
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ class Belt(Geared):
         back = poses[2].inverse()
         middles = [back.at(pose.at(end.point)).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True)]
         first, second = (complex(np.ravel(middle)[0]) for middle in middles)
-        discs = (Disc(k, ends[k].point, radii[k]) for k in range(2))
+        discs = (Wheel(k, ends[k].point, radii[k]) for k in range(2))
         return *discs, Strap(2, strap_line((first, second), radii, self.crossed))
 
 

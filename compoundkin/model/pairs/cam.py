@@ -15,10 +15,18 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.fields import Key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.arc import ArcSlot
-from compoundkin.model.pairs.contact import Path, Touch, centre_of_curvature, named_problems, outermost, path_of, row
+from compoundkin.model.pairs.contact import (
+    PointPath,
+    Touch,
+    centre_of_curvature,
+    named_problems,
+    outermost,
+    path_of,
+    row,
+)
 from compoundkin.model.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
 from compoundkin.model.pairs.profiled import Profiled
-from compoundkin.model.pairs.symbols import Disc, Groove, Mark, Outline, Stud
+from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
 
 # One of so many samples of the profile is enough to find where a path crosses it; Newton does the rest.
@@ -139,7 +147,7 @@ class Cam(Profiled):
         centre = poses[1].at(ends[1].point)
         return frame, centre, self.curve.foot(frame.u.conj() * (centre - frame.z))
 
-    def upright(self, ends: Ends, poses: Poses) -> Number:
+    def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
         """Whether the foot is on the profile, not beyond an end of it."""
         frame, centre, foot = self._foot(ends, poses)
         return ~self.curve.beyond(frame.u.conj() * (centre - frame.z), foot)
@@ -153,7 +161,7 @@ class Cam(Profiled):
         arc = ArcSlot(self.name, self.link, self.on, self.at, "middle of the disc", reach)
         return arc.equivalent((End(middle, 1 + 0j, reach), End(ends[1].point)))
 
-    def meetings(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
+    def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
         """Where the path of the roller's middle crosses the parallel curve.
 
         On a slide it is farthest along the guide in mode +1; on a pin most clockwise, as with a bar for the profile.
@@ -163,17 +171,17 @@ class Cam(Profiled):
         middle = complex(np.mean(self._samples[0]))
 
         def level(at: Sequence[Number], of: Sequence[Number]) -> Number:
-            return Path(path.straight, *at[:3]).level(of[0] + of[1] * at[3])
+            return PointPath(path.straight, *at[:3]).level(of[0] + of[1] * at[3])
 
         def coordinate(at: Sequence[Number], of: Sequence[Number]) -> Number:
-            return Path(path.straight, *at[:3]).coordinate(of[0] + of[1] * at[3], middle)
+            return PointPath(path.straight, *at[:3]).coordinate(of[0] + of[1] * at[3], middle)
 
         numbers = (*path[1:], np.asarray(ends[1].measure) * self.outward)
         least, greatest = outermost(level, coordinate, numbers, self._samples, self.curve.closed)
         forward = (freedom.sense > 0) == path.straight
         return np.where(forward, least, greatest), np.where(forward, greatest, least)
 
-    def lost(self) -> str:
+    def no_contact_reason(self) -> str:
         """The path does not meet the profile."""
         between = "" if self.curve.closed else " between its ends"
         return f"on its way {self.at} does not meet the profile of {self.on}{between}"
@@ -200,7 +208,7 @@ class Cam(Profiled):
         return End(z, u), End(z + u * place.c[0], None, float(np.ravel(self.radius)[0]))
 
     @property
-    def make_up(self) -> Hashable:
+    def rank_key(self) -> Hashable:
         """A cam holds one distance, whatever its profile."""
         return type(self)
 
@@ -212,7 +220,7 @@ class Cam(Profiled):
         """The profile, as a groove where a pin runs in an open one; the roller, the pin or the edge."""
         line = self.curve.at(self.curve.samples.s).c[0]
         if ends[1].measure > 0:
-            return Outline(0, line, self.curve.closed, self.inside), Disc(1, ends[1].point, ends[1].measure)
+            return Outline(0, line, self.curve.closed, self.inside), Wheel(1, ends[1].point, ends[1].measure)
         edge = Stud(1, ends[1].point)
         return (Outline(0, line, True, self.inside) if self.curve.closed else Groove(0, line)), edge
 

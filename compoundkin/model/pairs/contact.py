@@ -68,7 +68,7 @@ def centre_of_curvature(curve: Curve, s: Number, place: Number, u: Number) -> Nu
     return place + 1j * along / curve.curvature(s)
 
 
-class Path(NamedTuple):
+class PointPath(NamedTuple):
     """The way of a point past a profile as a body's coordinate grows, in the profile's frame.
 
     It starts at `start` and turns about `centre`; or, where it is `straight`, goes in the direction `centre`. `sense`
@@ -102,12 +102,12 @@ def nearest_angle(of: Number, middle: Number) -> Number:
     return np.angle(of / middle) + np.angle(middle)
 
 
-def path_of(frame: Pose, point: Number, own: int, freedom: Freedom) -> Path:
+def path_of(frame: Pose, point: Number, own: int, freedom: Freedom) -> PointPath:
     """The way of a point of the world past a profile's frame, as its body moves (own 1) or that of the profile (0)."""
     back = np.conjugate(frame.u.c[0])
     straight = freedom.about is None
     centre = back * (freedom.along if straight else freedom.about - frame.z.c[0])
-    return Path(straight, back * (point - frame.z.c[0]), centre, freedom.sense if own else -freedom.sense)
+    return PointPath(straight, back * (point - frame.z.c[0]), centre, freedom.sense if own else -freedom.sense)
 
 
 # Poses times samples that are looked at together: their arrays stay in a second-level cache.

@@ -87,7 +87,9 @@ class Pair(ABC):
     free_is_angle: ClassVar[bool]  # whether the coordinate is an angle (else a length)
     counts_turns: ClassVar[bool] = False  # whether it asks for its members' angles with full turns
     is_simple: ClassVar[bool] = False  # whether its coordinate only turns a member about a point, or only shifts it
-    leads: ClassVar[bool] = False  # whether it leads a member along a profile, so that it has `meetings`
+    has_profile: ClassVar[bool] = (
+        False  # whether it leads a member along a profile, so that it has `contact_candidates`
+    )
     adds_angles: ClassVar[bool] = False  # whether its closure is a sum of its members' angles times constants
     table: ClassVar[str] = ""  # its table in a mechanism file; "" for pairs that are not written out
     keys: ClassVar[tuple[Key, ...]] = ()
@@ -151,12 +153,12 @@ class Pair(ABC):
         """
         return None
 
-    def upright(self, ends: Ends, poses: Poses) -> Number:
+    def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
         """Whether a closed pair is in the way that is meant, where its closure does not tell."""
         return True
 
     @property
-    def spread(self) -> float:
+    def coordinate_scale(self) -> float:
         """The scale of its coordinate where it has a profile."""
         return 1.0
 
@@ -184,7 +186,7 @@ class Pair(ABC):
         """Ends of random geometry in the world at a pose where the pair is closed, for rank tests."""
 
     @property
-    def make_up(self) -> Hashable:
+    def rank_key(self) -> Hashable:
         """All that the rank of its generic Jacobian may depend on."""
         return type(self)
 
@@ -200,15 +202,15 @@ class Pair(ABC):
         """The lower pairs that stand for a higher pair at every pose, where there are such."""
         return None
 
-    def misfit(self, ends: Ends, poses: Poses) -> Series | None:
+    def distance_error(self, ends: Ends, poses: Poses) -> Series | None:
         """A length that must be zero though the pair does not hold it: other pairs must; None where there is none."""
         return None
 
-    def turned(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+    def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """The ends of a pair that counts turns where its members' angles are by whole `turns` from the drawn ones."""
         return ends
 
-    def meetings(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
+    def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
         """The coordinates at which a member of one freedom is in contact in mode -1 and +1, nearly; of pairs that lead.
 
         `poses` are those where the coordinate is zero; NaN where there is no contact. The modes are those of the lower
@@ -216,19 +218,19 @@ class Pair(ABC):
         """
         raise NotImplementedError(f"a {self.title} has no profile")
 
-    def stretch(self, ends: Ends, poses: Poses) -> Number:
-        """On which smooth stretch of its profile a pair is, an index: derivatives may jump from one to the next."""
+    def smooth_piece(self, ends: Ends, poses: Poses) -> Number:
+        """On which smooth piece of its profile a pair is, an index: derivatives may jump from one to the next."""
         return 0
 
-    def lost(self) -> str:
-        """Why a member has no contact where there are no meetings, in a sentence."""
+    def no_contact_reason(self) -> str:
+        """Why a member has no contact where there are no candidates, in a sentence."""
         return f"{self.name} does not close"
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation | None:
         """The centres of curvature of a higher pair at the leading coefficient of the poses; None for other pairs."""
         return None
 
-    def rounded(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
+    def with_driver_turns(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
         """The ends of a driven pair that counts turns where its coordinate is by whole `turns` from the drawn one."""
         return ends
 

@@ -125,7 +125,7 @@ class Face(Profiled):
         _, face = self._sides(ends, poses)
         return face.along.dot(self.touch(ends, poses).place - face.point)
 
-    def upright(self, ends: Ends, poses: Poses) -> Number:
+    def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
         """Whether the contact is not at an end of an open profile."""
         s = self._support(*self._sides(ends, poses)).c[0]
         return self.curve.closed | ((s > self.curve.low) & (s < self.curve.high))
@@ -145,7 +145,7 @@ class Face(Profiled):
         sides: dict[str, Ends] = {pairs[0].name: (End(middle), End(0j)), pairs[1].name: (track, End(0j, 1 + 0j))}
         return Equivalent(block, pairs, sides)
 
-    def meetings(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
+    def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
         """On a slide the face's direction tells the contact; on a pin the face also touches a circle about it.
 
         On a pin the contact may lie in the direction of the face (mode +1) or against it, as with a block on it.
@@ -173,7 +173,7 @@ class Face(Profiled):
         against, along = (right, left) if self.side > 0 else (left, right)
         return path.sense * against, path.sense * along
 
-    def lost(self) -> str:
+    def no_contact_reason(self) -> str:
         """The face does not reach the profile."""
         return f"the face of {self.link} does not meet the profile of {self.on}, or lies along its own guide"
 
@@ -203,7 +203,7 @@ class Face(Profiled):
         return End(z, u), End(z + u * self.curve.at(s).c[0] + along * rng.standard_normal(), along)
 
     @property
-    def make_up(self) -> Hashable:
+    def rank_key(self) -> Hashable:
         """A face holds one distance, whatever the profile."""
         return type(self)
 

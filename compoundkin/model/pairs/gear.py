@@ -14,7 +14,7 @@ from compoundkin.model.fields import Key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.geared import Geared, check_distance, two_of
-from compoundkin.model.pairs.symbols import Disc, Mark
+from compoundkin.model.pairs.symbols import Mark, Wheel
 
 # The pressure angle of standard involute teeth; it shows in the equivalent linkage only, not in any motion.
 PRESSURE_ANGLE = np.deg2rad(20.0)
@@ -86,8 +86,8 @@ class Gear(Geared):
         unit = self.apart(ends, poses) / (two - one if self.internal else two + one)
         tooth = 1.0 if self.teeth is not None else min(one, two) / UNCOUNTED
         return (
-            Disc(0, ends[0].point, one * unit, round(one / tooth)),
-            Disc(1, ends[1].point, two * unit, round(two / tooth), self.internal),
+            Wheel(0, ends[0].point, one * unit, round(one / tooth)),
+            Wheel(1, ends[1].point, two * unit, round(two / tooth), self.internal),
         )
 
 

@@ -156,7 +156,7 @@ class Geared(Pair):
         one, two = self.sizes
         return (second - carrier) + (first - carrier) * (one / two)
 
-    def turned(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+    def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """A phase that the drawing gave follows the turns of wheels and carrier since."""
         if self.phase is not None or any(name not in geometry.drawn for name in self.members):
             return ends
@@ -214,7 +214,7 @@ class Geared(Pair):
         return *(End(place, None, size) for place, size in zip(places, (one, two), strict=True)), End(0j, None, 0.0)
 
     @property
-    def make_up(self) -> Hashable:
+    def rank_key(self) -> Hashable:
         """The kind and the ratio."""
         one, two = (float(np.ravel(size)[0]) for size in self.sizes)
         return type(self), one / two

@@ -14,7 +14,7 @@ from compoundkin.base.series import Number, Series, cross
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import named_problems
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses
-from compoundkin.model.pairs.symbols import Disc, Mark, Track, reach
+from compoundkin.model.pairs.symbols import Mark, Track, Wheel, reach
 
 # A radius fits a drawn distance that it meets to this part of it: drawings are given to some five digits.
 FITS = 1e-5
@@ -122,7 +122,7 @@ class OnLine(Pair):
         # a phase by a turn of the wheel farther on is the same mechanism, its angle counted from another turn
         return self.phase + TURN * across * np.round((drawn - self.phase) / (TURN * across))
 
-    def turned(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+    def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """A phase that the drawing gave follows the turns of line and wheel since."""
         if any(name not in geometry.drawn for name in self.members):
             return ends
@@ -182,7 +182,7 @@ class OnLine(Pair):
         radius = abs(float(wheel.measure))
         track = Track(0, line.point, line.along.c[0], low, high, float(self.side), self.pitch)
         teeth = round(2.0 * np.pi * radius / self.pitch) if self.pitch else 0
-        return track, Disc(1, wheel.point, radius, teeth)
+        return track, Wheel(1, wheel.point, radius, teeth)
 
 
 def radius_problems(where: str, key: str, radius: Number | None) -> Iterator[Problem]:

@@ -182,7 +182,7 @@ class Prismatic(Pair):
         start = complex(*rng.standard_normal(2))
         return End(start, guide), End(start + guide * rng.standard_normal(), guide)
 
-    def upright(self, ends: Ends, poses: Poses) -> Number:
+    def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
         """Whether the guide does not lie in its block the wrong way round, which the sine alone does not see."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.dot(block.along).c[0] > 0

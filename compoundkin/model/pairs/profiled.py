@@ -23,7 +23,7 @@ CUTS = 1e-7
 class Profiled(Contact):
     """A contact with a profile of the link `on`."""
 
-    leads: ClassVar[bool] = True
+    has_profile: ClassVar[bool] = True
     is_flat: ClassVar[bool]  # whether a flat face touches, which has no pitch curve
 
     profile: Profile
@@ -39,7 +39,7 @@ class Profiled(Contact):
         raise NotImplementedError
 
     @property
-    def spread(self) -> float:
+    def coordinate_scale(self) -> float:
         """The size of the profile for a displacement along a face; else the part of the parameter for a radian."""
         return self.curve.size if self.is_flat else (self.curve.high - self.curve.low) / (2.0 * np.pi)
 
@@ -82,9 +82,9 @@ class Profiled(Contact):
             return spans(curve.samples, curve.low, curve.high, self._above_face)
         return spans(curve.samples, curve.low, curve.high, self._beside_roller) if self.roller else ()
 
-    def stretch(self, ends: Ends, poses: Poses) -> Number:
+    def smooth_piece(self, ends: Ends, poses: Poses) -> Number:
         """Between which of the places where the profile's derivatives jump, or the contact leaps, it is."""
-        return self.curve.stretch(self.parameter(ends, poses), self._leaps)
+        return self.curve.smooth_piece(self.parameter(ends, poses), self._leaps)
 
     @cached_property
     def _leaps(self) -> tuple[float, ...]:

@@ -111,7 +111,7 @@ class Rack(OnLine):
         """Rows of slip and displacement."""
         return table(*self.rows(ends, poses)[1:])
 
-    def misfit(self, ends: Ends, poses: Poses) -> Series:
+    def distance_error(self, ends: Ends, poses: Poses) -> Series:
         """The axis must be at its radius from the pitch line."""
         return self.distance(ends, poses)
 

@@ -16,7 +16,7 @@ from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import named_problems
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.model.pairs.pitch_line import TURN, radius_problems
-from compoundkin.model.pairs.symbols import Disc, Mark
+from compoundkin.model.pairs.symbols import Mark, Wheel
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,13 +107,13 @@ class RollingOnCircle(Pair):
         drawn = turned - self._turns * np.angle((line * on.u.conj()).c[0])
         return drawn if self.phase is None else self.phase + TURN * np.round((drawn - self.phase) / TURN)
 
-    def turned(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
+    def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """A phase that the drawing gave follows the turns of circle and wheel since."""
         if any(name not in geometry.drawn for name in self.members):
             return ends
         return ends[0]._replace(measure=ends[0].measure + TURN * (turns[1] - turns[0])), ends[1]
 
-    def rounded(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
+    def with_driver_turns(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
         """A phase that the drawing gave belongs to the line of centres after the turns it has made."""
         if self.phase is not None or any(name not in geometry.drawn for name in self.members):
             return ends
@@ -177,8 +177,8 @@ class RollingOnCircle(Pair):
         distance, turns = float(abs(ends[0].along.c[0])), float(ends[1].measure)
         # turns = 1 + circle / radius, negative radius inside; the distance is their sum
         radius = distance / turns
-        circle = Disc(0, ends[0].point, distance - radius, 0, self.inside)
-        return circle, Disc(1, ends[1].point, abs(radius))
+        circle = Wheel(0, ends[0].point, distance - radius, 0, self.inside)
+        return circle, Wheel(1, ends[1].point, abs(radius))
 
 
 def roll_around(

@@ -50,7 +50,7 @@ class Groove(NamedTuple):
     line: Number
 
 
-class Disc(NamedTuple):
+class Wheel(NamedTuple):
     """A wheel, a pulley, a roller; one with `teeth` is a gear and shows its pitch circle, `is_ring` an internal one."""
 
     member: int
@@ -91,7 +91,7 @@ class Outline(NamedTuple):
     is_hollow: bool = False
 
 
-Mark: TypeAlias = Pin | Stud | Sliding | Groove | Disc | Track | Strap | Outline
+Mark: TypeAlias = Pin | Stud | Sliding | Groove | Wheel | Track | Strap | Outline
 
 
 def reach(values: Number) -> tuple[float, float]:

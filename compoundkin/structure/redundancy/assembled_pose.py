@@ -111,7 +111,7 @@ def _nearest(equations: Equations, goal: Array | None) -> Assembly:
     best: Assembly | None = None
     for start, is_complete in _starts(equations):
         found = corrected(equations, start, goal)
-        good = found.is_closed and equations.is_upright(found.state)
+        good = found.is_closed and equations.is_properly_assembled(found.state)
         if best is None or found.residual < best.residual:
             best = found
         if good or is_complete:

@@ -161,10 +161,12 @@ class Equations:
             found.append(float(np.real(value)) * pair.driven_by(drive.link))
         return np.array(found)
 
-    def is_upright(self, state: Array) -> bool:
+    def is_properly_assembled(self, state: Array) -> bool:
         """Whether every closed pair is in the way that is meant."""
         poses = self.poses(state)
-        return all(bool(np.all(pair.upright(self.ends[pair.name], _of(pair, poses)))) for pair in self.pairs)
+        return all(
+            bool(np.all(pair.is_properly_assembled(self.ends[pair.name], _of(pair, poses)))) for pair in self.pairs
+        )
 
     def jacobian(self, state: Array) -> tuple[Array, Array]:
         """The rows of all pairs by the state, each of the length 1; and by what each was divided."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from compoundkin.model.elements import FRAME
-from compoundkin.model.pairs.symbols import Disc, Sliding
+from compoundkin.model.pairs.symbols import Sliding, Wheel
 from compoundkin.view.sketch.label_places import Label, around, text_half
 from compoundkin.view.sketch.link_shapes import edges, skeleton
 from compoundkin.view.sketch.painter import Painter
@@ -60,10 +60,10 @@ def _number(painter: Painter, name: str) -> Label:
     if not corners:
         return around(key, painter.middle, half, 0.0)
     if len(corners) == 1:
-        inside = [s for s in painter.scene.seen if isinstance(s.mark, Disc) and s.members[s.mark.member] == name]
+        inside = [s for s in painter.scene.seen if isinstance(s.mark, Wheel) and s.members[s.mark.member] == name]
         if not inside:
             return around(key, corners[0], half, 10.0, -1 + 1j)
-        radius = max(float(s.mark.radius) for s in inside if isinstance(s.mark, Disc)) * painter.window.scale
+        radius = max(float(s.mark.radius) for s in inside if isinstance(s.mark, Wheel)) * painter.window.scale
         ring = [corners[0] + radius * 0.55 * complex(np.exp(2j * np.pi * (k + 0.5) / 12)) for k in range(12)]
         beside = around(key, corners[0], half, radius).places
         return Label(key, half, (*ring, *beside), (*[0.0] * len(ring), *[OUTSIDE] * len(beside)))

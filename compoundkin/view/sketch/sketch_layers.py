@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
-from compoundkin.model.pairs.symbols import Disc, Groove, Outline, Sliding, Strap, Track
+from compoundkin.model.pairs.symbols import Groove, Outline, Sliding, Strap, Track, Wheel
 from compoundkin.view.sketch.link_shapes import body, edges, skeleton
 from compoundkin.view.sketch.painter import Laid, Layer, Painter
 from compoundkin.view.sketch.pin_shapes import drives, pins
@@ -58,7 +58,7 @@ def _extent(scene: Scene) -> Iterator[Number]:
     yield np.array(list(scene.letters.values()))
     for seen in scene.seen:
         mark = seen.mark
-        if isinstance(mark, Disc):
+        if isinstance(mark, Wheel):
             rim = mark.radius * np.array([1, 1j, -1, -1j])
             yield scene.at(seen.members[mark.member], mark.at) + rim
         elif isinstance(mark, Groove | Strap | Outline):

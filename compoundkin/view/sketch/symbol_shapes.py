@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.model.elements import FRAME
-from compoundkin.model.pairs.symbols import Disc, Groove, Mark, Outline, Sliding, Strap, Stud, Track
+from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Sliding, Strap, Stud, Track, Wheel
 from compoundkin.view.sketch.painter import Laid, Layer, Painter
 from compoundkin.view.sketch.scene import Seen
 from compoundkin.view.sketch.shapes import Circle, Polygon, Polyline, Strokes
@@ -32,7 +32,7 @@ def marks(painter: Painter) -> Iterator[Laid]:
     for seen in painter.scene.seen:
         if not isinstance(seen.mark, Sliding) and not painter.shows(seen.members[seen.mark.member]):
             continue
-        if isinstance(seen.mark, Disc):
+        if isinstance(seen.mark, Wheel):
             link = seen.members[seen.mark.member]
             middle, radius = painter.place(link, seen.mark.at), float(seen.mark.radius * painter.window.scale)
             if any(link == o[0] and abs(middle - o[1]) < ONE and abs(radius - o[2]) < ONE for o in drawn):
@@ -60,7 +60,7 @@ def _stud(painter: Painter, seen: Seen, mark: Stud) -> Iterator[Laid]:
     yield Laid(Layer.PIN, Circle(painter.place(link, mark.at), STUD, "dot"), link)
 
 
-def _disc(painter: Painter, seen: Seen, mark: Disc) -> Iterator[Laid]:
+def _disc(painter: Painter, seen: Seen, mark: Wheel) -> Iterator[Laid]:
     link = seen.members[mark.member]
     middle, radius = painter.place(link, mark.at), float(mark.radius * painter.window.scale)
     e = painter.along(link, 1 + 0j)
@@ -136,7 +136,7 @@ PAINTED: dict[type[Mark], Callable[[Painter, Seen, Any], Iterator[Laid]]] = {
     Sliding: sliding,
     Groove: _groove,
     Stud: _stud,
-    Disc: _disc,
+    Wheel: _disc,
     Track: _track,
     Strap: _strap,
     Outline: _outline,

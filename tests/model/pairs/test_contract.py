@@ -178,7 +178,7 @@ def test_generic_ends_close_and_are_regular(kind: type[Pair], seed: int) -> None
     assert np.linalg.matrix_rank(matrix[: kind.held]) == kind.held
     assert np.linalg.matrix_rank(matrix) == kind.held + 1
     assert pair.generic(rng) != ends
-    hash(pair.make_up)
+    hash(pair.rank_key)
 
 
 @every_kind
