@@ -20,7 +20,7 @@ from compoundkin.kinematics.solving_order import Plan
 from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure.parts import Structure
+from compoundkin.structure.structure import Structure
 
 if TYPE_CHECKING:
     from compoundkin.view.animation import Animation

@@ -22,8 +22,8 @@ from compoundkin.kinematics.times import times_of
 from compoundkin.kinematics.tracking import Tracker, read_hint
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
-from compoundkin.structure.parts import Structure
 from compoundkin.structure.redundancy import relaxed
+from compoundkin.structure.structure import Structure
 
 # Up to so many poses are solved at once: gathering blocks would copy more than the caches save.
 WHOLE = 65536

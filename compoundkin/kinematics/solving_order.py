@@ -14,8 +14,9 @@ from compoundkin.kinematics.groups.general import Setting
 from compoundkin.kinematics.groups.steps import AffineStep, DyadStep, FollowerStep, GeneralStep, Step
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends, Equivalent
-from compoundkin.structure.group_names import named_group
-from compoundkin.structure.parts import Body, DrivenPair, Group, Structure
+from compoundkin.structure.assur_groups import named_group
+from compoundkin.structure.parts import Body, DrivenPair, Group
+from compoundkin.structure.structure import Structure
 
 
 class Plan:

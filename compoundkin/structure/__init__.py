@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from compoundkin.structure.assur_groups import roman
 from compoundkin.structure.decomposition import decompose
-from compoundkin.structure.graph import kinematic_graph, links_by_pairs, pair_counts
-from compoundkin.structure.group_names import roman
-from compoundkin.structure.loops import Loop, independent_loops, loop_count, loops_through, simple_loops
+from compoundkin.structure.graph import (
+    Loop,
+    independent_loops,
+    kinematic_graph,
+    links_by_pairs,
+    loop_count,
+    loops_through,
+    pair_counts,
+    simple_loops,
+)
 from compoundkin.structure.mobility import Mobility, PairCount
-from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Passive, Structure
+from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Passive
+from compoundkin.structure.structure import Structure
 
 __all__ = [
     "Body",

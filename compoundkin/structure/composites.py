@@ -3,18 +3,55 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs import Pair, Revolute
 from compoundkin.model.validation import drivable
 from compoundkin.structure.parts import Body, DrivenPair, Passive
-from compoundkin.structure.passive_links import passive_freedoms
-from compoundkin.structure.pins import Pins
 
 GROUND = -1
+# The first that occurs in no name of the pin's links joins two of them, so that pair names are unique.
+_SEPARATORS = ("-", "/", ":", " to ", " - ")
+
+
+@dataclass(frozen=True)
+class Pins:
+    """Makes the pairs at the pins of a mechanism."""
+
+    mechanism: Mechanism
+
+    def pair(self, letter: str, first: str, second: str) -> Pair:
+        """The revolute pair of two links at a letter, named by it; of a multiple pin, as ``J(crank-rod)``.
+
+        >>> from compoundkin.model.elements import link
+        >>> links = [link(name, J=0) for name in ("frame", "crank", "rod")]
+        >>> Pins(Mechanism("m", *links)).pair("J", "crank", "rod").name
+        'J(crank-rod)'
+        """
+        if len(self.mechanism.pins[letter]) == 2 and letter not in self._written:
+            return Revolute(letter, letter, first, second)
+        return Revolute(f"{letter}({first}{self._separators[letter]}{second})", letter, first, second)
+
+    @cached_property
+    def _written(self) -> frozenset[str]:
+        return frozenset(pair.name for pair in self.mechanism.written_pairs)
+
+    @cached_property
+    def _separators(self) -> dict[str, str]:
+        return {
+            letter: next((s for s in _SEPARATORS if not any(s in name for name in names)), "-")
+            for letter, names in self.mechanism.pins.items()
+            if len(names) > 2 or letter in self._written
+        }
+
+
+def pin_at(letter: str) -> Pair:
+    """The revolute pair at a letter before it is known between which of the links it is written."""
+    return Revolute(letter, letter, "", "")
 
 
 @dataclass(frozen=True)
@@ -65,6 +102,26 @@ def composites(mechanism: Mechanism) -> Composites:
             body_of.update(dict.fromkeys(body.links, len(moving)))
             moving.append(body)
     return Composites(ground, tuple(moving), pins, body_of, tuple(closing), passive)
+
+
+def passive_freedoms(mechanism: Mechanism) -> Iterator[Passive]:
+    """The links on a single pin about which all their other pairs are round; not those that a driver turns.
+
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> from compoundkin.model.elements import link
+    >>> list(passive_freedoms(Mechanism("m", link("frame", A=0), link("crank", A=0, B=1))))
+    []
+    """
+    driven = {name for drive in mechanism.drives for name in (drive.link, drive.on)}
+    written: dict[str, list[str | None]] = {}
+    for pair in mechanism.written_pairs:
+        for name in pair.members:
+            written.setdefault(name, []).append(pair.round_at(name))
+    for name, places in written.items():
+        pins = list(mechanism.pins_on[name])
+        if name not in driven and name != FRAME and len(pins) == 1 and set(places) == set(pins):
+            on = next(other for other in mechanism.pins[pins[0]] if other != name)
+            yield Passive(name, on, pins[0])
 
 
 def driven_pair(pins: Pins, drive: Drive) -> Pair:

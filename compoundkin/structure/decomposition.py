@@ -18,14 +18,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure.assur_groups import Binder, all_pairs
 from compoundkin.structure.composites import composites
 from compoundkin.structure.faults import closed_drives, counted_faults, rank_faults
-from compoundkin.structure.group_pairs import Binder, all_pairs
 from compoundkin.structure.matching import Matching, maximum_matching, overdetermined, underdetermined
 from compoundkin.structure.mobility import mobility_of
 from compoundkin.structure.order import solving_order, strong_components
-from compoundkin.structure.parts import Fault, Group, Relaxation, Structure
+from compoundkin.structure.parts import Fault, Group, Relaxation
 from compoundkin.structure.rank import Part, RankTest
+from compoundkin.structure.structure import Structure
 from compoundkin.structure.system import System, system_of
 
 

@@ -13,7 +13,8 @@ from compoundkin.base.poses import FIXED
 from compoundkin.base.series import Number
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Line
-from compoundkin.structure.parts import DrivenPair, Structure
+from compoundkin.structure.parts import DrivenPair
+from compoundkin.structure.structure import Structure
 
 Couple = tuple[int, int]
 

@@ -20,7 +20,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure import Loop, Structure, decompose
-from compoundkin.structure.loops import loops_through
+from compoundkin.structure.graph import loops_through
 
 # A vector shorter than this part of the mechanism is the rounding of none.
 NO_LENGTH = 1e-12

@@ -15,8 +15,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.structure.composites import driven_pair
-from compoundkin.structure.pins import Pins
+from compoundkin.structure.composites import Pins, driven_pair
 from compoundkin.structure.system import LINK_FREEDOMS
 
 Array = np.ndarray[Any, np.dtype[np.float64]]

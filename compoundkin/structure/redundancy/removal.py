@@ -14,9 +14,10 @@ import numpy as np
 from compoundkin.kinematics.groups import DYADS
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.decomposition import decompose, decomposed
-from compoundkin.structure.parts import Group, Relaxation, Structure
+from compoundkin.structure.parts import Group, Relaxation
 from compoundkin.structure.redundancy.diagnosis import WIDEST, Examined, examined
 from compoundkin.structure.redundancy.self_stress import Candidate, chosen, strength
+from compoundkin.structure.structure import Structure
 
 # How many structures are compared, and by how much weaker than the first choice others may be.
 COMPARED = 400

@@ -1,15 +1,91 @@
-"""From components of unknowns to groups of bodies: which links each pair is written between."""
+"""Assur groups from components of unknowns: their bodies, their pairs and what each group is called.
+
+A dyad is named by its pairs along the chain, outer-inner-outer, from the end that makes the name first in
+the order of `pairs.KINDS`: RRP, not PRR. A larger group is named by the letters of its outer pairs, a dash,
+and those of its inner pairs, both sorted: the class III triad of revolute pairs is RRR-RRR.
+
+The order is the number of outer pairs, those by which the group is attached. The class is II for a dyad.
+For a larger group it is that of its highest contour: a link with k pairs is a rigid contour of class k; a
+closed loop of k links inside the group, in a shortest basis of its loops, is a changeable contour of class k
+where k is four or more.
+Source: I. I. Artobolevskii, Theory of Mechanisms and Machines, Nauka 1975, on the structure of planar
+mechanisms.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs import KINDS, Pair
 from compoundkin.structure.composites import GROUND, find
-from compoundkin.structure.group_names import named_group
-from compoundkin.structure.parts import Group
+from compoundkin.structure.cycles import cycle_basis
+from compoundkin.structure.parts import Body, Group
 from compoundkin.structure.system import Constraint, System
+
+_RANK = {kind.code: rank for rank, kind in enumerate(KINDS)}
+# The least number of links in a loop that counts as a changeable contour: a loop of three is rigid.
+_CHANGEABLE = 4
+_LEAST_CLASS = 2
+_NUMERALS = ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I"))
+
+
+def roman(number: int) -> str:
+    """A class as it is printed.
+
+    >>> roman(2), roman(4), roman(13)
+    ('II', 'IV', 'XIII')
+    """
+    text = ""
+    for value, numeral in _NUMERALS:
+        while number >= value:
+            text += numeral
+            number -= value
+    return text
+
+
+def named_group(bodies: Sequence[Body], inner: Sequence[Pair], outer: Sequence[Pair]) -> Group:
+    """The group of some bodies in input order, with its name, class and order."""
+    if len(bodies) == 2 and len(inner) == 1 and len(outer) == 2:
+        return _dyad(bodies, inner[0], outer)
+    name = "-".join(letters for letters in (_letters(outer), _letters(inner)) if letters)
+    class_ = group_class(bodies, inner, outer)
+    return Group(tuple(bodies), tuple(inner), tuple(outer), name, class_, len(outer))
+
+
+def _dyad(bodies: Sequence[Body], inner: Pair, outer: Sequence[Pair]) -> Group:
+    first, second = bodies
+    carried = outer if _on(first, outer[0]) else outer[::-1]
+    if rank(carried[1]) < rank(carried[0]):
+        (first, second), carried = (second, first), carried[::-1]
+    name = f"{carried[0].code}{inner.code}{carried[1].code}"
+    return Group((first, second), (inner,), tuple(carried), name, _LEAST_CLASS, len(outer))
+
+
+def group_class(bodies: Sequence[Body], inner: Sequence[Pair], outer: Sequence[Pair]) -> int:
+    """The class by Artobolevskii of a group, from the graph of its bodies and pairs."""
+    index = {link: k for k, body in enumerate(bodies) for link in body.links}
+    joined = [tuple(dict.fromkeys(index[m] for m in pair.members if m in index)) for pair in (*inner, *outer)]
+    pairs_on = [0] * len(bodies)
+    for members in joined:
+        for k in members:
+            pairs_on[k] += 1
+    loops = cycle_basis(len(bodies), [(members[0], members[1]) for members in joined if len(members) > 1])
+    changeable = (len(loop) for loop in loops if len(loop) >= _CHANGEABLE)
+    return max(_LEAST_CLASS, *pairs_on, *changeable)
+
+
+def rank(pair: Pair) -> int:
+    """The place of a pair's letter in a group's name."""
+    return _RANK[pair.code]
+
+
+def _letters(pairs: Iterable[Pair]) -> str:
+    return "".join(pair.code for pair in sorted(pairs, key=rank))
+
+
+def _on(body: Body, pair: Pair) -> bool:
+    return any(member in body.links for member in pair.members)
 
 
 @dataclass

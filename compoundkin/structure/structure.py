@@ -1,0 +1,75 @@
+"""A mechanism taken apart: what `decompose` finds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from compoundkin.base.display import ShowsPicture
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.structure.graph import Loop, independent_loops, kinematic_graph
+from compoundkin.structure.mobility import Mobility
+from compoundkin.structure.parts import Body, Fault, Group, Passive, Relaxation
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+    from compoundkin.synthesis.chains import ChainName
+
+# So many groups are named where a structure is printed.
+SHOWN_GROUPS = 12
+
+
+@dataclass(frozen=True)
+class Structure(ShowsPicture):
+    """A mechanism taken apart: the frame with its driven links, then the Assur groups in solving order.
+
+    `pairs` lists every pair, a multiple pin of k links as k - 1 of them. Where `faults` is not empty the
+    mechanism cannot be solved, and `groups` holds what could be decomposed. Where there is a `relaxation`, part of
+    some pairs is left out in the groups.
+    """
+
+    mechanism: Mechanism
+    pairs: tuple[Pair, ...]
+    ground: Body
+    groups: tuple[Group, ...]
+    mobility: Mobility
+    faults: tuple[Fault, ...]
+    passive: tuple[Passive, ...] = ()
+    relaxation: Relaxation | None = None
+
+    @cached_property
+    def redundant(self) -> tuple[Pair, ...]:
+        """The pairs that no driver and no group uses as they are: the others hold what they hold."""
+        if self.relaxation is None:
+            return ()
+        bodies = (self.ground, *(body for group in self.groups for body in group.bodies))
+        used = {step.pair.name for body in bodies for step in body.driven}
+        used.update(pair.name for group in self.groups for pair in (*group.inner, *group.outer))
+        return tuple(pair for pair in self.pairs if pair.name not in used)
+
+    @cached_property
+    def graph(self) -> nx.MultiGraph:
+        """The kinematic graph: links are nodes, pairs are edges keyed by their names."""
+        return kinematic_graph(self)
+
+    @cached_property
+    def name(self) -> ChainName:
+        """What it is called by its graph, frame and drivers: "Stephenson III"."""
+        from compoundkin.synthesis.chains import structure_name
+
+        return structure_name(self)
+
+    @cached_property
+    def loops(self) -> tuple[Loop, ...]:
+        """A short basis of independent loops."""
+        return independent_loops(self)
+
+    def __repr__(self) -> str:
+        groups = ", ".join(group.name for group in self.groups[:SHOWN_GROUPS])
+        more = f" and {len(self.groups) - SHOWN_GROUPS} more" if len(self.groups) > SHOWN_GROUPS else ""
+        faults = f", {len(self.faults)} faults" if self.faults else ""
+        found = f"groups {groups}{more}" if groups else "no groups"
+        return f"Structure({self.mechanism.title!r}: mobility {self.mobility.freedoms}, {found}{faults})"
