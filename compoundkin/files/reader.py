@@ -8,6 +8,7 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.files import document as doc
+from compoundkin.files.kind_tables import TAGGED
 from compoundkin.files.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
 from compoundkin.files.single_values import bad, described, single, wrong
 from compoundkin.files.written_quantities import rate, values
@@ -23,7 +24,7 @@ def read(document: Mapping[str, Any], where: str = "") -> Mechanism:
     >>> read({"format": 1, "title": "Pin", "links": {"frame": {"points": {"A": [0, 0]}}}}).title
     'Pin'
     """
-    log = Recovery()
+    log = Recovery(TAGGED)
     if not _version(document.get("format"), log):
         raise failed(log.problems, where)
     about, parts = _parts(document, log)

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.base.series import Number
-from compoundkin.files import law_tables, profile_tables
 from compoundkin.files.single_values import bad, wrong
 from compoundkin.files.written_quantities import READERS
 from compoundkin.model.fields import Key, Kind
+from compoundkin.model.profiles import disc
 
 # Begins every name that stands in for a broken one: the Unicode replacement character.
 STAND_IN = "\ufffd"
@@ -26,20 +26,21 @@ DRAWING = (r"links\..+\.points\.", r"drawn\.")
 ALL = (r".*",)
 
 
-# What is read table by table, each with its own problems.
-TAGGED: dict[Kind, Callable[[Recovery, Any, str, bool | None], Any]] = {
-    "law": law_tables.law,
-    "segments": law_tables.segments,
-    "profile": profile_tables.profile,
-    "program": profile_tables.program,
-    "turned": profile_tables.turned,
-}
+# What takes the place of a broken profile: any roller fits into it.
+PROFILE = disc(1e9)
+
+# What reads a table with problems of its own: it reports them.
+Tagged: TypeAlias = "Callable[[Recovery, Any, str, bool | None], Any]"
 
 
 class Recovery:
-    """The problems found while one document is read, and the stand-ins for what is broken."""
+    """The problems found while one document is read, and the stand-ins for what is broken.
 
-    def __init__(self) -> None:
+    `tagged` reads the kinds of values that are tables with problems of their own.
+    """
+
+    def __init__(self, tagged: Mapping[Kind, Tagged]) -> None:
+        self.tagged = tagged
         self.problems: list[Problem] = []
         self.doubts: list[str] = []
         self._count = 0
@@ -93,8 +94,8 @@ class Recovery:
     def _value(self, kind: Kind, raw: Any, where: str, angle: bool | None) -> Any:
         if isinstance(raw, dict) and (kind == "drawing" or (kind == "points" and raw)):
             return self.points(raw, where)
-        if kind in TAGGED:
-            return TAGGED[kind](self, raw, where, angle)
+        if kind in self.tagged:
+            return self.tagged[kind](self, raw, where, angle)
         try:
             return READERS[kind](raw, where, angle)
         except InvalidMechanism as error:
@@ -114,7 +115,7 @@ class Recovery:
         values: dict[Kind, Any] = {
             "name": name, "text": name, "names": (), "point": point, "points": {name: point}, "drawing": {},
             "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
-            "two": (1.0, 1.0), "profile": profile_tables.STAND_IN, "program": None, "place": point, "places": (),
+            "two": (1.0, 1.0), "profile": PROFILE, "program": None, "place": point, "places": (),
             "turned": (),
         }  # fmt: skip
         return values.get(kind, 0.0)

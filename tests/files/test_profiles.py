@@ -65,11 +65,12 @@ class Unchecked(Mechanism):
 @settings(max_examples=200, deadline=None)
 @given(made)
 def test_a_made_profile_is_read_as_it_was_written(item: Synthesised) -> None:
-    from compoundkin.files.profile_tables import profile as read_profile
+    from compoundkin.files.kind_tables import TAGGED
+    from compoundkin.files.kind_tables import profile as read_profile
     from compoundkin.files.recovery import Recovery
 
     whole = document(Unchecked(link("frame", A=0), cam("follower", on="cam", at="P", profile=item)))
-    log = Recovery()
+    log = Recovery(TAGGED)
     assert read_profile(log, whole["cams"][0]["profile"], "cams[0].profile", None) == item
     assert log.problems == []
 

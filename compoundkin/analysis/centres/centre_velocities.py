@@ -5,22 +5,42 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compoundkin.analysis.centres.circle_diagram import couple
+from compoundkin.analysis.centres.circle_diagram import Couple, couple
+from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.driver_rates import Rates
 from compoundkin.analysis.centres.homogeneous import cross, dot
+from compoundkin.analysis.centres.primary_centres import Places, Scale
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 
-if TYPE_CHECKING:
-    from compoundkin.analysis.centres.instant_centres import Centres
-
+# Below this conditioning (rounding becomes 1e-10) a centre is given, but proves nothing to 1e-9.
+POOR = 1e-6
 # A pose slower than this part of the motion's fastest is judged by that: a mechanism at rest has no own scale.
 SLOWEST = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class CentreVectors:
+    """The centres of a motion as `units`, unit vectors in own coordinates, by the couples of bodies.
+
+    `spread` is their magnification of errors, `lines` the two lines where other ones than the derivation's were taken.
+    """
+
+    motion: Motion
+    plan: Derivation
+    scale: Scale
+    places: Places
+    units: dict[Couple, Number]
+    spread: dict[Couple, Number]
+    lines: dict[Couple, tuple[Number, Number, Number]]
+
+    def trusted(self, c: Couple) -> Number:
+        """Return a centre's unit vectors by the couple of bodies, NaN where it is not known well."""
+        return np.where(self.spread[c] * POOR <= 1.0, self.units[c], np.nan)
 
 
 @dataclass(frozen=True)
@@ -31,7 +51,7 @@ class Velocities:
     is magnified, relative to the fastest link.
     """
 
-    centres: Centres
+    centres: CentreVectors
     twists: Mapping[str, Number]
     conditioning: Mapping[str, Number]
     fastest: Number
@@ -71,7 +91,7 @@ class VelocityCheck:
         return float(np.mean([np.mean(~np.isnan(v)) for v in self.links.values()]))
 
 
-def velocities_of(centres: Centres) -> Velocities:
+def velocities_of(centres: CentreVectors) -> Velocities:
     """The velocities that follow from the drivers' rates by centres alone."""
     with np.errstate(all="ignore"):
         rates = Rates(centres.plan, centres.units, centres.spread)
@@ -95,13 +115,12 @@ def velocities_of(centres: Centres) -> Velocities:
     )
 
 
-def velocity_check(centres: Centres, motion: Motion, poor: float) -> VelocityCheck:
-    """A motion's angular and point velocities against those from centres, where conditioning is not below `poor`."""
-    found = centres.velocities
+def velocity_check(found: Velocities, motion: Motion) -> VelocityCheck:
+    """Compare a motion's angular and point velocities with those from centres, where conditioning is not below POOR."""
     shape = motion.shape
     regular = np.broadcast_to(motion.regular, (motion.inputs.designs, motion.inputs.poses)).reshape(shape)
     links, points = {}, {}
-    usable = {n: regular & (c.reshape(shape) >= poor) for n, c in found.conditioning.items()}
+    usable = {n: regular & (c.reshape(shape) >= POOR) for n, c in found.conditioning.items()}
     slowest = SLOWEST * float(np.max(found.fastest, where=np.all(list(usable.values()), axis=0).ravel(), initial=0.0))
     scale = np.maximum(found.fastest, slowest if slowest > 0.0 else 1.0).reshape(shape)
     with np.errstate(all="ignore"):
@@ -118,7 +137,7 @@ def velocity_check(centres: Centres, motion: Motion, poor: float) -> VelocityChe
     return VelocityCheck(links, points)
 
 
-def collinearity_of(centres: Centres) -> dict[tuple[str, str, str], Number]:
+def collinearity_of(centres: CentreVectors) -> dict[tuple[str, str, str], Number]:
     """For every three links, how far their three centres are from one line: the volume of their unit vectors.
 
     NaN where one of them is not known.

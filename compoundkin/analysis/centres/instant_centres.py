@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.centres.centre_velocities import (
+    CentreVectors,
     Velocities,
     VelocityCheck,
     collinearity_of,
@@ -18,9 +19,7 @@ from compoundkin.analysis.centres.centre_velocities import (
     velocity_check,
 )
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
-from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.derivation_steps import Step, crossing_text
-from compoundkin.analysis.centres.primary_centres import Places, Scale
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
@@ -30,8 +29,6 @@ from compoundkin.kinematics import Motion
 INFINITY = 1e13
 # Below this conditioning fewer than four digits of a centre are left: it is not given.
 NOTHING = 1e-12
-# Below this conditioning (rounding becomes 1e-10) a centre is given, but proves nothing to 1e-9.
-POOR = 1e-6
 
 
 class Status(IntEnum):
@@ -103,19 +100,8 @@ class Centre:
 
 
 @dataclass(frozen=True, eq=False)
-class Centres(Shows):
-    """All n (n - 1) / 2 instant centres of a motion: ``centres["crank", "bar"]``, either link first.
-
-    `units` are unit vectors in own coordinates and `spread` their magnification of errors, by the couples of bodies.
-    """
-
-    motion: Motion
-    plan: Derivation
-    scale: Scale
-    places: Places
-    units: dict[Couple, Number]
-    spread: dict[Couple, Number]
-    lines: dict[Couple, tuple[Number, Number, Number]]
+class Centres(CentreVectors, Shows):
+    """All n (n - 1) / 2 instant centres of a motion: ``centres["crank", "bar"]``, either link first."""
 
     def derivation(self) -> tuple[Step, ...]:
         """The steps in order: primary centres first, then each secondary one with the lines that give it.
@@ -167,15 +153,11 @@ class Centres(Shows):
         """
         motion = motion or self.motion
         motion._has(1)
-        return velocity_check(self, motion, POOR)
+        return velocity_check(self.velocities, motion)
 
     def collinearity(self) -> dict[tuple[str, str, str], Number]:
         """By three links, how far their three centres are from one line: 0 to 1, NaN where one is poor or unknown."""
         return collinearity_of(self)
-
-    def trusted(self, c: Couple) -> Number:
-        """A centre's unit vectors by the couple of bodies, NaN where it is not known well."""
-        return np.where(self.spread[c] * POOR <= 1.0, self.units[c], np.nan)
 
     @cached_property
     def _how(self) -> dict[Couple, str]:

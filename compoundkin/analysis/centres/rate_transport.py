@@ -7,17 +7,14 @@ random, each time it is used anew. Bounds would be useless here: along a chain o
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
+from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.derivation_steps import Bridge, Join, Move, Turn
 from compoundkin.analysis.centres.rate_sets import attach, pair_amplitudes, ring_amplitudes
 from compoundkin.base.series import Number
-
-if TYPE_CHECKING:
-    from compoundkin.analysis.centres.derivation import Derivation
 
 # Samples besides the exact one: that both underestimate an error tenfold is rarer than one in a thousand.
 SAMPLES = 2

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.centres import Centre, Centres, Step, instant_centres
+from compoundkin.analysis.centres.centre_velocities import POOR
 from compoundkin.analysis.centres.circle_diagram import diagram_of
 from compoundkin.analysis.centres.derivation import derive
-from compoundkin.analysis.centres.instant_centres import POOR
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.structure import Structure
 from compoundkin.view.report.digits import number

@@ -1,30 +1,37 @@
-"""Driving laws in mechanism files: a table with the kind of the law and what that law holds."""
+"""Laws, programs and profiles of cams in mechanism files: tables with their kind and what that kind holds."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.files.recovery import PROFILE, Recovery, Tagged
 from compoundkin.files.single_values import bad, described, wrong
-from compoundkin.model.fields import Key
-from compoundkin.model.laws import WRITTEN, Law
+from compoundkin.model import laws, profiles
+from compoundkin.model.fields import Key, Kind
+from compoundkin.model.laws import Law
 from compoundkin.model.laws.cam_laws import LAWS
-from compoundkin.model.laws.motion_programs import Segment
-
-if TYPE_CHECKING:
-    from compoundkin.files.recovery import Recovery
+from compoundkin.model.laws.motion_programs import Program, Segment
+from compoundkin.model.profiles import Profile
 
 KIND = "kind"
 # The law whose segments need not say how far they rise.
 DWELL = "dwell"
 RISING = tuple(name for name in LAWS if name != DWELL)
+# The spans of a cam's program are of its rotation.
+SEGMENT = tuple(replace(key, kind="turn") if key.kind == "span" else key for key in Segment.keys)
+# It is told what repeats by the cam.
+PROGRAM = (
+    Key("segments", "turned", "Its dwells, rises and falls over a full turn, one after another.", required=True),
+    Key("start", "coordinate", "The lift at its beginning.", default=0.0),
+)
 
 
 def law(log: Recovery, raw: Any, where: str, angle: bool | None) -> Law | None:
     """The law that a table says; None where it is broken, which is reported."""
-    return of_kind(log, "law", WRITTEN, raw, where, angle)
+    return of_kind(log, "law", laws.WRITTEN, raw, where, angle)
 
 
 def of_kind(
@@ -58,6 +65,29 @@ def segments(
     return tuple(segment for segment in found if segment is not None)
 
 
+def profile(log: Recovery, raw: Any, where: str, angle: bool | None) -> Profile:
+    """The profile that a table says; a disc where it is broken, which is reported.
+
+    Where the follower turns about a pivot, the rises of its program are angles.
+    """
+    found: Profile | None = of_kind(
+        log, "profile", profiles.WRITTEN, raw, where, isinstance(raw, dict) and "pivot" in raw
+    )
+    return PROFILE if found is None else found
+
+
+def program(log: Recovery, raw: Any, where: str, angle: bool | None) -> Program | None:
+    """A program over a turn of a cam: its segments alone, or a table that also says where it starts."""
+    table = raw if isinstance(raw, dict) else {"segments": raw}
+    found: Program | None = made(log, Program, table, where, angle, PROGRAM)
+    return found
+
+
+def turned(log: Recovery, raw: Any, where: str, angle: bool | None) -> tuple[Segment, ...]:
+    """The segments of a cam's program."""
+    return segments(log, raw, where, angle, SEGMENT)
+
+
 def made(
     log: Recovery, kind: type[Any], raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] | None = None
 ) -> Any:
@@ -77,3 +107,13 @@ def _placed(problem: Problem, where: str) -> Problem:
     """A problem of an object, "segment.over", at the place of its table."""
     _, dot, rest = problem.where.partition(".")
     return replace(problem, where=where + dot + rest)
+
+
+# What is read table by table, each with its own problems.
+TAGGED: dict[Kind, Tagged] = {
+    "law": law,
+    "segments": segments,
+    "profile": profile,
+    "program": program,
+    "turned": turned,
+}
