@@ -104,6 +104,13 @@ class Pose:
         known = self.theta is not None and inner.theta is not None
         return Pose(self.at(inner.z), self.u * inner.u, self.angle + inner.angle if known else None)
 
+    def trimmed(self, order: int) -> Pose:
+        """The pose to an order at most."""
+        if self.z.order <= order and self.u.order <= order:
+            return self
+        theta = None if self.theta is None else Series(self.theta.c[: order + 1])
+        return Pose(Series(self.z.c[: order + 1]), Series(self.u.c[: order + 1]), theta)
+
     def inverse(self) -> Pose:
         """The pose of the world as seen from the link."""
         back = self.u.conj()

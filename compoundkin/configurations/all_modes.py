@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.configurations.segment_run import count_turns
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.group_states import group_states, states_of
 from compoundkin.kinematics.groups.gear_train import TrainStep
 from compoundkin.kinematics.groups.steps import AffineStep, GeneralStep, Step
@@ -33,7 +33,7 @@ class Choices:
     """
 
     plan: Plan
-    run: Run
+    block: Block
     shape: tuple[int, int]
     modes: dict[int, tuple[str, ...]] = field(default_factory=dict)
     expected: dict[int, int] = field(default_factory=dict)
@@ -42,7 +42,8 @@ class Choices:
     @classmethod
     def of(cls, plan: Plan, given: Inputs) -> Choices:
         """All groups in solving order, at all designs and poses of the inputs."""
-        found = cls(plan, plan.start(given.ends, given.series(0), 0), (given.designs, given.poses))
+        shape = (given.designs, given.poses)
+        found = cls(plan, plan.start(given.ends, given.series(0), 0, shape), shape)
         for k, step in enumerate(plan.steps):
             found._take(k, step)
         return found
@@ -51,27 +52,33 @@ class Choices:
         if isinstance(step, GeneralStep):
             self._all_of(k, step)
         elif isinstance(step, AffineStep | TrainStep):
-            step.run(self.run)
+            step.run(self.block)
         elif step.modes == 1:
-            step.run(self.run, 1.0)
+            step.run(self.block, 1.0)
         else:
             self._limited(2)
             self.expected[k] = 2
-            step.run(self.run, self._along(np.array([1.0, -1.0])))
-            self.modes[k] = ("+", "-")
-        count_turns(self.plan, self.run, step.group.links, 0.0)
+            signs = self._along(np.array([1.0, -1.0]))
+            self._branch(k, ("+", "-"))
+            step.run(self.block, signs)
+        count_turns(self.plan, self.block, step.group.links, 0.0)
 
     def _all_of(self, k: int, step: GeneralStep) -> None:
-        found = group_states(step, self.run.setting, self.plan.size)
+        found = group_states(step, self.block, self.plan.size)
         self._limited(found.states.shape[-2])
         batch = (1,) * (len(self.modes) + 2 - (found.states.ndim - 2)) + found.states.shape[:-2]
         states = np.moveaxis(found.states.reshape(*batch, *found.states.shape[-2:]), -2, 0)
         if not len(states):
             states = np.full((1, *states.shape[1:]), np.nan)
-        step.run(self.run, states_of(step, states))
-        self.modes[k] = tuple(str(n + 1) for n in range(len(states)))
+        self._branch(k, tuple(str(n + 1) for n in range(len(states))))
+        step.run(self.block, states_of(step, states))
         self.expected[k] = found.expected
         self.certified[k] = found.certified
+
+    def _branch(self, k: int, names: tuple[str, ...]) -> None:
+        """Give the block an axis for the ways of a group."""
+        self.modes[k] = names
+        self.block.shape = (len(names), *self.block.shape)
 
     def _limited(self, more: int) -> None:
         count = more * prod(len(modes) for modes in self.modes.values())
@@ -100,14 +107,14 @@ class Choices:
     @property
     def real(self) -> Number:
         """Where each configuration can be assembled, (configurations, designs, poses)."""
-        closed = closed_redundant(self.plan, self.run)
-        return self.full((np.asarray(self.run.failed) == 0) & closed)
+        closed = closed_redundant(self.plan, self.block)
+        return self.full((np.asarray(self.block.failed) == 0) & closed)
 
 
-def closed_redundant(plan: Plan, run: Run) -> Number:
+def closed_redundant(plan: Plan, block: Block) -> Number:
     """Where the pairs that are left out as redundant are closed: not all configurations of the others close them."""
     pairs = plan.structure.redundant
-    return openings(pairs, run) <= (CLOSED * plan.size) ** 2 if pairs else True
+    return openings(pairs, block) <= (CLOSED * plan.size) ** 2 if pairs else True
 
 
 def first_values(values: Mapping[str, Number], at: Sequence[int]) -> dict[str, float]:

@@ -209,8 +209,8 @@ def _with_redundant(sweep: Sweep, strands: Strands) -> Strands:
     if not sweep.plan.structure.redundant or not strands.rows:
         return strands
     rows = np.arange(strands.rows)
-    run = sweep.run(strands, rows, strands.at(rows, np.array(INSIDE)))
-    closed = np.broadcast_to(closed_redundant(sweep.plan, run), (len(rows), len(INSIDE)))
+    block = sweep.run(strands, rows, strands.at(rows, np.array(INSIDE)))
+    closed = np.broadcast_to(closed_redundant(sweep.plan, block), (len(rows), len(INSIDE)))
     return strands.kept(closed.all(axis=1))
 
 

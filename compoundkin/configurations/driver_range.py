@@ -89,17 +89,17 @@ def _geared(sweep: Sweep, s: Number, more: float) -> Number:
 
     Links that groups solve have turned by `more` than their orientations show.
     """
-    run, found = sweep.start(s[None]), list[Number]()
+    block, found = sweep.start(s[None]), list[Number]()
     for step in sweep.plan.steps:
         if isinstance(step, GeneralStep):
             break
         if isinstance(step, AffineStep | TrainStep):
-            step.run(run)
-            poses = [run.world[link] for link in step.group.links]
+            step.run(block)
+            poses = [block.world[link] for link in step.group.links]
             found += [np.broadcast_to(value, (1, len(s)))[0] for p in poses for value in (p.z.c[0], p.u.c[0])]
         else:
-            step.run(run, 1.0, edge_root)
-            count_turns(sweep.plan, run, step.group.links, more)
+            step.run(block, 1.0, edge_root)
+            count_turns(sweep.plan, block, step.group.links, more)
     return np.array(found).reshape(-1, len(s))
 
 

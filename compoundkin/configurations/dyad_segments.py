@@ -75,11 +75,11 @@ class _Margins:
         return self._at(rows, self.strands.at(rows, phi[:, None]), None)[:, 0]
 
     def _at(self, rows: Number, s: Number, sides: Number | None) -> Number:
-        run = self.sweep.run(self.strands, rows, s, sides=sides, upto=self.k + 1)
-        margin = run.margins.get(self.k)
+        block = self.sweep.run(self.strands, rows, s, sides=sides, upto=self.k + 1)
+        margin = block.margins.get(self.k)
         if margin is None:
             # a group that tells no margin: whether it has a pose
-            margin = np.where(np.isfinite(run.world[self.sweep.plan.steps[self.k].group.links[0]].z.c[0]), 1.0, -1.0)
+            margin = np.where(np.isfinite(block.world[self.sweep.plan.steps[self.k].group.links[0]].z.c[0]), 1.0, -1.0)
         return np.broadcast_to(np.where(np.isnan(margin), -1.0, margin), s.shape)
 
     def at_ends(self) -> Number:

@@ -75,21 +75,21 @@ class AllConfigurations(Shows):
         if name not in carriers:
             raise UnknownName(Problem(name, "there is no such point", nearest(name, list(carriers))))
         link = carriers[name][0]
-        where = self.choices.run.world[link].at(self._dimension(link, name)).c[0]
+        where = self.choices.block.world[link].at(self._dimension(link, name)).c[0]
         found: Vectors = np.where(self.real, self._shaped(self.choices.full(where)[self.kept]), np.nan).view(Vectors)
         return found
 
     def angle(self, link: str) -> Number:
         """The angle of a link, radians between -pi and pi, (..., m)."""
         self.structure.mechanism.link(link)
-        angle = np.angle(self.choices.run.world[link].u.c[0])
+        angle = np.angle(self.choices.block.world[link].u.c[0])
         return np.where(self.real, self._shaped(self.choices.full(angle)[self.kept]), np.nan)
 
     def margin(self, group: int) -> Number:
         """How far a group with signs is from its limit position, a squared sine, (..., m)."""
-        if group not in self.choices.run.margins:
+        if group not in self.choices.block.margins:
             raise UnknownName(Problem(f"group {group}", "it tells no margin"))
-        return self._shaped(self.choices.full(self.choices.run.margins[group])[self.kept])
+        return self._shaped(self.choices.full(self.choices.block.margins[group])[self.kept])
 
     def pick(self, which: int | str, at: tuple[int, ...] | int = 0) -> Configuration:
         """One configuration, by its index or name, at an index of the driver values.
@@ -116,11 +116,11 @@ class AllConfigurations(Shows):
         def one(array: Number) -> Number:
             return self.choices.full(array)[self.kept[k], design, pose]
 
-        world = self.choices.run.world
+        world = self.choices.block.world
         poses = {
             name: Pose(constant(complex(one(p.z.c[0]))), constant(complex(one(p.u.c[0])))) for name, p in world.items()
         }
-        margins = {group: float(one(margin)) for group, margin in self.choices.run.margins.items()}
+        margins = {group: float(one(margin)) for group, margin in self.choices.block.margins.items()}
         values = first_values({name: v[0] for name, v in self.inputs.drives.items()}, (design, pose))
         modes = self.choices.names_of()[int(self.kept[k])]
         return Configuration(self.structure, values, poses, modes, margins, dimensions_at(self.structure, design, pose))

@@ -112,11 +112,11 @@ def starting_configuration(plan: Plan, values: Mapping[str, float], design: int)
         tracker = Tracker(plan, given, signs_of(plan), {})
     except NotAssembled:
         return None
-    run = tracker.run(tracker.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))
-    if np.broadcast_to(run.failed, (given.designs, given.poses))[design, 0]:
+    block = tracker.run(tracker.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))
+    if np.broadcast_to(block.failed, (given.designs, given.poses))[design, 0]:
         return None
 
-    return _configuration(plan.structure, values, run.world, (given.designs, given.poses), (design, 0))
+    return _configuration(plan.structure, values, block.world, (given.designs, given.poses), (design, 0))
 
 
 def first_configuration(motion: Motion, design: int) -> Configuration | None:

@@ -44,8 +44,8 @@ class Web:
         self.equations = equations
         self.slices = np.linspace(0.0, np.pi, strips + 1)
         shape = (equations.strands.rows, strips + 1)
-        setting = equations.settings(self.slices)
-        states = group_states(equations.step, setting, equations.sweep.plan.size).states
+        block = equations.blocks(self.slices)
+        states = group_states(equations.step, block, equations.sweep.plan.size).states
         states = np.broadcast_to(states, (*shape, *states.shape[-2:]))
         self.known = {
             (row, j): [self._scaled(state, j) for state in states[row, j] if np.isfinite(state).all()]

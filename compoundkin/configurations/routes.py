@@ -111,8 +111,8 @@ def _leg(placing: Placing, leg: Leg, count: int) -> tuple[Number, dict[str, tupl
     sides = np.where(phi == 0.0, 0, np.where(phi == np.pi, 1, NONE))
     s = placing.strands.at(rows, phi[None])
     with np.errstate(all="ignore"):
-        run = placing.sweep.run(placing.strands, rows, s, sides=sides)
-    found = {name: (_row(pose.z.c[0], count), _row(pose.u.c[0], count)) for name, pose in run.world.items()}
+        block = placing.sweep.run(placing.strands, rows, s, sides=sides)
+    found = {name: (_row(pose.z.c[0], count), _row(pose.u.c[0], count)) for name, pose in block.world.items()}
     return s[0], found
 
 

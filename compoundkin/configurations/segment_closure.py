@@ -13,7 +13,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.configurations.segment_run import Sweep
 from compoundkin.configurations.segments import NONE, Strands
-from compoundkin.kinematics.groups.general import Setting
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.steps import GeneralStep
 from compoundkin.model.pairs.contract import Poses
 
@@ -45,29 +45,29 @@ class Equations:
     def at(self, rows: Number, y: Number) -> tuple[Number, Number]:
         """The residuals (paths, 3 n) and their Jacobian (paths, 3 n, 3 n + 1), at states `y` of strands `rows`."""
         phi = np.clip(y[:, -1], BESIDE, np.pi - BESIDE)[:, None]
-        setting = self.setting(rows, phi, self.strands.rate(rows, phi))
-        found, by_angle, matrix = self._assembled(y, setting)
+        block = self.block(rows, phi, self.strands.rate(rows, phi))
+        found, by_angle, matrix = self._assembled(y, block)
         ends = phi[:, 0] != y[:, -1]
         if np.any(ends):
             sides = np.where(y[ends, -1] > 1.0, 1, 0)
             for side in (0, 1):
                 here = np.flatnonzero(ends)[sides == side]
                 if len(here):
-                    exact = self.setting(rows[here], y[here, -1:], None, np.array([side]))
+                    exact = self.block(rows[here], y[here, -1:], None, np.array([side]))
                     found[here] = self._assembled(y[here], exact)[0]
         return found, np.concatenate([matrix * (1.0 / self.weights), by_angle[..., None]], axis=-1)
 
-    def setting(self, rows: Number, phi: Number, rate: Number | None, sides: Number | None = None) -> Setting:
+    def block(self, rows: Number, phi: Number, rate: Number | None, sides: Number | None = None) -> Block:
         """What the group is attached to, at angles (rows, columns)."""
-        return self.sweep.run(self.strands, rows, self.strands.at(rows, phi), rate, sides, self.k).setting
+        return self.sweep.run(self.strands, rows, self.strands.at(rows, phi), rate, sides, self.k)
 
-    def settings(self, phi: Number) -> Setting:
+    def blocks(self, phi: Number) -> Block:
         """What it is attached to on all strands, at angles from one end to the other."""
         sides = np.full(len(phi), NONE)
         sides[0], sides[-1] = 0, 1
-        return self.setting(np.arange(self.strands.rows), phi[None], None, sides)
+        return self.block(np.arange(self.strands.rows), phi[None], None, sides)
 
-    def _assembled(self, y: Number, setting: Setting) -> tuple[Number, Number, Number]:
+    def _assembled(self, y: Number, block: Block) -> tuple[Number, Number, Number]:
         """Residuals, their derivatives by the angle, and by x, y, theta of the bodies."""
         solver = self.step.solver
         bodies = self.bodies(y)
@@ -75,17 +75,17 @@ class Equations:
         found, by_angle, matrix = np.zeros((count, n)), np.zeros((count, n)), np.zeros((count, n, n))
         top = 0
         for pair, members in zip(solver.pairs, solver.members, strict=True):
-            poses = tuple(_pose(member.link, member.body, bodies, setting) for member in members)
-            ends = setting.ends[pair.name]
+            poses = tuple(_pose(member.link, member.body, bodies, block) for member in members)
+            ends = block.ends[pair.name]
             for i, closure in enumerate(pair.closure(ends, poses)):
                 found[:, top + i] = _column(closure.c[0])
                 by_angle[:, top + i] = _column(closure.c[1]) if len(closure.c) > 1 else 0.0
             rows = pair.jacobian(ends, poses)[..., : pair.held, :]
             for side, member in enumerate(members):
                 if member.body is not None:
-                    block = rows[..., 3 * side : 3 * side + 3]
-                    block = np.broadcast_to(block, (count, 1, *block.shape[-2:]))[:, 0]
-                    about = _about(block, poses, side, bodies[member.body])
+                    part = rows[..., 3 * side : 3 * side + 3]
+                    part = np.broadcast_to(part, (count, 1, *part.shape[-2:]))[:, 0]
+                    about = _about(part, poses, side, bodies[member.body])
                     matrix[:, top : top + pair.held, 3 * member.body : 3 * member.body + 3] += about
             top += pair.held
         return found, by_angle, matrix
@@ -101,10 +101,10 @@ class Equations:
         return out
 
 
-def _pose(link: str, body: int | None, bodies: list[Pose], setting: Setting) -> Pose:
+def _pose(link: str, body: int | None, bodies: list[Pose], block: Block) -> Pose:
     if body is None:
-        return setting.world[link]
-    local = setting.local.get(link)
+        return block.world[link]
+    local = block.local.get(link)
     return bodies[body] if local is None else bodies[body].compose(local)
 
 
@@ -112,11 +112,11 @@ def _column(value: Number) -> Number:
     return value if np.ndim(value) == 0 else np.asarray(value)[:, 0]
 
 
-def _about(block: Number, poses: Poses, side: int, body: Pose) -> Number:
+def _about(part: Number, poses: Poses, side: int, body: Pose) -> Number:
     """Derivatives by a link's x, y, theta as derivatives by those of the body it is fixed in."""
     if poses[side] is body:
-        return block
-    arm = np.broadcast_to(poses[side].z.c[0] - body.z.c[0], (len(block), 1))
-    out = np.array(block)
+        return part
+    arm = np.broadcast_to(poses[side].z.c[0] - body.z.c[0], (len(part), 1))
+    out = np.array(part)
     out[..., 2] += out[..., 1] * arm.real - out[..., 0] * arm.imag
     return out

@@ -12,7 +12,7 @@ from compoundkin.configurations.dyad_segments import TOUCHING
 from compoundkin.configurations.enumeration import dimensions_at
 from compoundkin.configurations.segment_run import Sweep
 from compoundkin.configurations.segments import NONE, Strands
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import SIGNS, Configuration
 from compoundkin.kinematics.group_states import apart, group_states
 from compoundkin.kinematics.groups.steps import GeneralStep
@@ -26,7 +26,7 @@ class Placing:
     strands: Strands
     design: int
 
-    def run(self, rows: Number, s: Number, sides: Number | None = None) -> Run:
+    def run(self, rows: Number, s: Number, sides: Number | None = None) -> Block:
         """Strands at one driver value each, which is their low (0) or high (1) end where `sides` say so."""
         return self.sweep.run(self.strands, rows, s[:, None], sides=None if sides is None else sides[:, None])
 
@@ -35,20 +35,20 @@ class Placing:
         if not len(rows):
             return []
         sides = np.full(len(rows), NONE) if sides is None else sides
-        run = self.run(rows, s, sides)
-        modes = self._modes(run, rows, s, sides)
+        block = self.run(rows, s, sides)
+        modes = self._modes(block, rows, s, sides)
         structure = self.sweep.plan.structure
         dimensions = dimensions_at(structure, self.design, 0)
         found = []
         for i, value in enumerate(s.tolist()):
-            poses = {name: Pose(_one(p.z.c[0], i), _one(p.u.c[0], i)) for name, p in run.world.items()}
-            margins = {k: float(_column(margin, len(s))[i]) for k, margin in run.margins.items()}
+            poses = {name: Pose(_one(p.z.c[0], i), _one(p.u.c[0], i)) for name, p in block.world.items()}
+            margins = {k: float(_column(margin, len(s))[i]) for k, margin in block.margins.items()}
             values = {**self.sweep.fixed, self.sweep.driver: value}
             ordered = {drive.name: values[drive.name] for drive in structure.mechanism.drives}
             found.append(Configuration(structure, ordered, poses, modes[i], margins, dimensions))
         return found
 
-    def _modes(self, run: Run, rows: Number, s: Number, sides: Number) -> list[dict[int, str]]:
+    def _modes(self, block: Block, rows: Number, s: Number, sides: Number) -> list[dict[int, str]]:
         """The signs and numbers of the groups with several configurations."""
         found: list[dict[int, str]] = [{} for _ in rows]
         for k, step in enumerate(self.sweep.plan.steps):
@@ -57,7 +57,7 @@ class Placing:
             elif k in self.strands.signs and step.modes == 2:
                 sign = self.strands.sign(k, rows, sides[:, None])[:, 0]
                 # a second group may be at its limit there, as in a pantograph that is stretched
-                at_limit = np.abs(_column(run.margins.get(k, 1.0), len(rows))) < TOUCHING
+                at_limit = np.abs(_column(block.margins.get(k, 1.0), len(rows))) < TOUCHING
                 texts = [SIGNS[int(one)] for one in np.where(at_limit & (sides != NONE), 0.0, sign)]
             else:
                 continue
@@ -68,8 +68,8 @@ class Placing:
     def _numbers(self, k: int, step: GeneralStep, rows: Number, s: Number, sides: Number) -> list[str]:
         """The number of a group's configuration among all that are real there."""
         size = self.sweep.plan.size
-        setting = self.sweep.run(self.strands, rows, s[:, None], sides=sides[:, None], upto=k).setting
-        every = group_states(step, setting, size).states
+        block = self.sweep.run(self.strands, rows, s[:, None], sides=sides[:, None], upto=k)
+        every = group_states(step, block, size).states
         every = np.broadcast_to(every, (len(rows), 1, *every.shape[-2:]))[:, 0]
         own = self.strands.seeds(k, rows, s[:, None])
         gaps = np.nan_to_num(apart(every, own, size), nan=np.inf)
@@ -87,11 +87,11 @@ def _column(value: Number, rows: int) -> Number:
     return np.broadcast_to(value, (rows, 1))[:, 0]
 
 
-def gap_between(one: Configuration, run: Run, rows: int, size: float) -> Number:
+def gap_between(one: Configuration, block: Block, rows: int, size: float) -> Number:
     """How far each of `rows` strands is from a configuration: parts of the size, radians; the farthest link."""
     found = np.zeros(rows)
     for name, pose in one.poses.items():
-        z = _column(run.world[name].z.c[0] - pose.z.c[0], rows)
-        u = _column(run.world[name].u.c[0] - pose.u.c[0], rows)
+        z = _column(block.world[name].z.c[0] - pose.z.c[0], rows)
+        u = _column(block.world[name].u.c[0] - pose.u.c[0], rows)
         found = np.maximum(found, np.maximum(np.abs(z) / size, np.abs(u)))
     return found

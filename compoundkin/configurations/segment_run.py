@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.configurations.segments import Strands
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.group_states import states_of
 from compoundkin.kinematics.groups.steps import DyadStep, FollowerStep, GeneralStep
 from compoundkin.kinematics.solving_order import Plan
@@ -28,11 +28,12 @@ class Sweep:
     fixed: Mapping[str, float]
     driver: str
 
-    def start(self, s: Number, rate: Number | None = None) -> Run:
+    def start(self, s: Number, rate: Number | None = None) -> Block:
         """The frame and the driven links at driver values, with their derivatives by whatever `rate` is taken by."""
         moving = constant(s) if rate is None else Series((s, rate))
         drives = {name: constant(value) for name, value in self.fixed.items()}
-        return self.plan.start(self.ends, {**drives, self.driver: moving}, 0 if rate is None else 1)
+        drives[self.driver] = moving
+        return self.plan.start(self.ends, drives, 0 if rate is None else 1, np.shape(s))
 
     def run(
         self,
@@ -42,35 +43,35 @@ class Sweep:
         rate: Number | None = None,
         sides: Number | None = None,
         upto: int | None = None,
-    ) -> Run:
+    ) -> Block:
         """Strands `rows` at driver values `s` (rows, columns), up to a group; `sides` says which columns are ends."""
-        run = self.start(s, rate)
+        block = self.start(s, rate)
         for k, step in enumerate(self.plan.steps[:upto]):
             if isinstance(step, DyadStep | FollowerStep):
-                step.run(run, strands.sign(k, rows, sides), edge_root)
+                step.run(block, strands.sign(k, rows, sides), edge_root)
             elif isinstance(step, GeneralStep):
-                self._general(run, step, strands.seeds(k, rows, s))
+                self._general(block, step, strands.seeds(k, rows, s))
             else:
-                step.run(run)
-            count_turns(self.plan, run, step.group.links, 0.0)
-        return run
+                step.run(block)
+            count_turns(self.plan, block, step.group.links, 0.0)
+        return block
 
-    def _general(self, run: Run, step: GeneralStep, seeds: Number) -> None:
+    def _general(self, block: Block, step: GeneralStep, seeds: Number) -> None:
         """As the step does; but a seed at a limit position, from which Newton cannot converge, is taken as it is."""
         known = states_of(step, seeds)
-        found = step.solver.newton(known, run.setting)
+        found = step.solver.newton(known, block)
         state = np.where((found.closed & (found.moved < ASTRAY))[..., None], found.state, known)
-        for body, pose in zip(step.group.bodies, step.solver.series(state, run.setting, run.order), strict=True):
-            run.publish(body, pose)
+        for body, pose in zip(step.group.bodies, step.solver.series(state, block, block.order), strict=True):
+            block.publish(body, pose)
 
 
-def count_turns(plan: Plan, run: Run, links: Iterable[str], more: float) -> None:
+def count_turns(plan: Plan, block: Block, links: Iterable[str], more: float) -> None:
     """Give links whose turns some pair asks for the angle that is nearest to the drawn one, or to 0, and `more`."""
     for link in links:
-        pose = run.world[link]
+        pose = block.world[link]
         if link in plan.turning and pose.theta is None:
             drawn = plan.structure.mechanism.geometry.drawn.get(link)
-            run.world[link] = pose.counted((0.0 if drawn is None else drawn.angle.c[0]) + more)
+            block.world[link] = pose.counted((0.0 if drawn is None else drawn.angle.c[0]) + more)
 
 
 def edge_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:

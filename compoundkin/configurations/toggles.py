@@ -70,7 +70,7 @@ def _of_link(
 def _rate(placing: Placing, pair: Pair, rows: Number, phi: Number) -> Number:
     """The derivative of a pair's coordinate by the angle along strands, (rows, columns)."""
     strands = placing.strands
-    run = placing.sweep.run(strands, rows, strands.at(rows, phi), strands.rate(rows, phi))
-    poses = tuple(run.world[name] for name in pair.members)
-    coordinate = pair.coordinate(run.setting.ends[pair.name], poses)
+    block = placing.sweep.run(strands, rows, strands.at(rows, phi), strands.rate(rows, phi))
+    poses = tuple(block.world[name] for name in pair.members)
+    coordinate = pair.coordinate(block.ends[pair.name], poses)
     return np.broadcast_to(coordinate.c[1] if len(coordinate.c) > 1 else 0.0, phi.shape)

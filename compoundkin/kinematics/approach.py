@@ -79,11 +79,11 @@ def _counted_on(plan: Plan, way: Inputs, rounds: Mapping[str, Number], turns: Ma
 def _turns_at(plan: Plan, drawn: Inputs) -> Iterator[tuple[str, Number]]:
     """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
     poses = plan.structure.mechanism.geometry.drawn
-    start = plan.start(drawn.ends, drawn.series(0), 0)
+    start = plan.start(drawn.ends, drawn.series(0), 0, (drawn.designs, 1))
     for body in plan.bodies:
         base = body.links[0]
         for link in (link for link in body.links[1:] if link in poses and base in poses and link in plan.turning):
-            pose = start.world.get(link) or start.setting.local[link]
+            pose = start.world.get(link) or start.local[link]
             gap = column(poses[base]).angle.c[0] + pose.angle.c[0] - column(poses[link]).angle.c[0]
             yield link, np.round(gap / (2.0 * np.pi))
 

@@ -1,53 +1,69 @@
-"""A block of poses while it is solved, and how a motion is cut into blocks."""
+"""A block: some designs x some poses while they are solved; how a motion is cut into blocks and put together again."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import factorial
 
 import numpy as np
 
-from compoundkin.base.poses import Pose
+from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.groups.general import Setting, trimmed
+from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Body
 
 
 @dataclass
-class Run:
-    """A block of poses while it is solved: what is known so far, and the first group that did not close.
+class Block:
+    """Some designs x some poses while they are solved: what is known so far, margins and the first failure.
 
-    `failed` holds that group's index plus one, 0 where all is closed so far.
+    `ends[pair]` are the pair's sides on its links, `world[link]` the known poses, `local[link]` the pose of a link in
+    its composite body (absent for the body's own base); all have derivatives to `order`. `shape` is designs x poses,
+    before them an axis for each group of which several configurations are tried side by side: what is known may be
+    smaller, where it does not change. `failed` is the index of the first group that does not close plus one, else 0;
+    `margins` are by the groups' indices.
     """
 
-    setting: Setting
+    shape: tuple[int, ...]
+    ends: Mapping[str, Ends]
     world: dict[str, Pose]
+    local: Mapping[str, Pose]
     order: int
-    drives: Mapping[str, Series]
     failed: Number = 0
     margins: dict[int, Number] = field(default_factory=dict)
 
-    def copy(self) -> Run:
-        """The same block, to try a group on."""
-        world = dict(self.world)
-        setting = Setting(self.setting.ends, world, self.setting.local)
-        return Run(setting, world, self.order, self.drives, self.failed)
+    def copy(self) -> Block:
+        """Return the same block, to try a group on."""
+        return replace(self, world=dict(self.world), margins={})
 
-    def leading(self, names: Iterable[str]) -> Run:
-        """The same block without derivatives, to try a group on: of what is known the named links only."""
-        world = {name: trimmed(self.world[name], 0) for name in names if name in self.world}
-        local = {name: trimmed(pose, 0) for name, pose in self.setting.local.items()}
-        return Run(Setting(self.setting.ends, world, local), world, 0, self.drives, self.failed)
+    def leading(self, names: Iterable[str] | None = None) -> Block:
+        """Return the same block without derivatives; of what is known the named links only, or all."""
+        names = self.world if names is None else names
+        world = {name: self.world[name].trimmed(0) for name in names if name in self.world}
+        local = {name: pose.trimmed(0) for name, pose in self.local.items()}
+        return replace(self, world=world, local=local, order=0, margins={})
 
     def links_of(self, body: Body, pose: Pose) -> dict[str, Pose]:
-        """The poses of a body's links from that of its base."""
-        local = self.setting.local
-        return {link: pose.compose(local[link]) if link in local else pose for link in body.links}
+        """Return the poses of a body's links from that of its base."""
+        return {link: pose.compose(self.local[link]) if link in self.local else pose for link in body.links}
 
     def publish(self, body: Body, pose: Pose) -> None:
         """Add the links of a body whose pose is found to what is known."""
         self.world.update(self.links_of(body, pose))
+
+    def in_body(self, link: str, end: End) -> End:
+        """Return a link's side of a pair in the frame of its body's base link."""
+        return self.local[link].carry(end) if link in self.local else end
+
+    def fail(self, good: Number, index: int) -> None:
+        """Note that a group does not close where `good` is false, unless one before it did not."""
+        self.failed = np.where(good | (self.failed != 0), self.failed, index + 1)
+
+    def extent(self, links: Iterable[str]) -> tuple[int, ...]:
+        """Return the shape over which some known links vary: one in the axes of groups that do not move them."""
+        values = (np.shape(c[0]) for name in links for c in (self.world[name].z.c, self.world[name].u.c))
+        return np.broadcast_shapes((1,) * (len(self.shape) - 2) + self.shape[-2:], *values)
 
 
 def rates(values: tuple[Number, ...], order: int) -> Series:
@@ -80,3 +96,68 @@ def blocks(designs: int, poses: int, size: int) -> Iterator[tuple[slice, slice]]
     for d in range(0, designs, high):
         for m in range(0, poses, wide):
             yield slice(d, min(d + high, designs)), slice(m, min(m + wide, poses))
+
+
+class JoinedBlocks:
+    """The arrays to which blocks are added; complete when all blocks have been.
+
+    A coefficient that is a number in every block stays one, and one that does not change with the design
+    or along the motion is kept at its own size.
+
+    >>> found = JoinedBlocks(1, 4)
+    >>> for m in (slice(0, 2), slice(2, 4)):
+    ...     world = {"slider": Pose(Series((np.array([[0j, 1j]]), 1j)), FIXED.u)}
+    ...     found.take(Block((1, 2), {}, world, {}, 1), slice(0, 1), m)
+    >>> found.poses()["slider"].z.c
+    (array([[0.+0.j, 0.+1.j, 0.+0.j, 0.+1.j]]), 1j)
+    """
+
+    def __init__(self, designs: int, poses: int) -> None:
+        self.shape = (designs, poses)
+        self.failed = np.empty(self.shape, dtype=np.int32)
+        self._fixed: dict[str, bool] = {}
+        # by link and z or u: the coefficients over all blocks
+        self._found: dict[tuple[str, str], list[Number]] = {}
+
+    def take(self, block: Block, designs: slice, poses: slice) -> None:
+        """Add a block."""
+        self.failed[designs, poses] = block.failed
+        for link, pose in block.world.items():
+            self._fixed[link] = pose is FIXED
+            sides = (("z", pose.z), ("u", pose.u), ("theta", pose.theta))
+            for name, series in ((name, series) for name, series in sides if series is not None):
+                found = self._found.setdefault((link, name), [None] * len(series.c))
+                for k, c in enumerate(series.c):
+                    found[k] = self._with(found[k], c, designs, poses)
+
+    def poses(self) -> dict[str, Pose]:
+        """The links' poses over all blocks."""
+
+        def gathered(link: str, name: str) -> Series:
+            return Series(tuple(self._found[link, name]))
+
+        def angle(link: str) -> Series | None:
+            return gathered(link, "theta") if (link, "theta") in self._found else None
+
+        return {
+            link: FIXED if fixed else Pose(gathered(link, "z"), gathered(link, "u"), angle(link))
+            for link, fixed in self._fixed.items()
+        }
+
+    def _with(self, whole: Number, part: Number, designs: slice, poses: slice) -> Number:
+        """A coefficient with the part of a block put in; None where there is none yet."""
+        if np.ndim(part) == 0 and (whole is None or np.ndim(whole) == 0):
+            return part
+        shape = np.broadcast_shapes(np.shape(whole), self._needed(np.shape(part), designs, poses))
+        if whole is None:
+            whole = np.empty(shape, dtype=np.result_type(part))
+        elif np.shape(whole) != shape:
+            whole = np.array(np.broadcast_to(whole, shape), dtype=np.result_type(part, whole))
+        rows, columns = whole.shape
+        whole[designs if rows > 1 else slice(None), poses if columns > 1 else slice(None)] = part
+        return whole
+
+    def _needed(self, part: tuple[int, ...], designs: slice, poses: slice) -> tuple[int, ...]:
+        """The shape over all blocks; a block of one row does not show that all rows are equal."""
+        block = (designs.stop - designs.start, poses.stop - poses.start)
+        return tuple(n if p > 1 or b == 1 else 1 for n, p, b in zip(self.shape, part, block, strict=bool(part)))

@@ -129,8 +129,8 @@ def rates_at(given: Inputs, tracker: Tracker, order: int) -> tuple[Number, Numbe
     part = given.pick(designs, index.astype(float))
     after = index[:, None] + _direction(given, designs, index)[:, None] * 2.0 * CLOSE
     # each double root in a row costs two orders
-    run = tracker.run(part, order + 2 * len(doubles), after, designs[:, None], doubles=doubles)
-    return designs, index, run.world
+    block = tracker.run(part, order + 2 * len(doubles), after, designs[:, None], doubles=doubles)
+    return designs, index, block.world
 
 
 def _direction(given: Inputs, designs: Number, index: Number) -> Number:

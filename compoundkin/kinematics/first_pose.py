@@ -13,7 +13,7 @@ from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import column, first_of
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.group_states import every_state, states_of
 from compoundkin.kinematics.groups.steps import GeneralStep, Step
 from compoundkin.kinematics.solving_order import Plan
@@ -41,18 +41,18 @@ def shown(plan: Plan, step: Step, sketch: Mapping[str, Number]) -> Letters:
     return [(link, letter) for link in step.group.links for letter in links[link].points if letter in sketch]
 
 
-def distance(plan: Plan, letters: Letters, sketch: Mapping[str, Number], run: Run) -> Number:
+def distance(plan: Plan, letters: Letters, sketch: Mapping[str, Number], block: Block) -> Number:
     """The summed squared distances of a group's points from where they are drawn."""
     points = plan.structure.mechanism.geometry.points
     total: Number = 0.0
     for link, letter in letters:
-        gap = run.world[link].at(first_of(points[link][letter])).c[0] - first_of(sketch[letter])
+        gap = block.world[link].at(first_of(points[link][letter])).c[0] - first_of(sketch[letter])
         total = total + np.abs(gap) ** 2
     return total
 
 
 def first_state(
-    plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Number], designs: int, number: int | None = None
+    plan: Plan, step: GeneralStep, block: Block, sketch: Mapping[str, Number], designs: int, number: int | None = None
 ) -> tuple[Number, str]:
     """A closed state (designs, 1, width) of a group at a single pose, and what chose it; NaN for designs without.
 
@@ -60,17 +60,17 @@ def first_state(
     design has any.
     """
     if number is not None:
-        return _numbered(plan, step, run, designs, number), "number"
+        return _numbered(plan, step, block, designs, number), "number"
     letters = shown(plan, step, sketch)
     best = np.full((designs, 1, step.solver.width), np.nan)
     least = np.full((designs, 1), np.inf)
-    guesses = _guesses(plan, step, run, sketch)
+    guesses = _guesses(plan, step, block, sketch)
     complete = all(guesses[k] is not None for k in step.solver.kept)
-    batches = _batches(plan, step, run, guesses, designs)
+    batches = _batches(plan, step, block, guesses, designs)
     count = 0
     for batch in batches:
-        found = step.solver.newton(batch, run.setting, STEPS, LONGEST)
-        trial = run.copy()
+        found = step.solver.newton(batch, block, STEPS, LONGEST)
+        trial = block.copy()
         step.run(trial, found.state)
         order = count + np.arange(len(batch), dtype=float)[:, None]
         count += 1 if designs > 1 else len(batch)
@@ -89,7 +89,7 @@ def first_state(
     return best, "drawing" if letters else "first found"
 
 
-def _batches(plan: Plan, step: GeneralStep, run: Run, guesses: list[Pose | None], designs: int) -> Iterator[Number]:
+def _batches(plan: Plan, step: GeneralStep, block: Block, guesses: list[Pose | None], designs: int) -> Iterator[Number]:
     """What is drawn, where it is drawn completely; then all configurations, or random starts where they are not known.
 
     For a single design all at once, else one by one.
@@ -98,7 +98,7 @@ def _batches(plan: Plan, step: GeneralStep, run: Run, guesses: list[Pose | None]
     complete = all(guesses[k] is not None for k in step.solver.kept)
     if complete:
         yield next(starts)
-    every = _every(plan, step, run, designs)
+    every = _every(plan, step, block, designs)
     if every is not None:
         yield from [every[:, 0]] if designs == 1 else every
         return
@@ -110,9 +110,9 @@ def _batches(plan: Plan, step: GeneralStep, run: Run, guesses: list[Pose | None]
         yield from starts
 
 
-def _every(plan: Plan, step: GeneralStep, run: Run, designs: int) -> Number | None:
+def _every(plan: Plan, step: GeneralStep, block: Block, designs: int) -> Number | None:
     """All real configurations (m, designs, 1, width), NaN where a design has fewer; None where they are not known."""
-    found = every_state(step, run.setting, plan.size, MOST_BODIES)
+    found = every_state(step, block, plan.size, MOST_BODIES)
     if found is None or not found.states.shape[-2]:
         return None
     states = np.moveaxis(states_of(step, found.states), -2, 0)
@@ -120,8 +120,8 @@ def _every(plan: Plan, step: GeneralStep, run: Run, designs: int) -> Number | No
     return np.broadcast_to(placed, (len(states), designs, 1, step.solver.width))
 
 
-def _numbered(plan: Plan, step: GeneralStep, run: Run, designs: int, number: int) -> Number:
-    every = _every(plan, step, run, designs)
+def _numbered(plan: Plan, step: GeneralStep, block: Block, designs: int, number: int) -> Number:
+    every = _every(plan, step, block, designs)
     links = ", ".join(step.group.links)
     if every is None:
         what = "its configurations are not known one by one, so that none has a number"
@@ -132,10 +132,10 @@ def _numbered(plan: Plan, step: GeneralStep, run: Run, designs: int, number: int
     return every[number - 1]
 
 
-def _guesses(plan: Plan, step: GeneralStep, run: Run, sketch: Mapping[str, Number]) -> list[Pose | None]:
+def _guesses(plan: Plan, step: GeneralStep, block: Block, sketch: Mapping[str, Number]) -> list[Pose | None]:
     """The poses of the group's bodies as far as drawn points and points known already show them."""
     points = plan.structure.mechanism.geometry.points
-    seen = {k: run.world[n].at(first_of(p)).c[0] for n in step.group.uses for k, p in points[n].items()}
+    seen = {k: block.world[n].at(first_of(p)).c[0] for n in step.group.uses for k, p in points[n].items()}
     seen.update({k: first_of(p) for k, p in sketch.items()})
     drawn = plan.structure.mechanism.geometry.drawn
     found = []

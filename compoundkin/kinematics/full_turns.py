@@ -61,8 +61,8 @@ def _angles(tracker: Tracker, k: int, link: str, way: Inputs, unit: float, lead:
     found = np.empty((way.designs, way.poses))
     for d, m in blocks(way.designs, way.poses, BLOCK):
         s, designs = places(d, m)
-        run = tracker.run(way.cut(d, m), 0, s * unit, designs, k + 1, lead)
-        found[d, m] = np.angle(run.world[link].u.c[0])
+        block = tracker.run(way.cut(d, m), 0, s * unit, designs, k + 1, lead)
+        found[d, m] = np.angle(block.world[link].u.c[0])
     return found
 
 

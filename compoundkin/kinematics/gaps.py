@@ -108,9 +108,10 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[s
 
 def _reasons(motion: Motion, designs: Number, poses: Number) -> list[str]:
     part = motion.inputs.pick(designs, poses.astype(float))
-    run = motion.tracker.run(part, 0, poses.astype(float)[:, None], designs[:, None])
+    block = motion.tracker.run(part, 0, poses.astype(float)[:, None], designs[:, None])
     steps = motion.tracker.plan.steps
-    return [steps[motion.failed[d, m] - 1].explain(run, k) for k, (d, m) in enumerate(zip(designs, poses, strict=True))]
+    failed = motion.failed[designs, poses]
+    return [steps[index - 1].explain(block, k) for k, index in enumerate(failed.tolist())]
 
 
 def _at(values: Mapping[str, Number], k: int) -> dict[str, float]:

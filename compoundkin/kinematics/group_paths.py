@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.kinematics.groups.general import General, Setting
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.groups.general import General
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.sampling import CLOSE, pace
 
@@ -115,7 +116,7 @@ class _March:
     def go(self, stops: Number) -> _March:
         """Step from stop to stop; stops that lie within one stride of each other are passed over."""
         here = float(stops[0])
-        rates, side = self._rates(self.state, self._setting(here))
+        rates, side = self._rates(self.state, self._block(here))
         self._note(here, rates[0])
         self.reached = np.where(self.alive, here, np.nan)
         goal = 1
@@ -148,15 +149,14 @@ class _March:
         return min(((most / c) ** (1.0 / k) for k, (most, c) in enumerate(zip(MOVES, sizes, strict=True), 1) if c > 0),
                    default=np.inf)  # fmt: skip
 
-    def _setting(self, s: float) -> Setting:
+    def _block(self, s: float) -> Block:
         place = np.array([s])
         designs = np.arange(len(self.state))[:, None]
-        run = self.tracker.run(self.along(place), len(MOVES), place[None], designs, self.k, self.lead)
-        return run.setting
+        return self.tracker.run(self.along(place), len(MOVES), place[None], designs, self.k, self.lead)
 
-    def _rates(self, state: Number, setting: Setting) -> tuple[list[Number], Number]:
+    def _rates(self, state: Number, block: Block) -> tuple[list[Number], Number]:
         """The state's coefficients by s, and on which side of a singularity the configuration is."""
-        rates, side = self.solver.rates(state, setting, len(MOVES))
+        rates, side = self.solver.rates(state, block, len(MOVES))
         return rates, np.broadcast_to(side, state.shape[:2])
 
     def _step(
@@ -164,11 +164,11 @@ class _March:
     ) -> tuple[Number, list[Number], Number, Number]:
         """One step: the state there, its rates and side, and for which designs it is a neighbour."""
         guess = self.state + sum(c * h**k for k, c in enumerate(rates, 1))
-        setting = self._setting(here + h)
-        found = self.solver.newton(guess, setting)
+        block = self._block(here + h)
+        found = self.solver.newton(guess, block)
         good = (found.closed & (found.moved <= STRAY)).reshape(len(self.state))
         state = np.where(good[:, None, None], found.state, self.state)
-        new_rates, new_side = self._rates(state, setting)
+        new_rates, new_side = self._rates(state, block)
         # the middle of the step as it will be interpolated, against the prediction
         between = (self.state + state) / 2.0 + (rates[0] - new_rates[0]) * (h / 8.0)
         predicted = self.state + sum(c * (h / 2.0) ** k for k, c in enumerate(rates, 1))

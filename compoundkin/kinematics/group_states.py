@@ -10,7 +10,7 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.kinematics.assembly import all_configurations, from_group
-from compoundkin.kinematics.groups.general import Setting
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.steps import GeneralStep
 
 # Where no theory counts a group's configurations, Newton searches them from so many random states.
@@ -33,38 +33,38 @@ class GroupStates(NamedTuple):
     certified: Number
 
 
-def group_states(step: GeneralStep, setting: Setting, size: float) -> GroupStates:
+def group_states(step: GeneralStep, block: Block, size: float) -> GroupStates:
     """The real configurations in any surroundings, in a fixed order."""
-    found = every_state(step, setting, size)
+    found = every_state(step, block, size)
     if found is not None:
         return found
-    states = _searched(step, setting, size)
+    states = _searched(step, block, size)
     return GroupStates(states, 0, np.zeros(states.shape[:-2], dtype=bool))
 
 
-def every_state(step: GeneralStep, setting: Setting, size: float, most: int = MOST_BODIES) -> GroupStates | None:
+def every_state(step: GeneralStep, block: Block, size: float, most: int = MOST_BODIES) -> GroupStates | None:
     """As `group_states`, without any search: None for groups with higher pairs, and those of very many bodies."""
     if len(step.group.bodies) > most:
         return None
     try:
-        found = all_configurations(from_group(step.group, setting, size))
+        found = all_configurations(from_group(step.group, block, size))
     except InvalidInput:
         return None
     return GroupStates(found.states, found.expected, np.asarray(found.certified))
 
 
-def _searched(step: GeneralStep, setting: Setting, size: float) -> Number:
+def _searched(step: GeneralStep, block: Block, size: float) -> Number:
     """What Newton finds from random states around the origins of what the group is attached to."""
     n = step.solver.n
     rng = np.random.default_rng(n)
-    around = np.broadcast_arrays(*(setting.world[link].z.c[0] for link in step.group.uses))
-    centre = np.mean(around, axis=0)
-    shape = np.shape(centre)
+    around = np.broadcast_arrays(*(block.world[link].z.c[0] for link in step.group.uses))
+    shape = block.extent(step.group.uses)
+    centre = np.broadcast_to(np.mean(around, axis=0), shape)
     spots = centre + size / 2.0 * _spots(rng, n, shape)
     turns = rng.uniform(-np.pi, np.pi, (STARTS, n)).reshape(STARTS, n, *[1] * len(shape))
     parts = [v for k in range(n) for v in np.broadcast_arrays(spots[:, k].real, spots[:, k].imag, turns[:, k])]
-    solution = step.solver.newton(states_of(step, np.stack(parts, axis=-1)), setting, steps=STEPS)
-    bodies = step.solver.series(solution.state, setting, 0)
+    solution = step.solver.newton(states_of(step, np.stack(parts, axis=-1)), block, steps=STEPS)
+    bodies = step.solver.series(solution.state, block, 0)
     parts = [v for b in bodies for v in (b.z.c[0].real, b.z.c[0].imag, np.angle(b.u.c[0]))]
     states = np.stack(np.broadcast_arrays(*parts), axis=-1)
     return _once(np.moveaxis(np.where(solution.closed[..., None], states, np.nan), 0, -2), size)

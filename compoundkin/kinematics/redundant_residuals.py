@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.steps import Step
 from compoundkin.kinematics.solving_order import Plan
 from compoundkin.model.pairs import Pair
@@ -26,11 +26,11 @@ def closed_with(plan: Plan, step: Step) -> tuple[Pair, ...]:
     return tuple(pair for pair in closing if not before.keys() >= {*pair.members})
 
 
-def openings(pairs: Sequence[Pair], run: Run) -> Number:
+def openings(pairs: Sequence[Pair], block: Block) -> Number:
     """The sum of the squares of all that the pairs ought to hold, at a pose."""
     total: Number = 0.0
     for pair in pairs:
-        poses = tuple(run.world[name] for name in pair.members)
-        for held in pair.closure(run.setting.ends[pair.name], poses):
+        poses = tuple(block.world[name] for name in pair.members)
+        for held in pair.closure(block.ends[pair.name], poses):
             total = total + np.abs(held.c[0]) ** 2
     return total

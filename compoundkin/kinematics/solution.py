@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses
-from compoundkin.kinematics.block import Run, blocks, places
+from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
 from compoundkin.kinematics.configuration import Configuration, read_name
 from compoundkin.kinematics.inputs import Inputs, by_name, inputs
-from compoundkin.kinematics.joined import Gathering
 from compoundkin.kinematics.motion import HIGHEST_ORDER, Motion
 from compoundkin.kinematics.redundant_pairs import because, explained, hold_redundant
 from compoundkin.kinematics.solving_order import Plan
@@ -165,16 +164,16 @@ def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> tuple[Motio
     near: set[int] = set()
     parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
     if len(parts) == 1:
-        run = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
-        failed = np.broadcast_to(run.failed, (designs, poses))
-        return Motion(plan.structure, order, given, dict(run.world), failed, tracker), _near(run)
-    store = Gathering(designs, poses)
+        block = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
+        failed = np.broadcast_to(block.failed, (designs, poses))
+        return Motion(plan.structure, order, given, dict(block.world), failed, tracker), _near(block)
+    store = JoinedBlocks(designs, poses)
     for d, m in parts:
-        run = tracker.run(given.cut(d, m), order, *places(d, m))
-        store.take(run.world, run.failed, d, m)
-        near |= _near(run)
+        block = tracker.run(given.cut(d, m), order, *places(d, m))
+        store.take(block, d, m)
+        near |= _near(block)
     return Motion(plan.structure, order, given, store.poses(), store.failed, tracker), near
 
 
-def _near(run: Run) -> set[int]:
-    return {k for k, margin in run.margins.items() if np.any(margin < NEAR)}
+def _near(block: Block) -> set[int]:
+    return {k for k, margin in block.margins.items() if np.any(margin < NEAR)}

@@ -7,10 +7,9 @@ from functools import cached_property
 
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series, constant
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import DYADS
 from compoundkin.kinematics.groups.gear_train import TrainStep
-from compoundkin.kinematics.groups.general import Setting
 from compoundkin.kinematics.groups.steps import AffineStep, DyadStep, FollowerStep, GeneralStep, Step
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends, Equivalent
@@ -76,8 +75,10 @@ class Plan:
         """The indices of the groups without a closed form."""
         return tuple(k for k, step in enumerate(self.steps) if isinstance(step, GeneralStep))
 
-    def start(self, ends: Mapping[str, Ends], drives: Mapping[str, Series], order: int) -> Run:
-        """A run in which only the frame and the links it drives are known."""
+    def start(
+        self, ends: Mapping[str, Ends], drives: Mapping[str, Series], order: int, shape: tuple[int, ...]
+    ) -> Block:
+        """Return a block in which only the frame and the links it drives are known."""
         world: dict[str, Pose] = {}
         local: dict[str, Pose] = {}
         for body in self.bodies:
@@ -88,7 +89,7 @@ class Plan:
                 world.update(placed)
             else:
                 local.update({k: v for k, v in placed.items() if v is not FIXED})
-        return Run(Setting(ends, world, local), world, order, drives)
+        return Block(shape, ends, world, local, order)
 
 
 def _driven(driven: DrivenPair, ends: Mapping[str, Ends], drives: Mapping[str, Series]) -> Pose:

@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import approach, recounted
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.first_pose import distance, first_state, shown
 from compoundkin.kinematics.full_turns import Turns, turns_of
@@ -81,7 +81,7 @@ class Tracker:
         upto: int | None = None,
         lead: bool = False,
         doubles: Mapping[int, Number] | None = None,
-    ) -> Run:
+    ) -> Block:
         """Solve a block of inputs, up to a group.
 
         `s` are the places along the motion (or along the way to it) and `designs` the design indices; both
@@ -89,19 +89,19 @@ class Tracker:
         marks, by group, the poses that are change points.
         """
         paths = self.leads if lead else self.paths
-        run = self.plan.start(part.ends, part.series(order), order)
+        block = self.plan.start(part.ends, part.series(order), order, np.broadcast_shapes(s.shape, designs.shape))
         for k, step in enumerate(self.plan.steps[:upto]):
             if isinstance(step, DyadStep | FollowerStep):
                 sign = self.sign(k, designs, s, lead)
-                step.run(run, sign, double_root(doubles[k]) if doubles and k in doubles else clipped_root)
+                step.run(block, sign, double_root(doubles[k]) if doubles and k in doubles else clipped_root)
             elif isinstance(step, AffineStep | TrainStep):
-                step.run(run)
+                step.run(block)
             else:
-                step.run(run, paths[k].seeds(designs, s))
+                step.run(block, paths[k].seeds(designs, s))
             for link in step.group.links:
                 if link in self.turns:
-                    run.world[link] = run.world[link].counted(self.turns[link].near(designs, s, lead))
-        return run
+                    block.world[link] = block.world[link].counted(self.turns[link].near(designs, s, lead))
+        return block
 
     def sign(self, k: int, designs: Number, s: Number, lead: bool = False) -> Number:
         """The sign of a dyad's mode: it changes wherever the dyad passes a change point."""
@@ -119,27 +119,27 @@ class Tracker:
         """Pass through the groups at the drawn pose, choosing; track those without a closed form."""
         self.turns = {}
         home = self.lead.cut(slice(None), slice(0, 1))
-        run = self.plan.start(home.ends, home.series(0), 0)
+        block = self.plan.start(home.ends, home.series(0), 0, (self.given.designs, 1))
         for k, step in enumerate(self.plan.steps):
             if isinstance(step, DyadStep | FollowerStep):
-                self.signs[k] = self._sign(k, step, run)
-                step.run(run, self.signs[k], nearest_root)
+                self.signs[k] = self._sign(k, step, block)
+                step.run(block, self.signs[k], nearest_root)
             elif isinstance(step, AffineStep | TrainStep):
                 self.chosen_by[k] = "only one"
-                step.run(run)
+                step.run(block)
             else:
                 number = self._fixed.get(k)
-                state, self.chosen_by[k] = first_state(self.plan, step, run, self.sketch, self.given.designs, number)
+                state, self.chosen_by[k] = first_state(self.plan, step, block, self.sketch, self.given.designs, number)
                 if self.chosen_by[k] == "drawing":
                     self.chosen_by[k] = self.shown_by
                 self.leads[k], self.paths[k] = track(self, k, step.solver, state)
-                step.run(run, state)
+                step.run(block, state)
             for link in step.group.links:
-                if link in self.plan.turning and run.world[link].theta is None:
+                if link in self.plan.turning and block.world[link].theta is None:
                     self.turns[link] = turns_of(self, k, link)
-                    run.world[link] = run.world[link].counted(self.turns[link].lead[:, :1])
+                    block.world[link] = block.world[link].counted(self.turns[link].lead[:, :1])
 
-    def _sign(self, k: int, step: DyadStep | FollowerStep, run: Run) -> Number:
+    def _sign(self, k: int, step: DyadStep | FollowerStep, block: Block) -> Number:
         """The mode whose points lie nearest to the drawn ones."""
         if k in self._fixed or step.modes == 1:
             self.chosen_by[k] = "sign" if k in self._fixed else "only one"
@@ -152,7 +152,7 @@ class Tracker:
         self.chosen_by[k] = "redundant" if closing else self.shown_by
         cost = []
         for sign in (1, -1):
-            trial = run.copy()
+            trial = block.copy()
             step.run(trial, sign, nearest_root)
             cost.append(openings(closing, trial) if closing else distance(self.plan, letters, self.sketch, trial))
         best = np.where(cost[1] < cost[0], -1.0, 1.0)

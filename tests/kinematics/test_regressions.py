@@ -262,3 +262,51 @@ def test_a_file_name_with_a_slash_at_its_end_is_no_file(tmp_path: Path) -> None:
     with pytest.raises(ck.InvalidInput, match="name of a folder"):
         ck.draw(ck.catalog.load_named("six-bar")).save(f"{tmp_path}/six-bar.svg/")
     assert not list(tmp_path.iterdir())
+
+
+# --- a block states its shape: a group whose surroundings' origins stand still is solved at all poses ---
+
+
+def on_three_slots(**dimensions) -> ck.Mechanism:
+    """A floater whose three pins run in slots, one on the crank and two on the frame; the crank's origin rests."""
+    return ck.Mechanism(
+        "Floater on three slots",
+        ck.link("frame", A=(0, 0), D=(4, 0), E=(5, 0), F=(4, 2), G=(4, 3)),
+        ck.link("crank", A=(0, 0), B=dimensions.get("B", (1, 0))),
+        ck.link("floater", P=(0, 0), Q=(3, 0), R=(3, 1.5)),
+        ck.slot("floater", name="s1", on="crank", at="P", through="B", angle=1.2),
+        ck.slot("floater", name="s2", on="frame", at="Q", through="D", toward="E"),
+        ck.slot("floater", name="s3", on="frame", at="R", through="F", toward="G"),
+        ck.drive("crank"),
+    )
+
+
+def test_configurations_of_a_floater_on_three_slots_at_several_values_are_those_at_each():
+    values = np.linspace(0.1, 0.9, 4)
+    found = ck.configurations(on_three_slots(), {"crank": values})
+    assert found.real.shape == (4, 2)
+    for k, value in enumerate(values):
+        alone = ck.configurations(on_three_slots(), {"crank": value})
+        assert found.real_count[k] == alone.real_count == 2
+        assert found.angle("floater")[k] == pytest.approx(alone.angle("floater"), abs=1e-12)
+        assert found.points("P")[k] == pytest.approx(alone.points("P"), abs=1e-12)
+
+
+def test_circuits_of_a_floater_on_three_slots():
+    found = ck.circuits(on_three_slots())
+    assert found.consistent
+    values = np.linspace(-3.0, 3.0, 37)
+    counted = ck.configurations(found.structure, {"crank": values}).real_count
+    crossed = [
+        sum(b.low < v + turn < b.high for b in found.branches for turn in (-2 * np.pi, 0.0, 2 * np.pi)) for v in values
+    ]
+    assert counted.tolist() == crossed
+
+
+def test_designs_of_a_floater_on_three_slots_are_solved_each():
+    places = np.array([[1.0], [1.1], [1.2]])
+    found = ck.configurations(on_three_slots(B=places + 0j), {"crank": [0.1, 0.2]})
+    assert found.real.shape == (3, 2, 2)
+    for k, place in enumerate(places[:, 0]):
+        alone = ck.configurations(on_three_slots(B=complex(place)), {"crank": [0.1, 0.2]})
+        assert found.angle("floater")[k] == pytest.approx(alone.angle("floater"), abs=1e-12)

@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.analysis.checks.finding import Finding, worst
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.inputs import Inputs
 
 # A step may differ by this much (radians, or parts of the size) from the mean of the slopes at its ends: other
@@ -35,10 +35,10 @@ def continuity_findings(motion: Motion) -> Iterator[Finding]:
 
 
 def _slopes(motion: Motion, part: Inputs, s: Number) -> dict[str, Number]:
-    run: Run = motion.tracker.run(part, 1, s[None], np.arange(motion.inputs.designs)[:, None])
+    block: Block = motion.tracker.run(part, 1, s[None], np.arange(motion.inputs.designs)[:, None])
     shape = motion.failed.shape
     found = {}
-    for link, pose in run.world.items():
+    for link, pose in block.world.items():
         rate = np.conj(pose.u.c[0]) * pose.u.c[1] if pose.u.order else np.zeros(shape)
         found[link] = np.broadcast_to(np.imag(rate), shape)
     return found

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.base.linear import inverted
 from compoundkin.base.series import Number, Series, constant
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.mounts import FLAT, Mounted
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import table
@@ -52,32 +52,32 @@ class TrainStep:
             left = [body for body in left if body not in [b for _, b in found]]
         return None if left else cls(index, group, tuple(found), highers)
 
-    def run(self, run: Run) -> None:
+    def run(self, block: Block) -> None:
         """Close the group: the closures where all coordinates are zero, by their slopes, give the coordinates."""
         rest = [constant(0.0)] * len(self.mounted)
-        start = self._closures(run.copy(), rest)
+        start = self._closures(block.copy(), rest)
         units = ([*rest[:j], Series((0.0, 1.0)), *rest[j + 1 :]] for j in range(len(rest)))
-        slopes = [[_second(c) for c in self._closures(run.leading(self.links), unit)] for unit in units]
+        slopes = [[_second(c) for c in self._closures(block.leading(self.links), unit)] for unit in units]
         inverse = inverted(table(*zip(*slopes, strict=True)))
         free = ~(np.abs(inverse).max(axis=(-1, -2)) < 1.0 / FLAT)
-        run.failed = np.where((run.failed == 0) & free, self.index + 1, run.failed)
+        block.failed = np.where((block.failed == 0) & free, self.index + 1, block.failed)
         inverse = np.where(free[..., None, None], np.nan, inverse)
         solved = []
         for k in range(max(len(c.c) for c in start)):
             lacking = np.stack(np.broadcast_arrays(*(c.c[k] if len(c.c) > k else 0.0 for c in start)), -1)
             solved.append(-np.einsum("...ij,...j->...i", inverse, lacking))
-        self._place(run, [Series(tuple([c[..., j] for c in solved])) for j in range(len(rest))])
+        self._place(block, [Series(tuple([c[..., j] for c in solved])) for j in range(len(rest))])
 
-    def _closures(self, run: Run, coordinates: list[Series]) -> list[Series]:
-        self._place(run, coordinates)
-        members = (tuple(run.world[name] for name in pair.members) for pair in self.highers)
-        return [p.closure(run.setting.ends[p.name], m)[0] for p, m in zip(self.highers, members, strict=True)]
+    def _closures(self, block: Block, coordinates: list[Series]) -> list[Series]:
+        self._place(block, coordinates)
+        members = (tuple(block.world[name] for name in pair.members) for pair in self.highers)
+        return [p.closure(block.ends[p.name], m)[0] for p, m in zip(self.highers, members, strict=True)]
 
-    def _place(self, run: Run, coordinates: list[Series]) -> None:
+    def _place(self, block: Block, coordinates: list[Series]) -> None:
         for mounted, coordinate in zip(self.mounted, coordinates, strict=True):
-            run.publish(mounted.body, mounted.placed(run, coordinate))
+            block.publish(mounted.body, mounted.placed(block, coordinate))
 
-    def explain(self, run: Run, at: int) -> str:
+    def explain(self, block: Block, at: int) -> str:
         """It can be assembled wherever what it hangs on can, unless its ratios leave it free."""
         return f"the ratios of {', '.join(pair.name for pair in self.highers)} do not determine it"
 

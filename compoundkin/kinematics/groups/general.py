@@ -21,9 +21,10 @@ import numpy as np
 from compoundkin.base.linear import Inverse, Row, stacked
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series, as_series, constant, joined
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.bars import Bar, bars_of
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.contract import Poses
 
 # Newton stops when no correction exceeds this (of the mechanism's size, or radians): it doubles its digits with every
 # step, so that the pose is then exact to rounding.
@@ -44,19 +45,6 @@ class Member:
 
     link: str
     body: int | None
-
-
-@dataclass(frozen=True)
-class Setting:
-    """What a group sees of its surroundings at a block of poses.
-
-    `ends[pair]` are the pair's sides on its links, `world[link]` the known poses, `local[link]` the pose of
-    a link in its composite body (absent for the body's own base).
-    """
-
-    ends: Mapping[str, Ends]
-    world: Mapping[str, Pose]
-    local: Mapping[str, Pose]
 
 
 class Solution(NamedTuple):
@@ -102,12 +90,12 @@ class General:
         parts = [v for b in kept for v in (b.z.c[0].real, b.z.c[0].imag, b.angle.c[0])]
         return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
-    def newton(self, state: Number, setting: Setting, steps: int = STEPS, longest: float = np.inf) -> Solution:
+    def newton(self, state: Number, block: Block, steps: int = STEPS, longest: float = np.inf) -> Solution:
         """Correct the state until the group closes; `state` (..., width) broadcasts with the surroundings.
 
         No single correction is longer than `longest` (of the size, or radians).
         """
-        leading = _leading(setting)
+        leading = block.leading()
         weights = self.weights
         start = found = [np.asarray(v) for v in np.moveaxis(np.asarray(state, dtype=float), -1, 0)]
         bodies = self._kept_poses(found)
@@ -131,41 +119,41 @@ class General:
         moved = _largest([(v - s) * w for v, s, w in zip(found, start, weights, strict=True)])
         return Solution(np.stack(np.broadcast_arrays(*found), axis=-1), closed, moved)
 
-    def series(self, state: Number, setting: Setting, order: int) -> list[Pose]:
+    def series(self, state: Number, block: Block, order: int) -> list[Pose]:
         """All bodies' poses to the given order, from a closed state."""
         kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
         if order:
-            inverse = Inverse(self._rows(kept, _leading(setting)), self.width)
+            inverse = Inverse(self._rows(kept, block.leading()), self.width)
             for k in range(1, order + 1):
-                kept = self._grown(kept, self._next(kept, inverse, setting, k))
-        found = {**kept, **{bar.body: self._bar_pose(bar, kept, setting, order) for bar in self.bars}}
+                kept = self._grown(kept, self._next(kept, inverse, block, k))
+        found = {**kept, **{bar.body: self._bar_pose(bar, kept, block, order) for bar in self.bars}}
         return [found[k] for k in range(self.n)]
 
-    def rates(self, state: Number, setting: Setting, order: int) -> tuple[list[Number], Number]:
-        """The state's coefficients 1 to `order`, each (..., width), in a setting of that order; and its side.
+    def rates(self, state: Number, block: Block, order: int) -> tuple[list[Number], Number]:
+        """The state's coefficients 1 to `order`, each (..., width), in a block of that order; and its side.
 
         The side is the sign of the determinant of the equations: it changes across a singularity.
         """
         kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
-        inverse = Inverse(self._rows(kept, _leading(setting)), self.width)
+        inverse = Inverse(self._rows(kept, block.leading()), self.width)
         found = []
         for k in range(1, order + 1):
-            step = self._next(kept, inverse, setting, k)
+            step = self._next(kept, inverse, block, k)
             kept = self._grown(kept, step)
             found.append(np.stack(np.broadcast_arrays(*step, state[..., 0])[:-1], axis=-1))
         return found, np.sign(inverse.determinant)
 
-    def matrix(self, state: Number, setting: Setting) -> Number:
+    def matrix(self, state: Number, block: Block) -> Number:
         """The matrix of all equations at a state, (..., width, width)."""
         kept = self._kept_poses(list(np.moveaxis(state, -1, 0)))
-        return stacked(self._rows(kept, _leading(setting)), self.width)
+        return stacked(self._rows(kept, block.leading()), self.width)
 
     # --- equations ---
 
-    def _next(self, kept: Mapping[int, Pose], inverse: Inverse, setting: Setting, k: int) -> list[Number]:
+    def _next(self, kept: Mapping[int, Pose], inverse: Inverse, block: Block, k: int) -> list[Number]:
         """The k-th coefficients of the state, from poses known to the one before."""
         trial = {j: _turned((*b.z.c, 0j), (*b.angle.c, np.zeros_like(b.angle.c[0]))) for j, b in kept.items()}
-        return inverse.times([-r for r in self._residual(trial, setting, k)])
+        return inverse.times([-r for r in self._residual(trial, block, k)])
 
     def _grown(self, kept: Mapping[int, Pose], step: list[Number]) -> dict[int, Pose]:
         """The poses with one more coefficient."""
@@ -183,42 +171,42 @@ class General:
             found[body] = Pose(constant(joined(x, y)), angle.turn(), angle)
         return found
 
-    def _residual(self, bodies: Mapping[int, Pose], setting: Setting, k: int) -> list[Number]:
+    def _residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> list[Number]:
         """The k-th coefficients of all equations: those of the bars, then the other pairs' closures."""
         found = []
         for bar in self.bars:
-            (_, one), (_, two) = self._ends_of(bar, bodies, setting, k)
-            length2 = self._length2(bar, setting)
+            (_, one), (_, two) = self._ends_of(bar, bodies, block, k)
+            length2 = self._length2(bar, block)
             gap = (two - one).abs2() - Series(length2.c[: k + 1])
             found.append(gap.c[k] * (0.5 / np.sqrt(length2.c[0])) if len(gap.c) > k else 0.0)
         for number in self.others:
             pair = self.pairs[number]
-            closure = pair.closure(setting.ends[pair.name], self._links(number, bodies, setting, k))
+            closure = pair.closure(block.ends[pair.name], self._links(number, bodies, block, k))
             found += [c.c[k] if len(c.c) > k else 0.0 for c in closure]
         return found
 
-    def _rows(self, bodies: Mapping[int, Pose], setting: Setting) -> list[Row]:
+    def _rows(self, bodies: Mapping[int, Pose], block: Block) -> list[Row]:
         """The Jacobian of all equations by the state."""
         first = {body: 3 * i for i, body in enumerate(self.kept)}
         rows = []
         for bar in self.bars:
-            (_, one), (_, two) = ends = self._ends_of(bar, bodies, setting, 0)
-            along = (two - one).c[0] / np.sqrt(self._length2(bar, setting).c[0])
+            (_, one), (_, two) = ends = self._ends_of(bar, bodies, block, 0)
+            along = (two - one).c[0] / np.sqrt(self._length2(bar, block).c[0])
             row: Row = {}
             for (body, place), sign in zip(ends, (-1.0, 1.0), strict=True):
                 if body is not None:
                     _add_point(row, first[body], along * sign, place.c[0] - bodies[body].z.c[0])
             rows.append(row)
         for number in self.others:
-            rows += self._pair_rows(number, first, bodies, setting)
+            rows += self._pair_rows(number, first, bodies, block)
         return rows
 
     def _pair_rows(
-        self, number: int, first: Mapping[int, int], bodies: Mapping[int, Pose], setting: Setting
+        self, number: int, first: Mapping[int, int], bodies: Mapping[int, Pose], block: Block
     ) -> Iterator[Row]:
         pair = self.pairs[number]
-        poses = self._links(number, bodies, setting, 0)
-        table = pair.jacobian(setting.ends[pair.name], poses)
+        poses = self._links(number, bodies, block, 0)
+        table = pair.jacobian(block.ends[pair.name], poses)
         for r in range(pair.held):
             row: Row = {}
             for side, member in enumerate(self.members[number]):
@@ -230,55 +218,55 @@ class General:
                     _add(row, first[member.body], (x, y, turn))
             yield row
 
-    def _links(self, number: int, bodies: Mapping[int, Pose], setting: Setting, k: int) -> Poses:
+    def _links(self, number: int, bodies: Mapping[int, Pose], block: Block, k: int) -> Poses:
         """The poses of a pair's members, to order k at most."""
-        return tuple(self._link(member, bodies, setting, k) for member in self.members[number])
+        return tuple(self._link(member, bodies, block, k) for member in self.members[number])
 
-    def _link(self, member: Member, bodies: Mapping[int, Pose], setting: Setting, k: int) -> Pose:
+    def _link(self, member: Member, bodies: Mapping[int, Pose], block: Block, k: int) -> Pose:
         if member.body is None:
-            return trimmed(setting.world[member.link], k)
-        local = setting.local.get(member.link)
-        return bodies[member.body] if local is None else bodies[member.body].compose(trimmed(local, k))
+            return block.world[member.link].trimmed(k)
+        local = block.local.get(member.link)
+        return bodies[member.body] if local is None else bodies[member.body].compose(local.trimmed(k))
 
     # --- bars ---
 
     def _ends_of(
-        self, bar: Bar, bodies: Mapping[int, Pose], setting: Setting, k: int
+        self, bar: Bar, bodies: Mapping[int, Pose], block: Block, k: int
     ) -> tuple[tuple[int | None, Series], tuple[int | None, Series]]:
         """For each pin of a bar the body at its other side, and where that has the pin."""
         found = []
         for number, own in zip(bar.pins, bar.own, strict=True):
             member = self.members[number][1 - own]
-            end = setting.ends[self.pairs[number].name][1 - own]
-            found.append((member.body, self._link(member, bodies, setting, k).at(end.point)))
+            end = block.ends[self.pairs[number].name][1 - own]
+            found.append((member.body, self._link(member, bodies, block, k).at(end.point)))
         return found[0], found[1]
 
-    def _pins_in(self, bar: Bar, setting: Setting) -> tuple[Series, Series]:
+    def _pins_in(self, bar: Bar, block: Block) -> tuple[Series, Series]:
         """A bar's pins in its body's frame."""
         found = []
         for number, own in zip(bar.pins, bar.own, strict=True):
-            local = setting.local.get(self.members[number][own].link)
-            point = setting.ends[self.pairs[number].name][own].point
+            local = block.local.get(self.members[number][own].link)
+            point = block.ends[self.pairs[number].name][own].point
             found.append(as_series(point) if local is None else local.at(point))
         return found[0], found[1]
 
-    def _length2(self, bar: Bar, setting: Setting) -> Series:
-        one, two = self._pins_in(bar, setting)
+    def _length2(self, bar: Bar, block: Block) -> Series:
+        one, two = self._pins_in(bar, block)
         return (two - one).abs2()
 
-    def _bar_pose(self, bar: Bar, kept: Mapping[int, Pose], setting: Setting, order: int) -> Pose:
+    def _bar_pose(self, bar: Bar, kept: Mapping[int, Pose], block: Block, order: int) -> Pose:
         """A bar's pose between its two pins."""
-        (_, one), (_, two) = self._ends_of(bar, kept, setting, order)
-        first, second = self._pins_in(bar, setting)
+        (_, one), (_, two) = self._ends_of(bar, kept, block, order)
+        first, second = self._pins_in(bar, block)
         u = (two - one) / (second - first)
         return Pose(one - u * first, u)
 
-    def _properly_assembled(self, bodies: Mapping[int, Pose], setting: Setting) -> Number:
+    def _properly_assembled(self, bodies: Mapping[int, Pose], block: Block) -> Number:
         """Whether every pair is closed in the way that is meant, such as no guide the wrong way round in its block."""
         good: Number = True
         for number in self.others:
             pair = self.pairs[number]
-            good = good & pair.is_properly_assembled(setting.ends[pair.name], self._links(number, bodies, setting, 0))
+            good = good & pair.is_properly_assembled(block.ends[pair.name], self._links(number, bodies, block, 0))
         return good
 
 
@@ -303,19 +291,3 @@ def _turned(z: tuple[Number, ...], theta: tuple[Number, ...]) -> Pose:
     """The pose of an origin and an angle."""
     angle = Series(theta)
     return Pose(Series(z), angle.turn(), angle)
-
-
-def trimmed(pose: Pose, k: int) -> Pose:
-    """A pose to order k at most."""
-    if pose.z.order <= k and pose.u.order <= k:
-        return pose
-    theta = None if pose.theta is None else Series(pose.theta.c[: k + 1])
-    return Pose(Series(pose.z.c[: k + 1]), Series(pose.u.c[: k + 1]), theta)
-
-
-def _leading(setting: Setting) -> Setting:
-    return Setting(
-        setting.ends,
-        {name: trimmed(pose, 0) for name, pose in setting.world.items()},
-        {name: trimmed(pose, 0) for name, pose in setting.local.items()},
-    )

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series
-from compoundkin.kinematics.block import Run
-from compoundkin.kinematics.groups.general import Setting
+from compoundkin.kinematics.block import Block
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Freedom, Poses
 from compoundkin.structure.parts import Body
@@ -40,10 +39,10 @@ def side_of(pair: Pair, body: Body) -> Side:
     return Side(pair, 0 if pair.members[0] in body.links else 1)
 
 
-def in_body(side: Side, setting: Setting) -> End:
+def in_body(side: Side, block: Block) -> End:
     """A side in the frame of its body's base link."""
-    end = setting.ends[side.pair.name][side.own]
-    local = setting.local.get(side.link)
+    end = block.ends[side.pair.name][side.own]
+    local = block.local.get(side.link)
     return end if local is None else local.carry(end)
 
 
@@ -55,26 +54,26 @@ class Mounted:
         self.higher = higher
         self.body = body
 
-    def placed(self, run: Run, coordinate: Series) -> Pose:
+    def placed(self, block: Block, coordinate: Series) -> Pose:
         """The body's pose."""
         side = self.side
-        relative = side.pair.placed(run.setting.ends[side.pair.name], coordinate)
-        link = run.world[side.other].compose(relative if side.own else relative.inverse())
-        local = run.setting.local.get(side.link)
+        relative = side.pair.placed(block.ends[side.pair.name], coordinate)
+        link = block.world[side.other].compose(relative if side.own else relative.inverse())
+        local = block.local.get(side.link)
         return link if local is None else link.compose(local.inverse())
 
-    def poses(self, run: Run, coordinate: Series) -> Poses:
+    def poses(self, block: Block, coordinate: Series) -> Poses:
         """The poses of the higher pair's members."""
-        own = run.links_of(self.body, self.placed(run, coordinate))
-        return tuple(own[name] if name in own else run.world[name] for name in self.higher.members)
+        own = block.links_of(self.body, self.placed(block, coordinate))
+        return tuple(own[name] if name in own else block.world[name] for name in self.higher.members)
 
-    def leading(self, run: Run) -> Run:
+    def leading(self, block: Block) -> Block:
         """What it needs of a block, without derivatives."""
-        return run.leading([self.side.other, *self.higher.members])
+        return block.leading([self.side.other, *self.higher.members])
 
-    def freedom(self, run: Run) -> Freedom:
+    def freedom(self, block: Block) -> Freedom:
         """How the body moves as the coordinate grows."""
-        pose = self.placed(run, Series((0.0, 1.0)))
+        pose = self.placed(block, Series((0.0, 1.0)))
         along = pose.z.c[1] if len(pose.z.c) > 1 else 0j
         if not self.side.pair.free_is_angle:
             # along the guide, whichever of the two links has it

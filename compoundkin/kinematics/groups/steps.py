@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, constant
-from compoundkin.kinematics.block import Run
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import DYADS, Attachment, Dyad
 from compoundkin.kinematics.groups.contract import COINCIDENT, Root, clipped_root
 from compoundkin.kinematics.groups.follower import Follower
@@ -36,32 +36,31 @@ class DyadStep:
         self.outer = tuple(side_of(outer[k], bodies[k]) for k in (first, 1 - first))
         self.inner = tuple(side_of(inner, body) for body in self.bodies)
 
-    def arguments(self, run: Run) -> tuple[Attachment, tuple[End, End], Attachment]:
+    def arguments(self, block: Block) -> tuple[Attachment, tuple[End, End], Attachment]:
         """What the kernel asks for, at a block of poses."""
-        setting = run.setting
         found = []
         for side in self.outer:
-            ends = setting.ends[side.pair.name]
-            world = setting.world[side.other].carry(ends[1 - side.own])
-            found.append(Attachment(world, in_body(side, setting)))
-        one, two = (in_body(side, setting) for side in self.inner)
+            ends = block.ends[side.pair.name]
+            world = block.world[side.other].carry(ends[1 - side.own])
+            found.append(Attachment(world, in_body(side, block)))
+        one, two = (in_body(side, block) for side in self.inner)
         return found[0], (one, two), found[1]
 
-    def run(self, run: Run, sign: Number, root: Root = clipped_root) -> None:
+    def run(self, block: Block, sign: Number, root: Root = clipped_root) -> None:
         """Close the group and add its links to what is known."""
-        poses, margin, meeting = self.kernel.close(*self.arguments(run), sign, root)
+        poses, margin, meeting = self.kernel.close(*self.arguments(block), sign, root)
         if meeting is not None:
             margin = np.fmin(margin, np.sqrt(meeting) / self.size - COINCIDENT)
-        run.margins[self.index] = margin
-        run.failed = np.where((margin >= 0) | (run.failed != 0), run.failed, self.index + 1)
+        block.margins[self.index] = margin
+        block.failed = np.where((margin >= 0) | (block.failed != 0), block.failed, self.index + 1)
         for body, pose in zip(self.bodies, poses, strict=True):
             if body in self.group.bodies:
-                run.publish(body, pose)
+                block.publish(body, pose)
 
-    def explain(self, run: Run, at: int) -> str:
+    def explain(self, block: Block, at: int) -> str:
         """Why it cannot be assembled at a pose."""
         first, second = (side.pair.letters[0] for side in self.outer)
-        return self.kernel.explain(*self.arguments(run), at, (first, self.inner[0].pair.letters[0], second))
+        return self.kernel.explain(*self.arguments(block), at, (first, self.inner[0].pair.letters[0], second))
 
 
 class AffineStep:
@@ -81,26 +80,26 @@ class AffineStep:
         """The links from which its coordinate counts."""
         return (self.mounted.side.other,)
 
-    def run(self, run: Run) -> None:
+    def run(self, block: Block) -> None:
         """Close the group: the value of the closure where the coordinate is zero, by its slope, is the coordinate."""
-        start = self._closure(run, constant(0.0))
-        slope = self._slope(run, start)
+        start = self._closure(block, constant(0.0))
+        slope = self._slope(block, start)
         free = np.abs(slope.c[0]) <= FLAT
         if np.any(free):
             slope = Series((np.where(free, np.nan, slope.c[0]), *slope.c[1:]))
-            run.failed = np.where((run.failed == 0) & free, self.index + 1, run.failed)
-        run.publish(self.group.bodies[0], self.mounted.placed(run, -start / slope))
+            block.failed = np.where((block.failed == 0) & free, self.index + 1, block.failed)
+        block.publish(self.group.bodies[0], self.mounted.placed(block, -start / slope))
 
-    def _slope(self, run: Run, start: Series) -> Series:
+    def _slope(self, block: Block, start: Series) -> Series:
         """By how much the closure grows with the coordinate; it changes where a rack and a guide turn on each other."""
-        lead = self._closure(self.mounted.leading(run), Series((0.0, 1.0))).c[1]
-        rates = (self._closure(run, constant(1.0)) - start).c[1:]
+        lead = self._closure(self.mounted.leading(block), Series((0.0, 1.0))).c[1]
+        rates = (self._closure(block, constant(1.0)) - start).c[1:]
         return Series((lead, *rates) if any(np.any(rate != 0.0) for rate in rates) else (lead,))
 
-    def _closure(self, run: Run, coordinate: Series) -> Series:
-        return self.higher.closure(run.setting.ends[self.higher.name], self.mounted.poses(run, coordinate))[0]
+    def _closure(self, block: Block, coordinate: Series) -> Series:
+        return self.higher.closure(block.ends[self.higher.name], self.mounted.poses(block, coordinate))[0]
 
-    def explain(self, run: Run, at: int) -> str:
+    def explain(self, block: Block, at: int) -> str:
         """It can be assembled wherever what it hangs on can, unless the higher pair leaves it free."""
         return f"{self.mounted.side.pair.name} may move without any effect on {self.higher.name}"
 
@@ -119,20 +118,20 @@ class FollowerStep:
         own = next(j for j, name in enumerate(higher.members) if name in group.links)
         self.kernel = Follower(higher, own, size)
 
-    def run(self, run: Run, sign: Number, root: Root = clipped_root) -> None:
+    def run(self, block: Block, sign: Number, root: Root = clipped_root) -> None:
         """Close the group and add its links to what is known; `root` has no effect."""
-        ends = run.setting.ends[self.higher.name]
-        leading = self.mounted.leading(run)
+        ends = block.ends[self.higher.name]
+        leading = self.mounted.leading(block)
         at_zero, freedom = self.mounted.poses(leading, constant(0.0)), self.mounted.freedom(leading)
         start = self.kernel.start(ends, at_zero, freedom, sign)
         found, closed, slope = self.kernel.polished(ends, lambda q: self.mounted.poses(leading, q), start)
-        run.failed = np.where((run.failed == 0) & ~closed, self.index + 1, run.failed)
-        coordinate = self.kernel.series(ends, lambda q: self.mounted.poses(run, q), found, slope, run.order)
-        pose = self.mounted.placed(run, coordinate)
+        block.failed = np.where((block.failed == 0) & ~closed, self.index + 1, block.failed)
+        coordinate = self.kernel.series(ends, lambda q: self.mounted.poses(block, q), found, slope, block.order)
+        pose = self.mounted.placed(block, coordinate)
         # no turns are counted: the angle found may leap by one between poses
-        run.publish(self.group.bodies[0], Pose(pose.z, pose.u))
+        block.publish(self.group.bodies[0], Pose(pose.z, pose.u))
 
-    def explain(self, run: Run, at: int) -> str:
+    def explain(self, block: Block, at: int) -> str:
         """Why it cannot be assembled at a pose."""
         return self.higher.no_contact_reason()
 
@@ -151,16 +150,16 @@ class GeneralStep:
         members = tuple(tuple(Member(name, where.get(name)) for name in pair.members) for pair in self.pairs)
         self.solver = General(len(group.bodies), self.pairs, members, size)
 
-    def run(self, run: Run, seeds: Number) -> None:
+    def run(self, block: Block, seeds: Number) -> None:
         """Correct the seeds, add the derivatives, and the group's links to what is known."""
-        solution = self.solver.newton(seeds, run.setting)
+        solution = self.solver.newton(seeds, block)
         closed = solution.closed & (solution.moved < LEAP)
         state = np.where(closed[..., None], solution.state, np.nan)
-        run.failed = np.where((run.failed == 0) & ~closed, self.index + 1, run.failed)
-        for body, pose in zip(self.group.bodies, self.solver.series(state, run.setting, run.order), strict=True):
-            run.publish(body, pose)
+        block.failed = np.where((block.failed == 0) & ~closed, self.index + 1, block.failed)
+        for body, pose in zip(self.group.bodies, self.solver.series(state, block, block.order), strict=True):
+            block.publish(body, pose)
 
-    def explain(self, run: Run, at: int) -> str:
+    def explain(self, block: Block, at: int) -> str:
         """Why it cannot be assembled at a pose."""
         limit = "the tracked configuration ends at a limit position, where the group's equations become singular"
         open_ = [f"{pair.letters[0]} leaves the profile of {pair.members[0]}" for pair in self.pairs if pair.has_ends]

@@ -15,8 +15,9 @@ from compoundkin.kinematics.solving_order import Plan
 def attached(mechanism, **drives):
     """The first group, its surroundings at the driver values (poses,), and the size."""
     plan = Plan(ck.decompose(mechanism))
-    run = plan.start(plan.ends, {name: Series((np.atleast_2d(value),)) for name, value in drives.items()}, 0)
-    return plan.structure.groups[0], run.setting, plan.size
+    given = {name: Series((np.atleast_2d(value),)) for name, value in drives.items()}
+    shape = np.broadcast_shapes(*(series.c[0].shape for series in given.values()))
+    return plan.structure.groups[0], plan.start(plan.ends, given, 0, shape), plan.size
 
 
 def as_general(group, size):

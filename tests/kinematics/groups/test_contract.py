@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series, as_series
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import DYADS, Attachment, Dyad
 from compoundkin.kinematics.groups.contract import Root, clipped_root, nearest_root
-from compoundkin.kinematics.groups.general import General, Member, Setting
+from compoundkin.kinematics.groups.general import General, Member
 from compoundkin.model.pairs import KINDS, Pair
 from tests.support import largest, random_planar, random_pose, random_unit, sample
 
@@ -239,7 +240,7 @@ def test_agrees_with_newton_and_the_series_step(kind: type[Dyad], seed: int) -> 
                     assert np.quantile(error, 0.95) < 1e-10
 
 
-def as_general(case: Case) -> tuple[General, Setting]:
+def as_general(case: Case) -> tuple[General, Block]:
     """The same dyad as a group of two bodies without closed form; every moving side is a link of its own."""
     world, local, ends = {}, {}, {}
     sides = {
@@ -258,7 +259,7 @@ def as_general(case: Case) -> tuple[General, Setting]:
         members.append((found[0], found[1]))
         side = End(0j, None if not directed(pair) else 1 + 0j)
         ends[pair.name] = (side, side)
-    return General(2, case.pairs, tuple(members), 1.0, bars=False), Setting(ends, world, local)
+    return General(2, case.pairs, tuple(members), 1.0, bars=False), Block((MANY,), ends, world, local, ORDER)
 
 
 @every_dyad

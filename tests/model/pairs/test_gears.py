@@ -848,9 +848,9 @@ def test_a_train_agrees_with_newton_on_the_pairs_own_equations() -> None:
     general = GeneralStep(0, step.group, plan.size)
     run = motion.tracker.run(motion.inputs, 3, np.arange(2.0)[None], np.zeros((1, 1), dtype=int))
     state = general.solver.state([run.world[body.links[0]] for body in step.group.bodies])
-    solution = general.solver.newton(state + 0.05, run.setting)
+    solution = general.solver.newton(state + 0.05, run)
     assert solution.closed.all()
-    for body, pose in zip(step.group.bodies, general.solver.series(solution.state, run.setting, 3), strict=True):
+    for body, pose in zip(step.group.bodies, general.solver.series(solution.state, run, 3), strict=True):
         for k in range(4):
             assert np.max(np.abs(pose.z.derivative(k) - run.world[body.links[0]].z.derivative(k))) < 1e-9
             assert np.max(np.abs(pose.angle.derivative(k) - run.world[body.links[0]].angle.derivative(k))) < 1e-11
