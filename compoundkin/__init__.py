@@ -13,6 +13,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+import compoundkin.view  # noqa: F401  (says how objects show themselves)
 from compoundkin.base.errors import (
     CompoundkinError,
     InvalidInput,
@@ -22,6 +23,7 @@ from compoundkin.base.errors import (
     UnassembledPoses,
     UnknownName,
 )
+from compoundkin.base.version import VERSION
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.gaps import Gap, gaps
 from compoundkin.kinematics.quantities import quantity
@@ -39,7 +41,8 @@ if TYPE_CHECKING:
     from compoundkin.analysis.checks import Check, Finding, verify
     from compoundkin.analysis.equations import loop_equations
     from compoundkin.analysis.equivalents import equivalent_linkage
-    from compoundkin.configurations import circuits, configurations
+    from compoundkin.configurations.circuit_search import circuits
+    from compoundkin.configurations.enumeration import configurations
     from compoundkin.files import load, save, save_table, to_pandas
     from compoundkin.synthesis.alternatives import alternatives
     from compoundkin.synthesis.composer import Composer, random_mechanism
@@ -50,7 +53,7 @@ if TYPE_CHECKING:
     from compoundkin.view.report import rendered, report
     from compoundkin.view.sketch import Picture, draw, draw_structure, vector_polygon
 
-__version__ = "0.1.0"
+__version__ = VERSION
 
 __all__ = [
     "Animation",
@@ -130,12 +133,17 @@ __all__ = [
     "with_frame",
 ]
 
+# A room has the name of a function: the room is loaded once and its name given back, so that `__getattr__` finds the
+# function. The room itself holds nothing, so that this costs nothing.
+import_module("compoundkin.configurations")
+globals().pop("configurations", None)
+
 # What only some programs need is imported when they ask for it: the module of each such word.
 _LATE = {
     "Animation": "view.animation",
     "animate": "view.animation",
-    "circuits": "configurations",
-    "configurations": "configurations",
+    "circuits": "configurations.circuit_search",
+    "configurations": "configurations.enumeration",
     "CamAnalysis": "analysis.cam_analysis",
     "cam_analysis": "analysis.cam_analysis",
     "instant_centres": "analysis.centres",
@@ -165,7 +173,7 @@ _LATE = {
 }
 
 
-_MODULES = {"catalog": "files.shipped_mechanisms", "plots": "view.plot"}
+_MODULES = {"chains": "synthesis.chains", "catalog": "files.shipped_mechanisms", "plots": "view.plot"}
 
 
 def __getattr__(name: str) -> Any:
@@ -177,4 +185,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return [*__all__, "catalog", "plots"]
+    return [*__all__, *_MODULES]

@@ -1,17 +1,34 @@
-"""Objects that show themselves in notebooks. What they show comes after all of them, and only notebooks pay for it."""
+"""Objects that show themselves: a registry of ways, filled by what comes after them, and who asks it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from importlib import import_module
+from typing import Any
+
+# What can be asked for, and the function that answers, as "module:function": loaded when it is asked for.
+_WAYS: dict[str, str] = {}
+
+
+def register(**ways: str) -> None:
+    """Enter functions that show objects, each as ``module:function``."""
+    _WAYS.update(ways)
+
+
+def way(name: str) -> Callable[..., Any]:
+    """Return a registered function; its module is loaded now."""
+    module, function = _WAYS[name].split(":")
+    found: Callable[..., Any] = getattr(import_module(module), function)
+    return found
 
 
 class Shows:
-    """What a notebook shows of an object: tables and pictures, as `showing.html_of` makes them."""
+    """What a notebook shows of an object: tables and pictures as HTML."""
 
     def _repr_html_(self) -> str | None:
         """As HTML; None where the text says it better, or where it would take long."""
-        made: str | None = import_module("compoundkin.view.notebook").html_of(self)
+        made: str | None = way("html")(self)
         return made
 
 
@@ -24,5 +41,5 @@ class ShowsPicture(Shows):
 
     @cached_property
     def _picture(self) -> str | None:
-        made: str | None = import_module("compoundkin.view.notebook").svg_of(self)
+        made: str | None = way("svg")(self)
         return made

@@ -84,9 +84,9 @@ class Verbs(click.Group):
 
 def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
     if wanted and not ctx.resilient_parsing:
-        from compoundkin import __version__
+        from compoundkin.base.version import VERSION
 
-        click.echo(f"compoundkin {__version__}")
+        click.echo(f"compoundkin {VERSION}")
         ctx.exit()
 
 

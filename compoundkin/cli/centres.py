@@ -42,7 +42,7 @@ def command(
     """
     from dataclasses import replace
 
-    from compoundkin.structure.redundancy import solvable
+    from compoundkin.kinematics.solvable import solvable
     from compoundkin.view.report import Report, report
     from compoundkin.view.report.centres_section import derivation_section
     from compoundkin.view.report.partial_reports import NOT_SOLVED, centres_report

@@ -50,7 +50,7 @@ def command(
     told with the group that comes to the end of its reach there. Exit code 3: the mechanism cannot be assembled.
     """
     from compoundkin.cli.progress import working
-    from compoundkin.configurations import circuits
+    from compoundkin.configurations.circuit_search import circuits
     from compoundkin.kinematics.solution import plan_of
     from compoundkin.view.report.configurations_section import circuits_report
 

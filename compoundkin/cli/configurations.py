@@ -30,7 +30,7 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
     from compoundkin.base.errors import UnassembledPoses
     from compoundkin.cli import typed_values
     from compoundkin.cli.progress import working
-    from compoundkin.configurations import configurations
+    from compoundkin.configurations.enumeration import configurations
     from compoundkin.kinematics import solve
     from compoundkin.kinematics.solution import plan_of
     from compoundkin.view.report.configurations_section import configurations_report

@@ -34,7 +34,7 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     Where a pose cannot be assembled its numbers are nan (null in JSON); stderr says why, and the exit code is 3.
     """
     from compoundkin.cli import output_table
-    from compoundkin.structure.redundancy import solvable
+    from compoundkin.kinematics.solvable import solvable
 
     write = output_table.writer(path) if path else None
     structure = solvable(loaded(file))

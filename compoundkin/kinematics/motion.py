@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import ShowsPicture
+from compoundkin.base.display import ShowsPicture, way
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
@@ -21,10 +20,6 @@ from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.structure import Structure
-
-if TYPE_CHECKING:
-    from compoundkin.view.animation import Animation
-    from compoundkin.view.plot import Plot
 
 HIGHEST_ORDER = 3
 
@@ -94,16 +89,13 @@ class Motion(ShowsPicture):
         """The prescribed coordinate of every driver by its name."""
         return Table("driver", tuple(self.inputs.drives), self._drive)
 
-    def plot(self, *names: str, **options: Any) -> Plot:
+    def plot(self, *names: str, **options: Any) -> Any:
         """Draw quantities over the driver, the time or any other quantity: `compoundkin.plot` of this motion."""
-        # found by its name: plots come after motions, and only who draws pays for them
-        drawn: Plot = import_module("compoundkin.view.plot").plot(self, *names, **options)
-        return drawn
+        return way("plot")(self, *names, **options)
 
-    def animate(self, **options: Any) -> Animation:
+    def animate(self, **options: Any) -> Any:
         """An animation to be saved as GIF, MP4 or SVG: `compoundkin.animate` of this motion."""
-        made: Animation = import_module("compoundkin.view.animation").animate(self, **options)
-        return made
+        return way("animation")(self, **options)
 
     @property
     def _plan(self) -> Plan:

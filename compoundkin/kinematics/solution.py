@@ -16,12 +16,12 @@ from compoundkin.kinematics.configuration import Configuration, read_name
 from compoundkin.kinematics.inputs import Inputs, by_name, inputs
 from compoundkin.kinematics.motion import HIGHEST_ORDER, Motion
 from compoundkin.kinematics.redundant_pairs import because, explained, hold_redundant
+from compoundkin.kinematics.solvable import relaxed
 from compoundkin.kinematics.solving_order import Plan
 from compoundkin.kinematics.times import times_of
 from compoundkin.kinematics.tracking import Tracker, read_hint
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
-from compoundkin.structure.redundancy import relaxed
 from compoundkin.structure.structure import Structure
 
 # Up to so many poses are solved at once: gathering blocks would copy more than the caches save.

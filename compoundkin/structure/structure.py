@@ -16,8 +16,6 @@ from compoundkin.structure.parts import Body, Fault, Group, Passive, Relaxation
 if TYPE_CHECKING:
     import networkx as nx
 
-    from compoundkin.synthesis.chains import ChainName
-
 # So many groups are named where a structure is printed.
 SHOWN_GROUPS = 12
 
@@ -54,13 +52,6 @@ class Structure(ShowsPicture):
     def graph(self) -> nx.MultiGraph:
         """The kinematic graph: links are nodes, pairs are edges keyed by their names."""
         return kinematic_graph(self)
-
-    @cached_property
-    def name(self) -> ChainName:
-        """What it is called by its graph, frame and drivers: "Stephenson III"."""
-        from compoundkin.synthesis.chains import structure_name
-
-        return structure_name(self)
 
     @cached_property
     def loops(self) -> tuple[Loop, ...]:

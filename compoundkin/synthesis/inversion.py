@@ -38,8 +38,9 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
     Raises UnknownName for a link that there is not.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.synthesis.chains import structure_name
     >>> inverted = with_frame(load_named("slider-crank"), "crank")
-    >>> list(inverted.links), decompose(inverted).name.title
+    >>> list(inverted.links), structure_name(decompose(inverted)).title
     (['frame', 'old frame', 'rod', 'piston'], 'inverted slider-crank with turning or oscillating guide')
     """
     mechanism.link(link)

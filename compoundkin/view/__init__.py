@@ -1,1 +1,10 @@
 """What people see: sketches, plots, animations, pages, reports, notebooks."""
+
+from compoundkin.base import display
+
+display.register(
+    html="compoundkin.view.notebook:html_of",
+    svg="compoundkin.view.notebook:svg_of",
+    plot="compoundkin.view.plot:plot",
+    animation="compoundkin.view.animation:animate",
+)

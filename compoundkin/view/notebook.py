@@ -10,7 +10,8 @@ from compoundkin.analysis.cam_analysis import CamAnalysis
 from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
-from compoundkin.configurations import AllConfigurations, Circuits
+from compoundkin.configurations.circuit_search import Circuits
+from compoundkin.configurations.enumeration import AllConfigurations
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.quantities import degrees

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.configurations import Circuits
+from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.files.shipped_mechanisms import load_named, names
 from tests.configurations.mechanisms import four_bar
 from tests.configurations.test_random import check_counts

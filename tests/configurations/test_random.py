@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.configurations import Circuits
+from compoundkin.configurations.circuit_search import Circuits
 from tests.configurations.mechanisms import random_six_bodies, random_triad
 from tests.support import KINDS_OF_DYAD, Sketch, random_sketch
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.configurations import Circuit, Circuits, Limit
+from compoundkin.configurations.circuit import Circuit, Limit
+from compoundkin.configurations.circuit_search import Circuits
 from tests.configurations.mechanisms import four_bar
 from tests.support import REFERENCE
 

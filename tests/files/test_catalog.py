@@ -20,9 +20,9 @@ from compoundkin.analysis.checks import verify
 from compoundkin.base.errors import InvalidInput, UnknownName
 from compoundkin.files import dumps, load, loads, schema, shipped_mechanisms
 from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.solvable import solvable
 from compoundkin.model.elements import Expectation
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure.redundancy import solvable
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "catalog.md"
@@ -429,7 +429,7 @@ def test_a_missing_file_with_a_catalog_name_says_so() -> None:
 def test_a_wheel_carries_the_files_inside_the_package(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "compoundkin", tmp_path / "compoundkin", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(ROOT / "catalog", tmp_path / "compoundkin" / "_catalog")
-    code = "from compoundkin import catalog; print(shipped_mechanisms.folder(), *shipped_mechanisms.names(), sep='|')"
+    code = "from compoundkin.files import shipped_mechanisms as s; print(s.folder(), *s.names(), sep='|')"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
     place, *found = ran.stdout.strip().split("|")
     assert Path(place) == tmp_path / "compoundkin" / "_catalog"
@@ -438,7 +438,7 @@ def test_a_wheel_carries_the_files_inside_the_package(tmp_path: Path) -> None:
 
 def test_names_do_not_load_numpy() -> None:
     code = "import sys; from compoundkin.base.errors import Problem; before = 'numpy' in sys.modules;"
-    code += "from compoundkin import catalog; shipped_mechanisms.names(); print(before, 'numpy' in sys.modules)"
+    code += "from compoundkin.files.shipped_mechanisms import names; names(); print(before, 'numpy' in sys.modules)"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout
     before, after = out.split()
     assert before == after, "catalog itself must not be what loads NumPy"

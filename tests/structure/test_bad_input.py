@@ -8,6 +8,7 @@ from compoundkin.base.errors import InvalidMechanism
 from compoundkin.model.elements import drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
+from compoundkin.synthesis.chains import structure_name
 
 FOUR = {"frame": "AD", "crank": "AB", "coupler": "BC", "rocker": "CD"}
 
@@ -23,7 +24,7 @@ def test_a_piece_that_is_joined_to_nothing_else(bars):
     (fault,) = structure.faults
     assert fault.links == ("e", "f", "g", "h")
     assert fault.remedy == "join e, f, g, h to the frame by a pair"
-    assert structure.name.title == "8 links in 2 separate pieces"
+    assert structure_name(structure).title == "8 links in 2 separate pieces"
 
 
 def test_a_link_that_is_joined_to_nothing(bars):
@@ -68,7 +69,7 @@ def test_a_structure_without_a_driver_is_no_fault_but_does_not_move(bars):
     structure = decompose(Mechanism("m", *bars(frame="AD", a="AB", b="BD")))
     assert structure.faults == ()
     assert structure.mobility.verdict == "mobility 0 and no driver: a structure that does not move"
-    assert structure.name.title.startswith("3-link truss 1")
+    assert structure_name(structure).title.startswith("3-link truss 1")
 
 
 def test_mobility_zero_with_a_driver(bars):
@@ -114,12 +115,12 @@ def test_a_loose_link_is_named_and_the_name_of_the_chain_does_not_hide_it(bars):
     structure = decompose(Mechanism("m", *bars(**FOUR, t="CT"), drive("crank")))
     (fault,) = structure.faults
     assert (fault.links, fault.amount) == (("t",), 1)
-    assert structure.name.title == "5-link chain of mobility 2, one link of it loose, with one double pin"
+    assert structure_name(structure).title == "5-link chain of mobility 2, one link of it loose, with one double pin"
 
 
 def test_what_is_rigid_by_count_is_not_called_a_chain(bars):
     """A parallelogram with two couplers moves, but by its dimensions: the name is that of a truss."""
     links = bars(frame="ADF", a="AB", c="DC", m="FG", coupler="BCG")
     structure = decompose(Mechanism("m", *links, drive("a")))
-    assert structure.name.title.startswith("5-link truss 1")
-    assert structure.name.mobility == 0
+    assert structure_name(structure).title.startswith("5-link truss 1")
+    assert structure_name(structure).mobility == 0

@@ -11,7 +11,7 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.kinematics.assembly.mode_count import laman_number
 from compoundkin.synthesis.alternatives import alternatives, group_count
-from compoundkin.synthesis.chains import chains, mechanism_from
+from compoundkin.synthesis.chains import chains, mechanism_from, structure_name
 from compoundkin.synthesis.inversion import with_driver, with_frame
 from compoundkin.view.report.alternatives_section import alternatives_section
 
@@ -42,7 +42,7 @@ def test_every_choice_is_the_inverted_mechanism_taken_apart(name):
         groups = tuple((group.name, group.class_, group.order) for group in structure.groups)
         assert sorted(groups) == sorted(choice.groups)
         assert bool(structure.faults) == bool(choice.faults)
-        assert structure.name.title == choice.title
+        assert structure_name(structure).title == choice.title
 
 
 def test_what_makes_a_stephenson_chain_dyadic_is_said():

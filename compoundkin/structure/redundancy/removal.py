@@ -6,14 +6,12 @@ forms where it can.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.kinematics.groups import DYADS
-from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure.decomposition import decompose, decomposed
+from compoundkin.structure.decomposition import decomposed
 from compoundkin.structure.parts import Group, Relaxation
 from compoundkin.structure.redundancy.diagnosis import WIDEST, Examined, examined
 from compoundkin.structure.redundancy.self_stress import Candidate, chosen, strength
@@ -26,18 +24,11 @@ WEAKER = 0.1
 GENERAL = 10
 
 
-def solvable(mechanism: Mechanism) -> Structure:
-    """A mechanism taken apart, without what is redundant where it moves although it is overconstrained.
+def without_redundancy(structure: Structure, closed: Collection[str]) -> Structure:
+    """Return the structure without what is redundant, where its mechanism moves although it is overconstrained.
 
-    `faults` are those that remain: of what does not move, and of drivers that are too many or missing.
-    """
-    return relaxed(decompose(mechanism))
-
-
-def relaxed(structure: Structure) -> Structure:
-    """The structure without what is redundant, where its mechanism moves although it is overconstrained.
-
-    The structure itself where nothing is held by too much, or nothing moves.
+    The structure itself where nothing is overconstrained, or nothing moves. `closed` are the names of the groups that
+    have closed forms: what remains falls into these where it can.
     """
     mechanism = structure.mechanism
     if not any(fault.kind == "over" for fault in structure.faults) or 3 * len(mechanism.links) > WIDEST:
@@ -46,10 +37,10 @@ def relaxed(structure: Structure) -> Structure:
         found = examined(mechanism)
         if not found.assembly.is_closed or found.flex.along.shape[1] <= len(structure.passive):
             return structure
-        return _without_redundancy(structure, found)
+        return _chosen(structure, found, closed)
 
 
-def _without_redundancy(structure: Structure, found: Examined) -> Structure:
+def _chosen(structure: Structure, found: Examined, closed: Collection[str]) -> Structure:
     states = found.stress.shape[1]
     picked = chosen(found.candidates, states)
     if not picked:
@@ -57,7 +48,7 @@ def _without_redundancy(structure: Structure, found: Examined) -> Structure:
     pose = _pose(found)
     limit, order = WEAKER * strength(picked), found.candidates
     best = _made(structure, picked, pose)
-    least, left = _cost(best, picked, order), COMPARED
+    least, left = _cost(best, picked, order, closed), COMPARED
     improved = True
     while improved and left > 0:
         improved = False
@@ -68,7 +59,7 @@ def _without_redundancy(structure: Structure, found: Examined) -> Structure:
                 continue
             left -= 1
             trial = _made(structure, other, pose)
-            cost = _cost(trial, other, order)
+            cost = _cost(trial, other, order, closed)
             if cost < least:
                 best, least, picked, improved = trial, cost, other, True
                 break
@@ -89,23 +80,25 @@ def _made(structure: Structure, picked: Sequence[Candidate], pose: Relaxation) -
     return decomposed(structure.mechanism, replace(pose, dropped=tuple(one.dropped for one in picked)))
 
 
-def _cost(made: Structure, picked: Sequence[Candidate], order: Sequence[Candidate]) -> tuple[int, ...]:
+def _cost(
+    made: Structure, picked: Sequence[Candidate], order: Sequence[Candidate], closed: Collection[str]
+) -> tuple[int, ...]:
     """What is left undecomposed or may fail at some poses, how hard the groups are to solve, and how early what is left
     out was written."""
     places = list(dict.fromkeys(one.place for one in order))
     early = sum(len(places) - places.index(one.place) for one in picked)
     oblique = sum(not one.is_aligned for one in picked)
-    return _excess(made), oblique, sum(map(_effort, made.groups)), early
+    return _excess(made), oblique, sum(_effort(group, closed) for group in made.groups), early
 
 
 def _excess(structure: Structure) -> int:
     return sum(fault.amount for fault in structure.faults)
 
 
-def _effort(group: Group) -> int:
+def _effort(group: Group, closed: Collection[str]) -> int:
     count = len(group.bodies)
-    closed = group.name in DYADS or (count == 1 and len(group.outer) == 2)
-    return count if closed else GENERAL * count * count
+    is_closed = group.name in closed or (count == 1 and len(group.outer) == 2)
+    return count if is_closed else GENERAL * count * count
 
 
 def _pose(found: Examined) -> Relaxation:

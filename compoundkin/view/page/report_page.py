@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from compoundkin.base.version import VERSION
 from compoundkin.files.atomic import write_atomically
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
@@ -86,10 +87,8 @@ def page_of(
 
 
 def _document(report: Report, blocks: Blocks) -> Document:
-    from compoundkin import __version__
-
     data = data_script("ck-groups", {"groups": blocks.names.members})
-    return Document(report, blocks.about(report), tuple(blocks.sections(report)), __version__, data=(data,))
+    return Document(report, blocks.about(report), tuple(blocks.sections(report)), VERSION, data=(data,))
 
 
 def _with_viewer(document: Document, moving: Viewer) -> Document:

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.configurations import Branch, Circuit, Circuits
+from compoundkin.configurations.circuit import Branch, Circuit
+from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.kinematics.configuration import label
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.view.plot import canvas, plot_style

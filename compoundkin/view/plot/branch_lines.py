@@ -12,7 +12,8 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
-from compoundkin.configurations import Branch, Circuits, Limit
+from compoundkin.configurations.circuit import Branch, Limit
+from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.driver_range import TURN as FULL
 from compoundkin.configurations.enumeration import dimensions_at
 from compoundkin.configurations.segments import CHANGE, NONE

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.configurations import Circuits
-from compoundkin.configurations import circuits as all_circuits
+from compoundkin.configurations.circuit_search import Circuits
+from compoundkin.configurations.circuit_search import circuits as all_circuits
 from compoundkin.kinematics.quantities import degrees, order_of
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compoundkin.structure import Group, Structure
-from compoundkin.synthesis.chains import ChainName, group_truss
+from compoundkin.synthesis.chains import ChainName, group_truss, structure_name
 from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS
 from compoundkin.synthesis.chains.mechanism_names import MOST_COMPARED
 from compoundkin.view.report.report_data import Section, Step
@@ -19,7 +19,7 @@ _LOWER = 2
 
 def chain_section(structure: Structure) -> Section:
     """The kinematic chain: its name, driven link, assortment, variety, symmetry, and the trusses of larger groups."""
-    name = structure.name
+    name = structure_name(structure)
     return Section("chain", "Kinematic chain", (Step(name.title, tuple(_facts(structure, name))),))
 
 

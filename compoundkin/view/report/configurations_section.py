@@ -9,7 +9,9 @@ from math import prod
 import numpy as np
 
 from compoundkin.base.errors import CompoundkinError, InvalidInput
-from compoundkin.configurations import AllConfigurations, Branch, Circuit, Circuits, Limit, Place, circuits
+from compoundkin.configurations.circuit import Branch, Circuit, Limit, Place
+from compoundkin.configurations.circuit_search import Circuits, circuits
+from compoundkin.configurations.enumeration import AllConfigurations
 from compoundkin.configurations.location import first_configuration
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import degrees

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.solvable import relaxed
 from compoundkin.structure import Structure, roman
-from compoundkin.structure.redundancy import relaxed
 from compoundkin.view.report.chain_section import chain_section
 from compoundkin.view.report.groups_section import solving_section
 from compoundkin.view.report.links_and_pairs import faults_section, links_section, pairs_section

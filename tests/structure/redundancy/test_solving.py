@@ -8,8 +8,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import compoundkin as ck
+from compoundkin.kinematics.solvable import solvable
 from compoundkin.structure import decompose
-from compoundkin.structure.redundancy import solvable
 from tests.structure.redundancy.special import bars, cranks, guides, wedge, with_parallel_crank
 
 MOBILE = {
