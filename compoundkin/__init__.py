@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from compoundkin.analysis.equivalents import equivalent_linkage
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
-    from compoundkin.files import load, save, save_table, to_pandas
+    from compoundkin.files import load, save
     from compoundkin.synthesis.alternatives import alternatives
     from compoundkin.synthesis.composer import Composer, random_mechanism
     from compoundkin.synthesis.inversion import with_driver, with_frame
@@ -120,13 +120,11 @@ __all__ = [
     "roll",
     "roll_around",
     "save",
-    "save_table",
     "slide",
     "slot",
     "solve",
     "synthesise",
     "time_table",
-    "to_pandas",
     "vector_polygon",
     "verify",
     "with_driver",
@@ -161,8 +159,6 @@ _LATE = {
     "equivalent_linkage": "analysis.equivalents",
     "load": "files",
     "save": "files",
-    "save_table": "files",
-    "to_pandas": "files",
     "with_driver": "synthesis.inversion",
     "with_frame": "synthesis.inversion",
     "Page": "view.page",

@@ -103,7 +103,7 @@ def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[st
 def _order(structure: Structure, asked: Mapping[str, Any]) -> int:
     """The order asked for, or the highest that an output needs; raises InvalidInput where they disagree."""
     from compoundkin.base.errors import InvalidInput, Problem
-    from compoundkin.kinematics.quantities import order_of
+    from compoundkin.model.attributes import order_of
 
     order = asked["order"]
     if order is None:

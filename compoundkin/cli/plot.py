@@ -119,13 +119,12 @@ def _fitting(asked: Mapping[str, Any]) -> None:
 
 def _order(asked: Mapping[str, Any], names: tuple[str, ...]) -> int:
     """The order asked for, or what the quantities need: one more for the rates of phase plots, 2 at least."""
-    from compoundkin.kinematics.quantities import HIGHEST_ORDER, order_of
-    from compoundkin.view.plot.plotted_rows import vector_of
+    from compoundkin.model.attributes import HIGHEST_ORDER, order_of
 
     if asked["order"] is not None:
         return int(asked["order"])
     against = () if asked["against"] is None else (asked["against"],)
-    highest = max((order_of(vector_of(name)[0]) for name in (*names, *against)), default=0)
+    highest = max((order_of(name) for name in (*names, *against)), default=0)
     return min(max(2, highest + ("phase" in asked["kinds"])), HIGHEST_ORDER)
 
 

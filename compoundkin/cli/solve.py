@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import drive_options, solved
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.shell import NOT_ASSEMBLED, put, say
@@ -26,26 +27,28 @@ Examples:
 )
 @mechanism_argument
 @drive_options
-@click.option("-o", "--to-file", "path", metavar="PATH", help="Write a table here: .csv, .json, .npz or .parquet.")
+@click.option("-o", "--to-file", "path", metavar="PATH", help=f"Write a table here: {alternatives('table')}.")
 def command(file: str, path: str | None, **asked: Any) -> int:
     """Solve a mechanism and print a table: a row per pose, a column per quantity (CSV).
 
     Without --output, everything there is. Angles are in degrees in CSV and JSON, in radians in NPZ and Parquet.
     Where a pose cannot be assembled its numbers are nan (null in JSON); stderr says why, and the exit code is 3.
     """
-    from compoundkin.cli import output_table
+    from compoundkin.files import save
+    from compoundkin.files.table_files import csv_text
     from compoundkin.kinematics.solvable import solvable
 
-    write = output_table.writer(path) if path else None
+    if path is not None:
+        form_of("table", path)
     structure = solvable(loaded(file))
     motion = solved(structure, asked)
-    found = output_table.columns(motion, asked["outputs"])
-    if write is None:
-        put(output_table.csv_bytes(found))
+    table = motion.table(*asked["outputs"])
+    if path is None:
+        put(csv_text(table).encode("utf-8"))
     else:
-        write(found)
-        rows = len(found[0].values)
-        say(f"Wrote {rows:,} {'row' if rows == 1 else 'rows'} of {len(found)} columns to {path}.")
+        save(table, path)
+        rows = f"{len(table):,} {'row' if len(table) == 1 else 'rows'}"
+        say(f"Wrote {rows} of {len(table.columns)} columns to {path}.")
     return 0 if motion.assembled.all() else explained(motion)
 
 

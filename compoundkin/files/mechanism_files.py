@@ -1,4 +1,4 @@
-"""Mechanism files in and out: `load`, `loads`, `save`, `dumps`; TOML and JSON are the same document."""
+"""Mechanism files in and out: `load`, `loads`, `dumps`; TOML and JSON are the same document."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.suffixes import SUFFIXES, suffix_of
 from compoundkin.files import toml_text
-from compoundkin.files.atomic import write_atomically
 from compoundkin.files.reader import failed, read
 from compoundkin.files.writer import document
 from compoundkin.model.mechanism import Mechanism
@@ -71,24 +71,12 @@ def dumps(mechanism: Mechanism, syntax: Syntax = "toml") -> str:
     return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 
-def save(mechanism: Mechanism, path: str | os.PathLike[str]) -> None:
-    """Write a mechanism file, TOML or JSON by the suffix; the file is replaced whole or not at all.
-
-    Raises InvalidInput where it cannot be written.
-
-    >>> import tempfile
-    >>> from compoundkin.model.elements import link
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     save(Mechanism("Pin", link("frame", A=0)), f"{folder}/pin.json")
-    ...     load(f"{folder}/pin.json").title
-    'Pin'
-    """
-    text = dumps(mechanism, _syntax(path))
+def encoded(mechanism: Mechanism, syntax: str, path: str | os.PathLike[str]) -> bytes:
+    """Return the bytes of a mechanism file; raises InvalidInput, which names the file, for text that has no UTF-8."""
     try:
-        content = text.encode("utf-8")
+        return dumps(mechanism, _known(syntax)).encode("utf-8")
     except UnicodeEncodeError as error:
         raise _unreadable(path, f"{error.object[error.start]!r} cannot be written as UTF-8") from None
-    write_atomically(path, lambda file: file.write(content))
 
 
 def _unreadable(path: str | os.PathLike[str], what: str, remedy: str = "") -> InvalidInput:
@@ -96,11 +84,11 @@ def _unreadable(path: str | os.PathLike[str], what: str, remedy: str = "") -> In
 
 
 def _syntax(path: str | os.PathLike[str]) -> Syntax:
-    for syntax in SYNTAXES:
-        if Path(path).suffix.lower() == f".{syntax}":
-            return syntax
-    known = " or ".join(f".{syntax}" for syntax in SYNTAXES)
-    raise _unreadable(path, "the name does not tell the format", f"mechanism files end in {known}")
+    syntax = SUFFIXES["mechanism"].get(suffix_of(path))
+    if syntax is None:
+        known = " or ".join(SUFFIXES["mechanism"])
+        raise _unreadable(path, "the name does not tell the format", f"mechanism files end in {known}")
+    return _known(syntax)
 
 
 def _known(syntax: str) -> Syntax:
@@ -113,7 +101,7 @@ def _known(syntax: str) -> Syntax:
 def _neighbour(path: Path) -> str:
     """The file in the same folder that may be meant."""
     try:
-        found = sorted(p.name for p in path.parent.iterdir() if p.suffix[1:] in SYNTAXES)
+        found = sorted(p.name for p in path.parent.iterdir() if p.suffix in SUFFIXES["mechanism"])
     except OSError:
         return ""
     remedy = nearest(path.name, found)
@@ -176,4 +164,4 @@ def _repeats(value: Any, where: str) -> list[Problem]:
     return found
 
 
-__all__ = ["Syntax", "dumps", "load", "loads", "save"]
+__all__ = ["Syntax", "dumps", "encoded", "load", "loads"]

@@ -12,10 +12,10 @@ from compoundkin.files.kind_tables import TAGGED
 from compoundkin.files.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
 from compoundkin.files.single_values import bad, described, single, wrong
 from compoundkin.files.written_quantities import rate, values
+from compoundkin.model.attributes import TIME
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN, Pair
-from compoundkin.model.validation import TIME
 
 
 def read(document: Mapping[str, Any], where: str = "") -> Mechanism:

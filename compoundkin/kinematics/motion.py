@@ -14,14 +14,14 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.inputs import Inputs, fit
-from compoundkin.kinematics.results import LinkMotion, PairMotion, PointMotion, Table
+from compoundkin.kinematics.results import LinkMotion, Named, PairMotion, PointMotion
 from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.table import Table, table_of
 from compoundkin.kinematics.tracking import Tracker
+from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.structure import Structure
-
-HIGHEST_ORDER = 3
 
 
 @dataclass(frozen=True)
@@ -72,22 +72,37 @@ class Motion(ShowsPicture):
     @cached_property
     def points(self) -> Mapping[str, PointMotion]:
         """The motion of every point by its letter."""
-        return Table("point", tuple(self.mechanism.carriers), self._point)
+        return Named("point", tuple(self.mechanism.carriers), self._point)
 
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
         """The motion of every link by its name."""
-        return Table("link", tuple(self.mechanism.links), lambda name: LinkMotion(self, self.poses[name]))
+        return Named("link", tuple(self.mechanism.links), lambda name: LinkMotion(self, self.poses[name]))
 
     @cached_property
     def pairs(self) -> Mapping[str, PairMotion]:
         """The relative motion in every pair by its name."""
-        return Table("pair", tuple(self._plan.pairs), self._pair)
+        return Named("pair", tuple(self._plan.pairs), self._pair)
 
     @cached_property
     def drives(self) -> Mapping[str, PairMotion]:
         """The prescribed coordinate of every driver by its name."""
-        return Table("driver", tuple(self.inputs.drives), self._drive)
+        return Named("driver", tuple(self.inputs.drives), self._drive)
+
+    def table(self, *names: str) -> Table:
+        """Return the quantities of these names as columns, with designs, time and drivers; without names everything.
+
+        >>> from compoundkin.model.elements import drive, link
+        >>> from compoundkin.kinematics import solve
+        >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"), unit="mm")
+        >>> solve(crank, {"crank": [0.0, 1.0]}).table("B.x")["B.x"]
+        Quantity('B.x', x(B), 2 values in mm)
+        """
+        return table_of(self, *names)
+
+    def to_pandas(self, *names: str) -> Any:
+        """Return the table of these quantities as a pandas DataFrame, angles in radians."""
+        return table_of(self, *names).to_pandas()
 
     def plot(self, *names: str, **options: Any) -> Any:
         """Draw quantities over the driver, the time or any other quantity: `compoundkin.plot` of this motion."""
@@ -148,8 +163,7 @@ class Motion(ShowsPicture):
 
     def _has(self, k: int) -> None:
         if not 0 <= k <= self.order:
-            names = ("position", "velocity", "acceleration", "jerk")
-            what = names[k] if 0 <= k <= HIGHEST_ORDER else f"derivative {k}"
+            what = OF_POINTS[k] if 0 <= k <= HIGHEST_ORDER else f"derivative {k}"
             remedy = f"solve(..., order={k})" if 0 <= k <= HIGHEST_ORDER else f"0 to {HIGHEST_ORDER}"
             raise InvalidInput(Problem(what, f"the motion was solved to order {self.order}", remedy))
 

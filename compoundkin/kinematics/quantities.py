@@ -1,41 +1,68 @@
-"""Quantities of a motion by what they are called: "G.velocity", "bar.angle", "slot.rate"."""
+"""Quantities of a motion, by what they are called: "G.velocity", "bar.angle", "slot.rate"."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, Self
 
 import numpy as np
 
 from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.model.attributes import (
+    ALSO,
+    CATALOGUE,
+    DEGREES,
+    LENGTH,
+    PARTS,
+    RADIANS,
+    Attribute,
+    Dimension,
+    Kind,
+    readable,
+    unit_of,
+    vector_of,
+)
+from compoundkin.model.mechanism import Mechanism
 
-if TYPE_CHECKING:
-    from compoundkin.kinematics import Motion
 
-PER_SECOND = ("", "/s", "/s^2", "/s^3")
+class HasQuantities(Protocol):
+    """A motion, or whatever else has points, links, pairs and drivers by name."""
 
-# What may follow a name, with how many derivatives it takes; the first is meant by the name alone.
-POINT = {"position": 0, "velocity": 1, "acceleration": 2, "jerk": 3, "x": 0, "y": 0, "speed": 1}
-LINK = {"angle": 0, "angular_velocity": 1, "angular_acceleration": 2, "angular_jerk": 3}
-PAIR = {"value": 0, "rate": 1, "second": 2, "third": 3}
-DRIVER = {**PAIR, "speed": 1, "acceleration": 2, "jerk": 3}
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism, which tells the unit of lengths."""
 
-HIGHEST_ORDER = 3
+    @property
+    def points(self) -> Mapping[str, Any]:
+        """The points."""
+
+    @property
+    def links(self) -> Mapping[str, Any]:
+        """The links."""
+
+    @property
+    def pairs(self) -> Mapping[str, Any]:
+        """The pairs: each tells whether it `is_angle`."""
+
+    @property
+    def drives(self) -> Mapping[str, Any]:
+        """The drivers: each tells whether it `is_angle`."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Quantity:
-    """One quantity over a motion: complex values for a vector, real ones otherwise; `unit` is that of `values`.
+    """One quantity: complex values for a planar vector, real ones otherwise; `unit` is that of `values`.
 
-    `order` is how many time derivatives it takes. Angles are radians: `is_angle`.
+    `order` is how many time derivatives it takes of a length, an angle or another `dimension`.
     """
 
     name: str
-    values: Any
     unit: str
-    order: int
-    is_angle: bool
+    values: Any
+    order: int = 0
+    dimension: Dimension = "number"
+    symbol: str = ""
 
     @property
     def is_vector(self) -> bool:
@@ -43,15 +70,43 @@ class Quantity:
         return np.iscomplexobj(self.values)
 
     @property
-    def shown(self) -> Quantity:
+    def is_angle(self) -> bool:
+        """Whether it is an angle, and not the rate of one."""
+        return self.unit in (RADIANS, DEGREES)
+
+    @property
+    def label(self) -> str:
+        """The name with its unit.
+
+        >>> Quantity("G.acceleration", "mm/s^2", np.zeros((1, 1))).label
+        'G.acceleration [mm/s²]'
+        """
+        return f"{self.name} [{readable(self.unit)}]".lstrip() if self.unit else self.name
+
+    @property
+    def shown(self) -> Self:
         """As it is shown to people: angles in degrees.
 
-        >>> Quantity("bar.angle", np.array([np.pi]), "rad", 0, True).shown.values.tolist()
+        >>> Quantity("bar.angle", "rad", np.array([np.pi])).shown.values.tolist()
         [180.0]
         """
-        if not self.is_angle:
-            return self
-        return Quantity(self.name, degrees(self.values), "deg", self.order, True)
+        return replace(self, values=degrees(self.values), unit=DEGREES) if self.unit == RADIANS else self
+
+    def part(self, name: str) -> Self:
+        """The component or the length of a vector."""
+        symbol = f"|{self.symbol}|" if name == LENGTH else f"{self.symbol}.{name}"
+        return replace(self, name=f"{self.name}.{name}", values=PARTS[name](self.values), symbol=symbol)
+
+    @property
+    def components(self) -> tuple[Self, ...]:
+        """Its real numbers: both components of a vector; what is no vector, as it is."""
+        return (self.part("x"), self.part("y")) if self.is_vector else (self,)
+
+    def __repr__(self) -> str:
+        shape = "x".join(map(str, np.shape(self.values))) or "1"
+        kind = "vectors" if self.is_vector else "values"
+        symbol = f", {self.symbol}" if self.symbol else ""
+        return f"Quantity({self.name!r}{symbol}, {shape} {kind}{' in ' + self.unit if self.unit else ''})"
 
 
 def degrees(angle: Any) -> Any:
@@ -65,80 +120,89 @@ def degrees(angle: Any) -> Any:
     return np.where(np.abs(short - exact) <= 2.0 * np.spacing(np.abs(exact)), short, exact)
 
 
-def quantity(motion: Motion, name: str) -> Quantity:
+def known_owners(motion: HasQuantities) -> list[str]:
+    """All that has quantities: points, links, pairs and drivers, each once."""
+    return list(dict.fromkeys(name for kind in CATALOGUE for name in getattr(motion, kind)))
+
+
+def quantity(motion: HasQuantities, name: str) -> Quantity:
     """The quantity of a name such as "G.velocity"; "G" alone is G.position, "bar" bar.angle, "slot" slot.value.
 
     Points have position, velocity, acceleration, jerk, x, y, speed; links angle, angular_velocity,
     angular_acceleration, angular_jerk; pairs and drivers value, rate, second, third (and angle or
-    displacement for value). Raises UnknownName with the nearest known name.
+    displacement for value). A vector has parts: "G.velocity.x", "G.velocity.y", "G.velocity.length".
+    Raises UnknownName with the nearest known name.
 
-    >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, link
     >>> from compoundkin.kinematics import solve
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"), unit="mm")
     >>> found = quantity(solve(crank, {"crank": [0.0]}, speed=3.0), "B.velocity")
-    >>> found.values.tolist(), found.unit
-    ([6j], 'mm/s')
+    >>> found, found.values.tolist()
+    (Quantity('B.velocity', v(B), 1 vectors in mm/s), [6j])
     """
-    owner, dot, attribute = name.rpartition(".") if "." in name else (name, "", "")
-    owners = list(_owners(motion, owner))
-    if not owners:
+    whole, part = whole_and_part(motion, name)
+    return whole.part(part) if part else whole
+
+
+def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
+    """The quantity of a name, or the vector and which part of it is meant; raises UnknownName."""
+    try:
+        return _whole(motion, name), ""
+    except UnknownName:
+        vector, part = vector_of(name)
+        if not part:
+            raise
+    found = _whole(motion, vector)
+    if not found.is_vector:
+        raise UnknownName(Problem(name, f"{vector} is no vector", f"leave .{part} out"))
+    return found, part
+
+
+def _whole(motion: HasQuantities, name: str) -> Quantity:
+    """A quantity that is no part of another."""
+    owner, dot, word = name.rpartition(".") if "." in name else (name, "", "")
+    found = [owner_of(motion, kind, owner) for kind in CATALOGUE if owner in getattr(motion, kind)]
+    if not found:
         known = nearest(owner, known_owners(motion))
         raise UnknownName(Problem(name, f"there is no point, link, pair or driver {owner!r}", known))
-    for one in owners:
-        if attribute in one.attributes or not dot:
-            return one.read(name, attribute if dot else next(iter(one.attributes)))
-    attributes = list(dict.fromkeys(a for one in owners for a in one.attributes))
-    raise UnknownName(Problem(name, f"{owner!r} has no {attribute!r}", _nearest(owner, attribute, attributes)))
-
-
-def order_of(name: str) -> int:
-    """How many time derivatives a quantity takes, as far as its name tells.
-
-    >>> order_of("G.velocity"), order_of("bar.angular_jerk"), order_of("G")
-    (1, 3, 0)
-    """
-    attribute = name.rpartition(".")[2] if "." in name else ""
-    return max((table.get(attribute, 0) for table in (POINT, LINK, DRIVER)), default=0)
-
-
-def known_owners(motion: Motion) -> list[str]:
-    """All that has quantities: points, links, pairs and drivers, each once."""
-    tables: tuple[Mapping[str, Any], ...] = (motion.points, motion.links, motion.pairs, motion.drives)
-    return list(dict.fromkeys(name for table in tables for name in table))
+    for one in found:
+        if word in one.attributes or not dot:
+            return replace(one.read(word if dot else next(iter(one.attributes))), name=name)
+    words = list(dict.fromkeys(a for one in found for a in one.attributes))
+    raise UnknownName(Problem(name, f"{owner!r} has no {word!r}", _nearest(owner, word, words)))
 
 
 @dataclass(frozen=True)
-class _Owner:
-    """A point, link, pair or driver of a motion, the attributes it has and the unit of its position."""
+class Owner:
+    """A point, link, pair or driver of a motion: its name, the attributes it has, the unit of each order."""
 
+    name: str
     motion: Any
-    unit: str
-    attributes: Mapping[str, int]
+    dimension: Dimension
+    attributes: Mapping[str, Attribute]
+    mechanism: Mechanism
 
-    def read(self, name: str, attribute: str) -> Quantity:
+    def read(self, word: str) -> Quantity:
         """The quantity of an attribute."""
-        order = self.attributes[attribute]
-        known = hasattr(type(self.motion), attribute)
-        values = getattr(self.motion, attribute) if known else self.motion.derivative(order)
-        unit = self.unit + PER_SECOND[order]
-        return Quantity(name, np.asarray(values), unit, order, unit == "rad")
+        found = self.attributes[word]
+        known = hasattr(type(self.motion), word)
+        values = getattr(self.motion, word) if known else self.motion.derivative(found.order)
+        unit = unit_of(self.mechanism.unit, self.dimension, found.order)
+        symbol = f"{found.symbol}({self.name})"
+        return Quantity(f"{self.name}.{word}", unit, np.asarray(values), found.order, self.dimension, symbol)
 
 
-def _owners(motion: Motion, name: str) -> Iterator[_Owner]:
-    """All that a name may mean, in the order in which it is tried."""
-    length = motion.mechanism.unit or "length"
-    if name in motion.points:
-        yield _Owner(motion.points[name], length, POINT)
-    if name in motion.links:
-        yield _Owner(motion.links[name], "rad", LINK)
-    for table, attributes in ((motion.pairs, PAIR), (motion.drives, DRIVER)):
-        if name in table:
-            found = table[name]
-            synonym = {"angle": 0} if found.is_angle else {"displacement": 0}
-            yield _Owner(found, "rad" if found.is_angle else length, {**attributes, **synonym})
+def owner_of(motion: HasQuantities, kind: Kind, name: str) -> Owner:
+    """A point, link, pair or driver as the owner of quantities."""
+    found: Any = getattr(motion, kind)[name]
+    besides: Mapping[str, Attribute] = {}
+    dimension: Dimension = "length" if kind == "points" else "angle"
+    if kind in ("pairs", "drives"):
+        dimension = "angle" if found.is_angle else "length"
+        besides = ALSO[dimension]
+    return Owner(name, found, dimension, {**CATALOGUE[kind], **besides}, motion.mechanism)
 
 
-def _nearest(owner: str, attribute: str, known: list[str]) -> str:
-    remedy = nearest(attribute, known)
+def _nearest(owner: str, word: str, known: list[str]) -> str:
+    remedy = nearest(word, known)
     return f"did you mean '{owner}.{remedy.split(chr(39))[1]}'?" if remedy.startswith("did") else remedy

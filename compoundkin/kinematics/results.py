@@ -168,7 +168,7 @@ class PairMotion:
         return self.derivative(3)
 
 
-class Table(Mapping[str, Any]):
+class Named(Mapping[str, Any]):
     """Entries made when they are asked for; an unknown name raises UnknownName with the nearest known."""
 
     def __init__(self, kind: str, names: tuple[str, ...], make: Any) -> None:

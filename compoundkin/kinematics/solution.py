@@ -14,12 +14,13 @@ from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
 from compoundkin.kinematics.configuration import Configuration, read_name
 from compoundkin.kinematics.inputs import Inputs, by_name, inputs
-from compoundkin.kinematics.motion import HIGHEST_ORDER, Motion
+from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.redundant_pairs import because, explained, hold_redundant
 from compoundkin.kinematics.solvable import relaxed
 from compoundkin.kinematics.solving_order import Plan
 from compoundkin.kinematics.times import times_of
 from compoundkin.kinematics.tracking import Tracker, read_hint
+from compoundkin.model.attributes import HIGHEST_ORDER
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
 from compoundkin.structure.structure import Structure

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from compoundkin.base.errors import Problem, nearest
+from compoundkin.model.attributes import TIME
 from compoundkin.model.elements import FRAME, Drive, Item, Link
 
 if TYPE_CHECKING:
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
 
 # Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
 ZERO_LENGTH = 1e-12
-
-# Among the driver values of a published number, the time of a motion in time.
-TIME = "time"
 
 # What is no array, and is looked at without NumPy: most mechanisms hold nothing else.
 _NUMBERS = (complex, float, int)

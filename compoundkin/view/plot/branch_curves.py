@@ -16,6 +16,7 @@ from compoundkin.configurations.circuit import Branch, Circuit
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.kinematics.configuration import label
 from compoundkin.kinematics.quantities import degrees
+from compoundkin.model.attributes import DEGREES, unit_of
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.branch_lines import (
     OF_ANGLES,
@@ -29,7 +30,7 @@ from compoundkin.view.plot.branch_lines import (
     turns,
     wrapped,
 )
-from compoundkin.view.plot.plotted_rows import TURN, Shown
+from compoundkin.view.plot.plotted_rows import TURN, Plotted
 from compoundkin.view.plot.point_labels import Label
 
 # Branches of one circuit one after another, and again from the first.
@@ -57,18 +58,18 @@ class Drawing:
     """What all panels share: the circuits, the horizontal axis, and where the one turn of a periodic driver begins."""
 
     positions: Positions
-    across: Shown
+    across: Plotted
     low: float | None
 
     @classmethod
-    def of(cls, positions: Positions, quantity: Shown) -> Drawing:
+    def of(cls, positions: Positions, quantity: Plotted) -> Drawing:
         """The drawing of circuits."""
         found = positions.found
         is_angle = positions.drives[found.driver].is_angle
-        unit = "deg" if is_angle else found.structure.mechanism.unit or "length"
+        unit = DEGREES if is_angle else unit_of(found.structure.mechanism.unit, "length")
         curves = [curve_of(positions, branch, quantity).x for branch in found.branches]
         low = seam(curves, OF_DRIVERS) if found.period else None
-        return cls(positions, Shown(found.driver, unit, positions.values), low)
+        return cls(positions, Plotted(found.driver, unit, positions.values), low)
 
     @property
     def found(self) -> Circuits:
@@ -109,7 +110,7 @@ class Drawing:
             return plot_style.COLOURS[0] if circuit.number == self.own else FAINT
         return plot_style.COLOURS[circuit.number - 1]
 
-    def panel(self, axes: Any, quantity: Shown, labels: list[Label]) -> None:
+    def panel(self, axes: Any, quantity: Plotted, labels: list[Label]) -> None:
         """All branches in one panel, their limit positions and change points."""
         branches = [(circuit, branch) for circuit in self.found.circuits for branch in circuit.branches]
         curves = [curve_of(self.positions, branch, quantity) for _, branch in branches]
@@ -165,7 +166,7 @@ class Drawing:
                 found.setdefault(id(limit), one)
         return list(found.values())
 
-    def _start(self, axes: Any, quantity: Shown, low: float | None) -> None:
+    def _start(self, axes: Any, quantity: Plotted, low: float | None) -> None:
         """A diamond where solving begins."""
         start = start_position(self.found)
         if start is not None:
@@ -174,7 +175,7 @@ class Drawing:
             at = self._at(np.ravel(x), np.ravel(y), low)
             axes.plot(*at, **START, color=plot_style.INK, zorder=6, clip_on=False)
 
-    def _frame(self, axes: Any, curves: Sequence[Curve], low: float | None, quantity: Shown) -> None:
+    def _frame(self, axes: Any, curves: Sequence[Curve], low: float | None, quantity: Plotted) -> None:
         """The ranges of both axes: a whole turn where a curve is cut at its ends."""
         if self.low is not None and any(np.ptp(turns(curve.x, self.low)) for curve in curves):
             axes.set_xlim(self.low, self.low + TURN)

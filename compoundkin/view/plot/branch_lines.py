@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import cast
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.configurations.circuit import Branch, Limit
@@ -17,12 +16,12 @@ from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.driver_range import TURN as FULL
 from compoundkin.configurations.enumeration import dimensions_at
 from compoundkin.configurations.segments import CHANGE, NONE
-from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quantities import degrees, order_of, quantity
+from compoundkin.kinematics.quantities import degrees, quantity, whole_and_part
 from compoundkin.kinematics.results import unwrapped
+from compoundkin.model.attributes import ALSO, order_of, vector_of
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.view.plot.plotted_rows import TURN, Shown, vector_of
+from compoundkin.view.plot.plotted_rows import TURN, Plotted
 
 # Places on a strand for a turn of the driver's period: equal steps on a half circle whose diameter is the strand's
 # interval, so that they lie close where curves are steep.
@@ -128,29 +127,22 @@ def _positions(found: Circuits, rows: Number, values: Number, sides: Number) -> 
     return Positions(found, values, run.world)
 
 
-def shown(positions: Positions, name: str) -> tuple[Shown, ...]:
+def shown(positions: Positions, name: str) -> tuple[Plotted, ...]:
     """A quantity by its name, (strands, places), angles in degrees; a point as its coordinates.
 
     Raises UnknownName with the nearest name there is, InvalidInput for rates.
     """
-    # of a motion, `quantity` asks for its points, links, pairs and drivers only
-    motion = cast(Motion, positions)
-    vector, part = vector_of(name)
+    vector, _ = vector_of(name)
     if order_of(vector):
         owner = vector.rpartition(".")[0]
-        what = quantity(motion, owner)
-        position = "x" if what.is_vector else "angle" if what.is_angle else "displacement"
+        what = quantity(positions, owner)
+        position = "x" if what.is_vector else next(iter(ALSO[what.dimension]))
         remedy = f"take {owner}.{position}, or plot a motion: solve() it"
         raise InvalidInput(Problem(name, "circuits show positions, not rates", remedy))
-    try:
-        found, part = quantity(motion, name), ""
-    except UnknownName:
-        if not part or not quantity(motion, vector).is_vector:
-            raise
-        found = quantity(motion, vector)
+    found, part = whole_and_part(positions, name)
     # angles go on from place to place, without leaps by a turn
-    values = degrees(unwrapped(found.values)) if found.is_angle else found.values
-    one = Shown(found.name, "deg" if found.is_angle else found.unit, values)
+    values = unwrapped(found.values) if found.is_angle else found.values
+    one = Plotted(**vars(replace(found, values=values).shown))
     if part:
         return (one.part(part),)
     return (one.part("x"), one.part("y")) if one.is_vector else (one,)
@@ -170,7 +162,7 @@ class Curve:
     changes: tuple[int, ...]
 
 
-def curve_of(positions: Positions, branch: Branch, one: Shown) -> Curve:
+def curve_of(positions: Positions, branch: Branch, one: Plotted) -> Curve:
     """The curve of a branch."""
     found, visits = positions.found, branch.visits
     x = np.concatenate([positions.values[v.row][:: v.sense] + v.periods * found.period for v in visits])

@@ -13,7 +13,7 @@ from compoundkin.base.series import Number
 from compoundkin.view.plot.extremes import CONSTANT
 from compoundkin.view.plot.plot_picture import Plot
 from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, colours
-from compoundkin.view.plot.plotted_rows import Shown
+from compoundkin.view.plot.plotted_rows import Plotted
 from compoundkin.view.plot.point_labels import Label, place
 
 WIDTH = 7.0
@@ -71,7 +71,7 @@ def ticks(axis: Any, is_angle: bool, most: int) -> None:
     axis.set_major_locator(MultipleLocator(step) if step else MaxNLocator(most, steps=(1, 2, 2.5, 5, 10)))
 
 
-def axis_labels(axes: Any, x: Shown | None, y: Shown, room: int) -> None:
+def axis_labels(axes: Any, x: Plotted | None, y: Plotted, room: int) -> None:
     """Names and units, and the ticks that suit them; the unit goes below a name with more than `room` characters."""
     if x is not None:
         axes.set_xlabel(x.label)

@@ -8,7 +8,8 @@ from typing import Any
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.circuit_search import circuits as all_circuits
-from compoundkin.kinematics.quantities import degrees, order_of
+from compoundkin.kinematics.quantities import degrees
+from compoundkin.model.attributes import order_of
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Group, Structure

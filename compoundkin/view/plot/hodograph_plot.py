@@ -7,9 +7,10 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
+from compoundkin.model.attributes import readable
 from compoundkin.view.plot import canvas, planar, plot_style
 from compoundkin.view.plot.plot_picture import Plot
-from compoundkin.view.plot.plotted_rows import all_of, readable
+from compoundkin.view.plot.plotted_rows import all_of
 
 SIZE = (6.0, 5.6)
 

@@ -13,7 +13,7 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.events import Events, events
-from compoundkin.view.plot.plotted_rows import Shown, along
+from compoundkin.view.plot.plotted_rows import Plotted, along
 from compoundkin.view.plot.point_labels import Label, number
 
 # About so many marks along a curve, where it is not said after how many poses they come.
@@ -26,7 +26,7 @@ SAME = 1e-6
 class Drawing:
     """What all curves of a plot share: the driver or time, events, names of designs, labels to be placed."""
 
-    x: Shown
+    x: Plotted
     happened: Events
     called: Sequence[str]
     every: int

@@ -2,95 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from types import MappingProxyType
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.quantities import DRIVER, LINK, PAIR, POINT, Quantity, known_owners, quantity
+from compoundkin.kinematics.quantities import Quantity, known_owners, whole_and_part
+from compoundkin.model.attributes import LENGTH, PARTS, RATES, SPEED, TIME, VALUE, unit_of, vector_of
 
-# The real numbers of a planar vector, as they are called behind its name.
-LENGTH = "length"
-PARTS: Mapping[str, Callable[[Number], Number]] = MappingProxyType({"x": np.real, "y": np.imag, LENGTH: np.abs})
-TIME, POSE, DRIVEN = "time", "pose", "driver"
+POSE, DRIVEN = "pose", "driver"
 # The scale of angles, in degrees.
 TURN = 360.0
-POWERS = {"^2": "²", "^3": "³"}
-
-# What may be the time derivative of an attribute, the first that there is; nothing means the attribute of a bare name.
-RATES: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        **{a: (b,) for table in (LINK, PAIR) for a, b in zip(table, list(table)[1:], strict=False)},
-        "": ("angular_velocity", "rate"),
-        "angle": ("angular_velocity", "rate"),
-        "displacement": ("rate",),
-        "speed": ("acceleration",),
-        "acceleration": ("jerk",),
-        "x": ("velocity.x",),
-        "y": ("velocity.y",),
-        **{f"{a}.{xy}": (f"{b}.{xy}",) for a, b in zip(POINT, list(POINT)[1:4], strict=False) for xy in ("x", "y")},
-    }
-)
 
 
-@dataclass(frozen=True, eq=False)
-class Shown:
+@dataclass(frozen=True, eq=False, repr=False)
+class Plotted(Quantity):
     """A quantity along an axis: `values` real or complex, (designs, poses), angles in degrees.
 
-    `order` is how many time derivatives it takes, `scale` what its rounding is relative to; `vector` holds the vectors
-    that `values` are the lengths of.
+    `scale` is what its rounding is relative to; `vector` holds the vectors that `values` are the lengths of.
     """
 
-    name: str
-    unit: str
-    values: Number
-    order: int = 0
     scale: float = 1.0
     vector: Number | None = None
 
-    @property
-    def label(self) -> str:
-        """The name with its unit.
-
-        >>> Shown("G.acceleration", "mm/s^2", np.zeros((1, 1))).label
-        'G.acceleration [mm/s²]'
-        """
-        return f"{self.name} [{readable(self.unit)}]".lstrip() if self.unit else self.name
-
-    @property
-    def is_vector(self) -> bool:
-        """Whether it is a planar vector."""
-        return np.iscomplexobj(self.values)
-
-    @property
-    def is_angle(self) -> bool:
-        """Whether it is in degrees."""
-        return self.unit == "deg"
-
-    def part(self, name: str) -> Shown:
+    def part(self, name: str) -> Self:
         """The component or the length of a vector."""
-        vector = self.values if name == LENGTH else None
-        return Shown(f"{self.name}.{name}", self.unit, PARTS[name](self.values), self.order, self.scale, vector)
+        return replace(super().part(name), vector=self.values if name == LENGTH else None)
 
     @property
-    def parts(self) -> tuple[Shown, ...]:
+    def parts(self) -> tuple[Self, ...]:
         """The components and the length of a vector; what is no vector, as it is."""
         return tuple(self.part(name) for name in PARTS) if self.is_vector else (self,)
 
 
-def readable(unit: str) -> str:
-    """A unit with its powers raised."""
-    for plain, raised in POWERS.items():
-        unit = unit.replace(plain, raised)
-    return unit
-
-
-def shown(motion: Motion, name: str) -> Shown:
+def shown(motion: Motion, name: str) -> Plotted:
     """The quantity of a name; a component or the length of a vector as "G.velocity.x", "G.velocity.length".
 
     Raises UnknownName with the nearest name there is.
@@ -100,27 +49,9 @@ def shown(motion: Motion, name: str) -> Shown:
     >>> shown(solve(load_named("six-bar")), "G.velocity.length").label
     'G.velocity.length [mm/s]'
     """
-    owner, part = vector_of(name)
-    try:
-        found = _rows(motion, quantity(motion, name).shown)
-    except UnknownName:
-        if not part:
-            raise
-        whole = _rows(motion, quantity(motion, owner).shown)
-        if not whole.is_vector:
-            raise UnknownName(Problem(name, f"{owner} is no vector", f"leave .{part} out")) from None
-        return whole.part(part)
-    return found
-
-
-def vector_of(name: str) -> tuple[str, str]:
-    """The vector and its part that a name may mean; the part is empty where it can mean none.
-
-    >>> vector_of("G.velocity.x"), vector_of("G.x"), vector_of("G.length")
-    (('G.velocity', 'x'), ('G.x', ''), ('G', 'length'))
-    """
-    owner, _, part = name.rpartition(".")
-    return (owner, part) if part == LENGTH or (part in PARTS and "." in owner) else (name, "")
+    whole, part = whole_and_part(motion, name)
+    found = _rows(motion, whole)
+    return found.part(part) if part else found
 
 
 def rate_name(motion: Motion, name: str) -> str:
@@ -145,7 +76,7 @@ def rate_name(motion: Motion, name: str) -> str:
     raise UnknownName(Problem(name, "a phase plot needs a quantity whose rate has a name", remedy))
 
 
-def along(motion: Motion, against: str | None) -> tuple[Shown, bool]:
+def along(motion: Motion, against: str | None) -> tuple[Plotted, bool]:
     """What a plot runs along, and whether it is known where the mechanism cannot be assembled.
 
     None is the time of a motion in time, else its first driver that moves. Raises UnknownName.
@@ -154,11 +85,11 @@ def along(motion: Motion, against: str | None) -> tuple[Shown, bool]:
         what, remedy = "the motion has a single pose", "solve it at several values of a driver"
         raise InvalidInput(Problem("motion", what, remedy))
     if against == POSE:
-        return Shown(POSE, "", _shaped(motion, np.arange(motion.inputs.poses, dtype=float))), True
+        return Plotted(POSE, "", _shaped(motion, np.arange(motion.inputs.poses, dtype=float))), True
     if against == TIME or (against is None and motion.time is not None):
         if motion.time is None:
             raise InvalidInput(Problem(TIME, "this is no motion in time", "solve(..., time=...)"))
-        return Shown(TIME, "s", _shaped(motion, motion.time)), True
+        return Plotted(TIME, unit_of("", "time"), _shaped(motion, motion.time), dimension="time"), True
     if against in (None, DRIVEN):
         return driver(motion), True
     found = _named(motion, str(against))
@@ -168,7 +99,7 @@ def along(motion: Motion, against: str | None) -> tuple[Shown, bool]:
     return found, False
 
 
-def _named(motion: Motion, against: str) -> Shown:
+def _named(motion: Motion, against: str) -> Plotted:
     try:
         return shown(motion, against)
     except UnknownName:
@@ -178,9 +109,9 @@ def _named(motion: Motion, against: str) -> Shown:
         raise UnknownName(Problem(against, "there is nothing of this name to draw against", known)) from None
 
 
-def driver(motion: Motion) -> Shown:
+def driver(motion: Motion) -> Plotted:
     """The first driver that moves; the first of all where none does."""
-    rows = {name: shown(motion, f"{name}.{next(iter(DRIVER))}") for name in motion.drives}
+    rows = {name: shown(motion, f"{name}.{VALUE}") for name in motion.drives}
     if not rows:
         raise InvalidInput(Problem(DRIVEN, "the mechanism has no driver", f"against={POSE!r}"))
     moving = [name for name, row in rows.items() if np.ptp(row.values, axis=-1).any()]
@@ -188,7 +119,7 @@ def driver(motion: Motion) -> Shown:
     return replace(rows[name], name=name)
 
 
-def all_of(motion: Motion, names: Sequence[str]) -> tuple[Shown, ...]:
+def all_of(motion: Motion, names: Sequence[str]) -> tuple[Plotted, ...]:
     """The quantities of names, or what the mechanism states as its outputs where none are given."""
     chosen = names or motion.mechanism.outputs
     if not chosen:
@@ -196,14 +127,14 @@ def all_of(motion: Motion, names: Sequence[str]) -> tuple[Shown, ...]:
     return tuple(shown(motion, name) for name in chosen)
 
 
-def _rows(motion: Motion, found: Quantity) -> Shown:
-    values = _shaped(motion, found.values)
+def _rows(motion: Motion, found: Quantity) -> Plotted:
+    values = _shaped(motion, found.shown.values)
     largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
     scale = max(largest, (TURN if found.is_angle else motion.size) * _pace(motion) ** found.order)
     owner, _, attribute = found.name.rpartition(".")
-    is_speed = attribute == "speed" and owner in motion.points
+    is_speed = attribute == SPEED and owner in motion.points
     vector = _shaped(motion, motion.points[owner].velocity) if is_speed else None
-    return Shown(found.name, found.unit, values, found.order, scale, vector)
+    return Plotted(**{**vars(found.shown), "values": values}, scale=scale, vector=vector)
 
 
 def _pace(motion: Motion) -> float:

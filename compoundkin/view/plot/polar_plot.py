@@ -9,9 +9,10 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
+from compoundkin.model.attributes import LENGTH, readable
 from compoundkin.view.plot import canvas, planar, plot_style
 from compoundkin.view.plot.plot_picture import Plot
-from compoundkin.view.plot.plotted_rows import LENGTH, Shown, all_of, driver, readable, shown
+from compoundkin.view.plot.plotted_rows import Plotted, all_of, driver, shown
 
 SIZE = (5.6, 5.8)
 # What Matplotlib leaves out of legends begins so.
@@ -60,7 +61,7 @@ def polar(
         return canvas.finished(figure, [])
 
 
-def _check(radii: Sequence[Shown], angle: Shown) -> None:
+def _check(radii: Sequence[Plotted], angle: Plotted) -> None:
     if not angle.is_angle:
         raise InvalidInput(Problem(angle.name, "it is no angle", 'name one: around="crank.angle"'))
     for one in radii:
@@ -69,13 +70,13 @@ def _check(radii: Sequence[Shown], angle: Shown) -> None:
             raise InvalidInput(Problem(one.name, told, "draw them one by one"))
 
 
-def _line(axes: Any, shared: planar.Drawing, d: int, angle: Any, radius: Shown, colour: Any) -> None:
+def _line(axes: Any, shared: planar.Drawing, d: int, angle: Any, radius: Plotted, colour: Any) -> None:
     axes.plot(angle, radius.values[d], color=colour, label=radius.name)
     beside = shared.happened.beside(d, len(angle))
     canvas.ring(axes, angle[beside], radius.values[d][beside], colour)
 
 
-def _rings(axes: Any, radii: Sequence[Shown]) -> None:
+def _rings(axes: Any, radii: Sequence[Plotted]) -> None:
     """The range of radii and few rings, the zero circle among them where it lies inside."""
     from matplotlib.ticker import MaxNLocator
 

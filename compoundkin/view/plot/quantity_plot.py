@@ -15,7 +15,7 @@ from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.events import Events, at, events
 from compoundkin.view.plot.extremes import extremes as found_extremes
 from compoundkin.view.plot.plot_picture import Plot
-from compoundkin.view.plot.plotted_rows import Shown, all_of, along
+from compoundkin.view.plot.plotted_rows import Plotted, all_of, along
 from compoundkin.view.plot.point_labels import Label, number
 
 FIRST, EACH = 2.0, 2.0
@@ -35,8 +35,8 @@ STRIP = 0.1
 class Panel:
     """One axes: its curves, and what its vertical axis is called."""
 
-    title: Shown
-    curves: tuple[Shown, ...]
+    title: Plotted
+    curves: tuple[Plotted, ...]
 
 
 def plot(
@@ -89,7 +89,7 @@ def plot(
         return canvas.finished(figure, labels)
 
 
-def arranged(shown: Sequence[Shown], designs: int, stacked: bool) -> tuple[Panel, ...]:
+def arranged(shown: Sequence[Plotted], designs: int, stacked: bool) -> tuple[Panel, ...]:
     """The panels of quantities: one each, one for each unit, or with several designs one for each part."""
     if designs > 1:
         return tuple(Panel(part, (part,)) for one in shown for part in one.parts)
@@ -101,11 +101,11 @@ def arranged(shown: Sequence[Shown], designs: int, stacked: bool) -> tuple[Panel
         same = [one for one in shown if one.unit == unit]
         names = same[0].name if len(same) == 1 else ""
         parts = tuple(part for one in same for part in one.parts)
-        found.append(Panel(Shown(names, unit, same[0].values, scale=max(one.scale for one in same)), parts))
+        found.append(Panel(Plotted(names, unit, same[0].values, scale=max(one.scale for one in same)), parts))
     return tuple(found)
 
 
-def _draw(axes: Any, x: Shown, panel: Panel, happened: Events, marked: bool | None, labels: list[Label]) -> None:
+def _draw(axes: Any, x: Plotted, panel: Panel, happened: Events, marked: bool | None, labels: list[Label]) -> None:
     """The curves of a panel, their extremes, and rings beside limit positions."""
     designs = len(x.values)
     shades = plot_style.colours(len(panel.curves), designs)
@@ -140,7 +140,7 @@ def _upwards(axes: Any, panel: Panel, near_limits: bool) -> tuple[float, float] 
 
 
 def _extremes(
-    axes: Any, x: Number, curve: Shown, d: int, window: tuple[float, float] | None, colour: Any, labels: list[Label]
+    axes: Any, x: Number, curve: Plotted, d: int, window: tuple[float, float] | None, colour: Any, labels: list[Label]
 ) -> None:
     vector = None if curve.vector is None else curve.vector[d]
     for one in found_extremes(x, curve.values[d], curve.order > 0, curve.scale, vector):
@@ -162,7 +162,7 @@ def _window(panel: Panel, values: Number, near_limits: bool) -> tuple[float, flo
     return float(max(low - far, known.min() - edge)), float(min(high + far, known.max() + edge))
 
 
-def _mark_events(axes: Any, x: Shown, happened: Events, is_input: bool) -> None:
+def _mark_events(axes: Any, x: Plotted, happened: Events, is_input: bool) -> None:
     """Shades where nothing is assembled, and dashes at change points."""
     designs = len(x.values)
     shades = [plot_style.SHADE] if designs == 1 else plot_style.colours(1, designs)
@@ -178,7 +178,7 @@ def _mark_events(axes: Any, x: Shown, happened: Events, is_input: bool) -> None:
             axes.axvline(where, color=colour, linestyle="--", linewidth=1.0, zorder=1)
 
 
-def _across(axes: Sequence[Any], x: Shown, is_input: bool) -> None:
+def _across(axes: Sequence[Any], x: Plotted, is_input: bool) -> None:
     """The horizontal axis from end to end of what drives the motion."""
     known = x.values[np.isfinite(x.values)]
     if is_input and np.ptp(known) > 0:

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.kinematics.quantities import PER_SECOND, degrees
+from compoundkin.kinematics.quantities import degrees
+from compoundkin.model.attributes import PER_SECOND
 from compoundkin.model.laws import ConstantAcceleration, ConstantSpeed, Function, Law
 from compoundkin.model.laws.motion_programs import Program, Segment
 from compoundkin.model.laws.time_tables import TimeTable

@@ -11,7 +11,8 @@ import numpy as np
 
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import FULL_TURN
-from compoundkin.kinematics.quantities import PER_SECOND, Quantity, order_of
+from compoundkin.kinematics.quantities import Quantity
+from compoundkin.model.attributes import PER_SECOND, order_of
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure

@@ -13,9 +13,9 @@ import numpy as np
 
 from compoundkin.base.errors import NotAssembled, UnassembledPoses, UnknownName
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.quantities import HIGHEST_ORDER, quantity
+from compoundkin.kinematics.quantities import quantity
+from compoundkin.model.attributes import HIGHEST_ORDER, TIME
 from compoundkin.model.elements import Expectation
-from compoundkin.model.validation import TIME
 from compoundkin.structure import Structure
 from compoundkin.view.report.links_and_pairs import driven_pairs
 from compoundkin.view.report.report_data import Cell, Column, Paragraph, Section, Table

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -10,7 +10,8 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.quantities import Quantity, quantity
+from compoundkin.kinematics.quantities import Quantity, owner_of, quantity
+from compoundkin.model.attributes import TIME, VALUE, unit_of
 from compoundkin.view.report.report_data import Column
 
 # A table over the cycle has at most this many rows besides the last pose.
@@ -47,7 +48,7 @@ class Sample:
     def quantity(self, name: str) -> Quantity:
         """A quantity of this design, angles in degrees."""
         found = quantity(self.motion, name).shown
-        return Quantity(found.name, self.of(found.values), found.unit, found.order, found.is_angle)
+        return replace(found, values=self.of(found.values))
 
     @cached_property
     def assembled(self) -> Any:
@@ -57,10 +58,8 @@ class Sample:
     @cached_property
     def drivers(self) -> tuple[Quantity, ...]:
         """The values of the drivers, angles in degrees."""
-        unit = self.motion.mechanism.unit or "length"
-        found = [(name, drive, "rad" if drive.is_angle else unit) for name, drive in self.motion.drives.items()]
-        made = [Quantity(name, self.of(d.value), unit, 0, d.is_angle).shown for name, d, unit in found]
-        return tuple(made)
+        found = [(name, owner_of(self.motion, "drives", name).read(VALUE).shown) for name in self.motion.drives]
+        return tuple(replace(one, name=name, values=self.of(one.values)) for name, one in found)
 
     @cached_property
     def varying(self) -> tuple[Quantity, ...]:
@@ -76,7 +75,7 @@ class Sample:
     def places(self) -> tuple[Column, Any]:
         """What tells poses apart: the time, the value of the only driver that changes, else their numbers, from 0."""
         if self.times is not None:
-            return Column("time", "s", "fixed"), self.times
+            return Column(TIME, unit_of("", "time"), "fixed"), self.times
         if len(self.varying) == 1:
             return self.driver_column(self.varying[0]), self.varying[0].values
         return Column("pose", style="each"), np.arange(self.poses)
@@ -98,7 +97,7 @@ class Sample:
 
     def floor(self, found: Quantity) -> float:
         """Below which a quantity is rounding: by the mechanism's size, its drivers' rates, and its own vectors."""
-        size = 1.0 if found.unit.startswith(("deg", "rad")) else self.motion.mechanism.geometry.size
+        size = 1.0 if found.dimension == "angle" else self.motion.mechanism.geometry.size
         values = np.abs(found.values)
         largest = float(np.max(values, initial=0.0, where=np.isfinite(values))) if found.is_vector else 0.0
         return ROUNDING * max(largest, size * self._rate**found.order)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.kinematics.quantities import order_of, quantity
+from compoundkin.kinematics.quantities import quantity
+from compoundkin.model.attributes import order_of
 
 
 @pytest.mark.parametrize(

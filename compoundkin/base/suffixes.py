@@ -1,0 +1,101 @@
+"""The suffixes of files: what can be saved as what, in one table that all writers and the command line read."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal, TypeAlias
+
+from compoundkin.base.errors import InvalidInput, Problem
+
+Kind: TypeAlias = Literal["mechanism", "table", "picture", "plot", "animation", "page", "report"]
+
+# Of each kind its suffixes and the form that each means; the first suffix of a form is told to people.
+SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
+    {
+        "mechanism": {".toml": "toml", ".json": "json"},
+        "table": {".csv": "csv", ".json": "json", ".npz": "npz", ".parquet": "parquet"},
+        "picture": {".svg": "svg", ".png": "png", ".pdf": "pdf"},
+        "plot": {".png": "png", ".svg": "svg", ".pdf": "pdf"},
+        "animation": {".gif": "gif", ".mp4": "mp4", ".svg": "svg"},
+        "page": {".html": "html", ".htm": "html"},
+        "report": {
+            ".txt": "text",
+            ".md": "markdown",
+            ".markdown": "markdown",
+            ".json": "json",
+            ".html": "html",
+            ".htm": "html",
+        },
+    }
+)
+# What a name without a suffix means, where there is one form that everybody expects.
+WITHOUT: Mapping[Kind, str] = MappingProxyType({"page": "html", "report": "text"})
+
+
+def form_of(kind: Kind, path: str | os.PathLike[str]) -> str:
+    """Return the form that a file's suffix tells; raises InvalidInput where such a thing is not saved so.
+
+    >>> form_of("animation", "six-bar.GIF"), form_of("page", "six-bar")
+    ('gif', 'html')
+    >>> form_of("plot", "a.gif")
+    Traceback (most recent call last):
+    compoundkin.base.errors.InvalidInput: a.gif: a plot is not saved as '.gif', \
+an animation is; plots end in .png, .svg, .pdf
+    """
+    suffix = suffix_of(path)
+    form = SUFFIXES[kind].get(suffix) if suffix else WITHOUT.get(kind)
+    if form is None:
+        what = f"{_one(kind)} is not saved as {suffix!r}{_others(suffix)}" if suffix else "the file has no suffix"
+        raise InvalidInput(Problem(str(path), what, _ends(kind)))
+    return form
+
+
+def everything() -> str:
+    """Return what can be saved as what, in words."""
+    return "; ".join(map(_ends, SUFFIXES))
+
+
+def suffix_of(path: str | os.PathLike[str]) -> str:
+    """Return the suffix of a file's name in small letters, empty where it has none."""
+    return Path(path).suffix.lower()
+
+
+def first_suffix(kind: Kind) -> str:
+    """Return the suffix that a kind of file has where nobody chose one."""
+    return next(iter(SUFFIXES[kind]))
+
+
+def alternatives(kind: Kind) -> str:
+    """Return the suffixes of a kind, as helps tell them.
+
+    >>> alternatives("animation")
+    '.gif, .mp4 or .svg'
+    """
+    *most, last = _told(kind)
+    return f"{', '.join(most)} or {last}"
+
+
+def _told(kind: Kind) -> list[str]:
+    """The first suffix of each form."""
+    firsts: dict[str, str] = {}
+    for suffix, form in SUFFIXES[kind].items():
+        firsts.setdefault(form, suffix)
+    return list(firsts.values())
+
+
+def _ends(kind: Kind) -> str:
+    plural = f"{kind} files" if kind == "mechanism" else f"{kind}s"
+    return f"{plural} end in {', '.join(_told(kind))}"
+
+
+def _others(suffix: str) -> str:
+    """What else is saved with a suffix."""
+    kinds = [_one(kind) for kind in SUFFIXES if suffix in SUFFIXES[kind]]
+    return f", {' and '.join(kinds)} {'is' if len(kinds) == 1 else 'are'}" if kinds else ""
+
+
+def _one(kind: Kind) -> str:
+    return f"{'an' if kind.startswith('a') else 'a'} {kind}"

@@ -1,0 +1,117 @@
+"""The words for what points, links, pairs and drivers have, "G.velocity": one catalogue, with symbols and units."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from types import MappingProxyType
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.series import Number
+
+Kind: TypeAlias = Literal["points", "links", "pairs", "drives"]
+Dimension: TypeAlias = Literal["length", "angle", "time", "number"]
+
+PER_SECOND = ("", "/s", "/s^2", "/s^3")
+HIGHEST_ORDER = len(PER_SECOND) - 1
+RADIANS, DEGREES = "rad", "deg"
+RAISED = {"^2": "²", "^3": "³"}
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """What may follow a name: a word, its symbol, and how many time derivatives it takes."""
+
+    word: str
+    symbol: str
+    order: int
+
+
+def _catalogue(*rows: tuple[str, str, int]) -> Mapping[str, Attribute]:
+    return MappingProxyType({row[0]: Attribute(*row) for row in rows})
+
+
+# The first attribute is meant by a name alone; the first of each order is a column of a whole table.
+POINT = _catalogue(
+    ("position", "r", 0), ("velocity", "v", 1), ("acceleration", "a", 2), ("jerk", "j", 3),
+    ("x", "x", 0), ("y", "y", 0), ("speed", "|v|", 1),
+)  # fmt: skip
+LINK = _catalogue(
+    ("angle", "θ", 0), ("angular_velocity", "ω", 1), ("angular_acceleration", "α", 2), ("angular_jerk", "α'", 3)
+)
+PAIR = _catalogue(("value", "q", 0), ("rate", "q'", 1), ("second", "q''", 2), ("third", "q'''", 3))
+DRIVER: Mapping[str, Attribute] = MappingProxyType(
+    {**PAIR, **_catalogue(("speed", "q'", 1), ("acceleration", "q''", 2), ("jerk", "q'''", 3))}
+)
+# By what a motion calls its tables of them, in the order in which a name is tried.
+CATALOGUE: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
+    {"points": POINT, "links": LINK, "pairs": PAIR, "drives": DRIVER}
+)
+# What the value of a pair or a driver is called besides, by what it is.
+ALSO: Mapping[Dimension, Mapping[str, Attribute]] = MappingProxyType(
+    {"angle": _catalogue(("angle", "q", 0)), "length": _catalogue(("displacement", "q", 0))}
+)
+VALUE, TIME = next(iter(PAIR)), "time"
+# The length of a point's velocity.
+SPEED = tuple(POINT)[-1]
+# The words of the derivatives, from the zeroth on, that a whole table has of each.
+OF_POINTS, OF_LINKS, OF_PAIRS = tuple(POINT)[:4], tuple(LINK), tuple(PAIR)
+OF_DRIVERS = (VALUE, *tuple(DRIVER)[4:])
+TABULATED: Mapping[Kind, tuple[str, ...]] = MappingProxyType(
+    {"drives": OF_DRIVERS, "points": OF_POINTS, "links": OF_LINKS, "pairs": OF_PAIRS}
+)
+
+# The real numbers of a planar vector, as they are called behind its name.
+LENGTH = "length"
+PARTS: Mapping[str, Callable[[Number], Number]] = MappingProxyType({"x": np.real, "y": np.imag, LENGTH: np.abs})
+
+# What may be the time derivative of an attribute, the first that there is; nothing means the attribute of a bare name.
+RATES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        **{a: (b,) for words in (OF_DRIVERS, OF_LINKS, OF_PAIRS) for a, b in pairwise(words)},
+        **dict.fromkeys(("", OF_LINKS[0]), (OF_LINKS[1], OF_PAIRS[1])),
+        **dict.fromkeys(ALSO["length"], (OF_PAIRS[1],)),
+        **{xy: (f"{OF_POINTS[1]}.{xy}",) for xy in ("x", "y")},
+        **{f"{a}.{xy}": (f"{b}.{xy}",) for a, b in pairwise(OF_POINTS) for xy in ("x", "y")},
+    }
+)
+
+
+def unit_of(length: str, dimension: Dimension, order: int = 0) -> str:
+    """The unit of a length, an angle or a time, or of its derivative; `length` is that of lengths, if it has a name.
+
+    >>> unit_of("mm", "length", 2), unit_of("", "length"), unit_of("", "angle", 1)
+    ('mm/s^2', 'length', 'rad/s')
+    """
+    units = {"length": length or LENGTH, "angle": RADIANS, TIME: "s", "number": ""}
+    return units[dimension] + PER_SECOND[order]
+
+
+def readable(unit: str) -> str:
+    """A unit with its powers raised."""
+    for plain, raised in RAISED.items():
+        unit = unit.replace(plain, raised)
+    return unit
+
+
+def order_of(name: str) -> int:
+    """How many time derivatives a quantity takes, as far as its name tells.
+
+    >>> order_of("G.velocity"), order_of("bar.angular_jerk"), order_of("G"), order_of("G.velocity.x")
+    (1, 3, 0, 1)
+    """
+    word = vector_of(name)[0].rpartition(".")[2] if "." in name else ""
+    return max((table[word].order for table in (POINT, LINK, DRIVER) if word in table), default=0)
+
+
+def vector_of(name: str) -> tuple[str, str]:
+    """The vector and its part that a name may mean; the part is empty where it can mean none.
+
+    >>> vector_of("G.velocity.x"), vector_of("G.x"), vector_of("G.length")
+    (('G.velocity', 'x'), ('G.x', ''), ('G', 'length'))
+    """
+    owner, _, part = name.rpartition(".")
+    return (owner, part) if part == LENGTH or (part in PARTS and "." in owner) else (name, "")
