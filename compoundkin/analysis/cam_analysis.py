@@ -8,10 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
+from compoundkin.base.arrays import dot
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, as_series, dot
+from compoundkin.base.series import Number, as_series
 from compoundkin.kinematics import Motion
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.profiled import Profiled

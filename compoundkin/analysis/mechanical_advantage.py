@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from compoundkin.analysis.coupler.relative_motion import SMALL, moving, relative_link, relative_point
+from compoundkin.base.arrays import Number, dot
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.series import Number, dot
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 

@@ -1,4 +1,4 @@
-"""Taylor series of a function of a series, and of a series given by an equation only.
+"""Series made of others: a function of one, one given by an equation only, a vector by its components.
 
 Source: A. Griewank and A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, sections 13.2 and 13.3.
 """
@@ -9,11 +9,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from compoundkin.base.series import Number, Series
+from compoundkin.base.arrays import Number, joined
+from compoundkin.base.series import Series
 
 
 def composed(coefficients: Sequence[Number], s: Series) -> Series:
-    """The series C(s(t)) from the Taylor coefficients of C at the leading coefficient of s, by Horner's rule.
+    """Return the series C(s(t)) from the Taylor coefficients of C at the leading coefficient of s, by Horner's rule.
 
     Needs as many coefficients as `s` has; more are not used.
 
@@ -29,7 +30,7 @@ def composed(coefficients: Sequence[Number], s: Series) -> Series:
 
 
 def implicit(start: Number, order: int, slope: Number, residual: Callable[[Series], Series]) -> Series:
-    """The series s with this leading coefficient that makes `residual(s)` zero, one coefficient after the other.
+    """Return the series s with this leading coefficient that makes `residual(s)` zero, one coefficient after the other.
 
     `slope` is the derivative of the residual by s at `start`; the coefficients are not finite where it is zero.
 
@@ -44,9 +45,20 @@ def implicit(start: Number, order: int, slope: Number, residual: Callable[[Serie
 
 
 def differentiated(coefficients: tuple[Number, ...]) -> tuple[Number, ...]:
-    """The Taylor coefficients of the derivative.
+    """Return the Taylor coefficients of the derivative.
 
     >>> differentiated((4.0, 4.0, 1.0))
     (4.0, 2.0)
     """
     return tuple([c * k for k, c in enumerate(coefficients)])[1:]
+
+
+def planar(x: Series, y: Series) -> Series:
+    """Return the planar vector with the (real) components x and y.
+
+    >>> planar(Series((1.0, 2.0)), Series((3.0, 4.0))).c
+    ((1+3j), (2+4j))
+    """
+    if len(x.c) == len(y.c):
+        return Series(tuple([joined(a, b) for a, b in zip(x.c, y.c, strict=True)]))
+    return x + y * 1j

@@ -5,9 +5,8 @@ from __future__ import annotations
 from math import factorial
 from typing import NamedTuple
 
-import numpy as np
-
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.arrays import Number, entry, whole_turns
+from compoundkin.base.series import Series, constant
 
 
 class End(NamedTuple):
@@ -49,11 +48,11 @@ class Pose:
 
     @classmethod
     def of(cls, z: Number, u: Number) -> Pose:
-        """A pose of order 0."""
+        """Make a pose of order 0."""
         return cls(constant(z), constant(u))
 
     def at(self, p: Series | Number) -> Series:
-        """Where the point that is `p` in the link's frame is in the world."""
+        """Return where the point that is `p` in the link's frame is in the world."""
         if isinstance(p, (complex, float, int)) and p == 0:
             return self.z
         if self is FIXED:
@@ -70,17 +69,26 @@ class Pose:
         return self.u.angle() if self.theta is None else self.theta
 
     def counted(self, near: Number) -> Pose:
-        """The pose with full turns counted: its angle is the one nearest to `near`.
+        """Return the pose with full turns counted: its angle is the one nearest to `near`.
 
         >>> Pose.of(0j, 1j).counted(8.0).angle.c[0].round(6)
         np.float64(7.853982)
         """
         theta = self.u.angle()
-        turns = np.round((near - theta.c[0]) / (2.0 * np.pi))
-        return Pose(self.z, self.u, theta + 2.0 * np.pi * turns)
+        return Pose(self.z, self.u, theta + whole_turns(near - theta.c[0]))
+
+    def entry(self, at: tuple[int, ...]) -> Pose:
+        """Return one pose of an array of them, at an index of whatever shape it broadcasts with.
+
+        >>> Pose.of(constant(1j).c[0], 1 + 0j).entry((3, 1)).z.c
+        (1j,)
+        """
+        z, u = (Series(tuple([complex(entry(c, at)) for c in part.c])) for part in (self.z, self.u))
+        theta = None if self.theta is None else Series(tuple([float(entry(c, at)) for c in self.theta.c]))
+        return Pose(z, u, theta)
 
     def derivative(self, p: Number, k: int) -> Number:
-        """The k-th time derivative of where the point `p` of the link is.
+        """Return the k-th time derivative of where the point `p` of the link is.
 
         >>> Pose(constant(1 + 0j), constant(1j)).derivative(2.0, 0)
         (1+2j)
@@ -92,13 +100,13 @@ class Pose:
         return found * factorial(k) if k > 1 else found
 
     def carry(self, end: End) -> End:
-        """The link's side of a pair, in the world."""
+        """Return the link's side of a pair, in the world."""
         if self is FIXED:
             return End(self.at(end.point), end.direction, end.measure)
         return End(self.at(end.point), None if end.direction is None else self.u * end.direction, end.measure)
 
     def compose(self, inner: Pose) -> Pose:
-        """The pose of what has pose `inner` in this link's frame."""
+        """Return the pose of what has pose `inner` in this link's frame."""
         if self is FIXED:
             return inner
         known = self.theta is not None and inner.theta is not None
@@ -112,7 +120,7 @@ class Pose:
         return Pose(Series(self.z.c[: order + 1]), Series(self.u.c[: order + 1]), theta)
 
     def inverse(self) -> Pose:
-        """The pose of the world as seen from the link."""
+        """Return the pose of the world as seen from the link."""
         back = self.u.conj()
         return Pose(-(back * self.z), back, None if self.theta is None else -self.theta)
 

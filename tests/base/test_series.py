@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import polynomial
 
-from compoundkin.base.series import Series, as_series, constant, planar
+from compoundkin.base.composition import planar
+from compoundkin.base.series import Series, as_series, constant
 from tests.support import differences, largest, random_planar, random_real, random_unit
 
 SEEDS = st.integers(0, 2**32 - 1)

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.analysis.coupler.centrodes import pole_moves
 from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, Relative, direction, relative
-from compoundkin.base.series import Number, cross, dot
+from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, UNKNOWN, Relative, direction, rate, relative
-from compoundkin.base.series import Number, Series, cross
+from compoundkin.base.arrays import cross
+from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 

@@ -17,7 +17,7 @@ from compoundkin.analysis.coupler.relative_motion import (
     relative,
     relative_point,
 )
-from compoundkin.base.series import Number, cross, dot
+from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 

@@ -10,21 +10,18 @@ from math import factorial
 
 import numpy as np
 
+from compoundkin.base.arrays import Number, cross, dot, turns_above
 from compoundkin.base.composition import composed, differentiated
-from compoundkin.base.curves.requirements import check_points, checked_range
-from compoundkin.base.curves.samples import Samples
+from compoundkin.base.curves.samples import Samples, check_points, checked_range, spans
 from compoundkin.base.curves.self_crossings import Crossing, crossings
-from compoundkin.base.curves.touch_points import held, touching
-from compoundkin.base.curves.undercut import spans
-from compoundkin.base.series import Number, Series, as_series, cross, dot
+from compoundkin.base.curves.touch_points import farthest, foot, held
+from compoundkin.base.series import Series, as_series
 
 # Two places of a curve whose distances from a point differ by less than the square of this part of the curve cannot
 # be told apart by samples; Newton starts this close to its answer.
 SAMPLES = 2048
 # Places where what is given as a curve is tried.
 TRIED = 7
-# Gauss's rule with this many points between two samples has the length to rounding.
-GAUSS = 3
 
 
 class Curve(ABC):
@@ -41,47 +38,42 @@ class Curve(ABC):
 
     @abstractmethod
     def _expansion(self, s: Number, order: int) -> tuple[Number, ...]:
-        """The Taylor coefficients of C at parameters within the period, an array of any shape."""
-
-    # --- points and derivatives ---
+        """Return the Taylor coefficients of C at parameters within the period, an array of any shape."""
 
     def expansion(self, s: Number, order: int) -> tuple[Number, ...]:
-        """The Taylor coefficients 0 .. order of C at the parameters `s`: complex, of the shape of `s`."""
+        """Return the Taylor coefficients 0 .. order of C at the parameters `s`: complex, of the shape of `s`."""
         return self._expansion(self.wrapped(s), order)
 
     def derivatives(self, s: Number, order: int) -> list[Number]:
-        """C and its derivatives by s up to an order: complex, of the shape of `s`."""
+        """Return C and its derivatives by s up to an order: complex, of the shape of `s`."""
         return [c * factorial(k) for k, c in enumerate(self.expansion(s, order))]
 
     def wrapped(self, s: Number) -> Number:
-        """The same parameters between `low` and `high` on a closed curve; on an open one as they are."""
+        """Return the same parameters between `low` and `high` on a closed curve; on an open one as they are."""
         s = np.asarray(s, dtype=float)[()]
-        if not self.closed:
-            return s
-        period = self.high - self.low
-        return s - period * np.floor((s - self.low) / period)
+        return s - turns_above(s, self.low, self.high - self.low) if self.closed else s
 
     def at(self, s: Series | Number) -> Series:
-        """The point of the curve at a parameter that changes in time."""
+        """Return the point of the curve at a parameter that changes in time."""
         s = as_series(s)
         return composed(self.expansion(s.c[0], s.order), s)
 
     def tangent(self, s: Series | Number) -> Series:
-        """The unit vector along the curve, towards greater s."""
+        """Return the unit vector along the curve, towards greater s."""
         s = as_series(s)
         return composed(differentiated(self.expansion(s.c[0], s.order + 1)), s).unit()
 
     def normal(self, s: Series | Number) -> Series:
-        """The unit vector to the right of the tangent: outward on a counterclockwise curve."""
+        """Return the unit vector to the right of the tangent: outward on a counterclockwise curve."""
         return self.tangent(s) * -1j
 
     def curvature(self, s: Number) -> Number:
-        """The curvature, 1 / length: positive where the curve turns left, which a counterclockwise convex one does."""
+        """Return the curvature, 1 / length: positive where the curve turns left, as counterclockwise convex ones do."""
         _, first, second = self.derivatives(s, 2)
         return cross(first, second) / np.abs(first) ** 3
 
     def covers(self, s: Number) -> Number:
-        """Whether parameters belong to the curve; an open one has two ends."""
+        """Tell whether parameters belong to the curve; an open one has two ends."""
         return np.isfinite(s) if self.closed else (self.low <= s) & (s <= self.high)
 
     @property
@@ -122,14 +114,10 @@ class Curve(ABC):
     @cached_property
     def length(self) -> float:
         """The length of arc from `low` to `high`."""
-        samples = self.samples
-        starts = samples.s if self.closed else samples.s[:-1]
-        nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
-        places = starts[:, None] + 0.5 * samples.step * (nodes + 1.0)
-        return float(np.sum(np.abs(self.expansion(places, 1)[1]) @ weights) * 0.5 * samples.step)
+        return self.samples.length(lambda s: np.abs(self.expansion(s, 1)[1]))
 
     def crosses_itself(self) -> tuple[Crossing, ...]:
-        """The places where the curve crosses itself; none for a proper profile.
+        """Find the places where the curve crosses itself; none for a proper profile.
 
         Loops smaller than the distance of two samples, and branches that touch without crossing, are not seen.
         """
@@ -138,7 +126,7 @@ class Curve(ABC):
     # --- what touches the curve ---
 
     def foot(self, p: Series | Number) -> Series:
-        """The parameter of the point of the curve nearest to a point that moves.
+        """Find the parameter of the point of the curve nearest to a point that moves.
 
         The nearest of the whole curve; of two places equally near within the square of the samples' distance, either.
         Where it is an end of an open curve and the point lies beyond (`beyond`), it stays there. Coefficients after the
@@ -148,18 +136,10 @@ class Curve(ABC):
         >>> [round(float(c), 12) for c in unit_circle.foot(Series((3j, 2 + 0j))).c]  # 90 degrees, 2 / 3 rad/s clockwise
         [1.570796326795, -0.666666666667]
         """
-        p = as_series(p)
-
-        def rise(s: Number, point: Number) -> tuple[Number, Number]:
-            place, first, second = self.derivatives(s, 2)
-            return dot(point - place, first), dot(point - place, second) - dot(first, first)
-
-        return touching(
-            self, p, self.size, rise, self.samples.nearest, lambda place, along, point: (point - place).dot(along)
-        )
+        return foot(self, as_series(p))
 
     def support(self, n: Series | Number) -> Series:
-        """The parameter of the point farthest in a direction that turns: where a flat face with this normal touches.
+        """Find the parameter of the point farthest in a direction that turns: where a face with this normal touches.
 
         `n` is the face's normal away from the curve, of any length. Where an end of an open curve is farthest, it stays
         there. Of several points equally far, any; coefficients after the first are not finite where the curve is
@@ -169,27 +149,17 @@ class Curve(ABC):
         >>> round(float(ellipse.support(1 + 2j).c[0]), 12)  # tan s = (b / a) (2 / 1)
         0.785398163397
         """
-        n = as_series(n)
+        return farthest(self, as_series(n))
 
-        def rise(s: Number, direction: Number) -> tuple[Number, Number]:
-            _, first, second = self.derivatives(s, 2)
-            return dot(direction, first), dot(direction, second)
-
-        return touching(
-            self, n, np.abs(n.c[0]), rise, self.samples.outermost, lambda _, along, direction: direction.dot(along)
-        )
-
-    def beyond(self, p: Series | Number, foot: Series | None = None) -> Number:
-        """Whether points lie beyond an end of an open curve, so that their foot (if known, `foot`) is that end."""
+    def beyond(self, p: Series | Number, known: Series | None = None) -> Number:
+        """Tell whether points lie beyond an end of an open curve, which then is their foot (`known`, if it is)."""
         p = as_series(p).c[0]
-        s = (self.foot(p) if foot is None else foot).c[0]
+        s = (self.foot(p) if known is None else known).c[0]
         place, along = self.expansion(s, 1)
         return held(self, s, dot(p - place, along) / np.abs(along) / self.size)
 
-    # --- the parallel curve ---
-
     def offset(self, distance: float) -> Analytic:
-        """The parallel curve at a distance along the normal: outside a counterclockwise curve if positive.
+        """Return the parallel curve at a distance along the normal: outside a counterclockwise curve if positive.
 
         Its own direction turns back where the curve is undercut, see `undercut`.
 
@@ -206,11 +176,11 @@ class Curve(ABC):
         return Analytic(parallel, self.low, self.high, self.closed, self.breaks)
 
     def offset_is_regular(self, distance: float) -> bool:
-        """Whether the parallel curve has no cusp: nowhere is the curve's radius on that side less than the distance."""
+        """Tell whether the parallel curve has no cusp: no radius on that side is less than the distance."""
         return not self.undercut(distance)
 
     def undercut(self, distance: float) -> tuple[tuple[float, float], ...]:
-        """The spans of s where ``1 + distance * curvature`` is not positive, so that the parallel curve turns back.
+        """Find the spans of s where the parallel curve turns back: ``1 + distance * curvature`` is not positive.
 
         On a closed curve a span may run past `high`; spans shorter than the distance of two samples are not seen.
         Differentiating C + d n with Frenet's ``n' = curvature |C'| tangent`` gives ``|C'| (1 + d curvature)`` along it.

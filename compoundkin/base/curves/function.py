@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from compoundkin.base.curves.curve import Curve
-from compoundkin.base.curves.piecewise import Pieces, interpolated
-from compoundkin.base.curves.requirements import check_points, checked_range
+from compoundkin.base.curves.samples import check_points, checked_range
+from compoundkin.base.curves.spline import Pieces, interpolated
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number
 

@@ -1,55 +1,25 @@
-"""Which sample of a curve is nearest or farthest out, and from there the place on the curve itself."""
+"""Samples of a curve: what they must satisfy, which is nearest or farthest out, where a function has one sign."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from math import isfinite
 from typing import Any
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.bracketing import bisected
+from compoundkin.base.errors import InvalidMechanism, Problem
 
-# Newton doubles its digits with every step: after a step below this part of two samples' distance, what is left
-# is rounding.
-LAST_STEP = 1e-8
-# Bisection gains one digit in 3.3 steps: from two samples to rounding within these.
-STEPS = 60
-
-
-def climbed(
-    rise: Callable[[Number, Number], tuple[Number, Number]], low: Number, start: Number, high: Number
-) -> Number:
-    """Where functions of s are greatest, each near its own start and between its own two bounds: arrays of one axis.
-
-    `rise(s, which)` gives the first and second derivatives of the functions `which` (indices). Newton's steps that
-    leave the bounds, climb down or do not halve the step before are replaced by bisection, so that a maximum or a
-    bound is always reached. Source: W. H. Press et al., Numerical Recipes, 3rd ed., section 9.4, `rtsafe`.
-    """
-    found = np.array(start)
-    going: Number = np.arange(found.size)
-    s: Number = start
-    a: Number = low
-    b: Number = high
-    before = 2.0 * (high - low)
-    close = LAST_STEP * (high - low)
-    rounding = np.spacing(np.maximum(np.abs(low), np.abs(high)))
-    for _ in range(STEPS):
-        first, second = rise(s, going)
-        a, b = np.where(first >= 0.0, s, a), np.where(first <= 0.0, s, b)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            newton = s - first / second
-        trusted = (second < 0.0) & (a <= newton) & (newton <= b) & (2.0 * np.abs(newton - s) <= before)
-        new = np.where(trusted, newton, 0.5 * (a + b))
-        found[going] = new
-        before = np.abs(new - s)
-        on = before > np.where(trusted, close, rounding)
-        if not on.any():
-            break
-        going, s, a, b, before = going[on], new[on], a[on], b[on], before[on]
-        close, rounding = close[on], rounding[on]
-    return found
+# Gauss's rule with this many points between two samples has the length to rounding.
+GAUSS = 3
+# Halvings of the distance of two samples until rounding.
+HALVINGS = 45
+# A closed curve may miss its own beginning by rounding of what computes it: this part of its size.
+CLOSES = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,19 +46,26 @@ class Samples:
         after = np.roll(self.points, -1)
         return 0.5 * float(np.sum((np.conj(self.points) * after).imag))
 
+    def length(self, speed: Callable[[Number], Number]) -> float:
+        """Measure the arc of a curve whose derivative by the parameter is as long as `speed` says."""
+        starts = self.s if self.closed else self.s[:-1]
+        nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
+        places = starts[:, None] + 0.5 * self.step * (nodes + 1.0)
+        return float(np.sum(speed(places) @ weights) * 0.5 * self.step)
+
     def around(self, index: Number) -> tuple[Number, Number, Number]:
-        """The parameter of some samples between those of their neighbours; the ends of an open curve are bounds."""
+        """Return the parameters of samples between those of their neighbours; ends of an open curve are bounds."""
         s = self.s[index]
         if self.closed:
             return s - self.step, s, s + self.step
         return self.s[np.maximum(index - 1, 0)], s, self.s[np.minimum(index + 1, self.s.size - 1)]
 
     def nearest(self, p: Number) -> Number:
-        """The indices of the samples nearest to points: finite complex numbers on one axis."""
+        """Find the samples nearest to points: finite complex numbers on one axis."""
         return self._tree.query(np.stack((p.real, p.imag), axis=-1))[1]
 
     def outermost(self, n: Number) -> Number:
-        """The indices of the samples farthest in directions: complex numbers on one axis."""
+        """Find the samples farthest in directions: complex numbers on one axis."""
         corners, normals = self._hull
         return corners[np.searchsorted(normals, np.angle(n)) % corners.size]
 
@@ -111,7 +88,7 @@ class Samples:
 
 
 def convex_hull(points: Number) -> Number:
-    """The indices of the corners of the convex hull, counterclockwise; two if all points lie on a line.
+    """Find the corners of the convex hull, counterclockwise; two if all points lie on a line.
 
     Source: A. M. Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979.
 
@@ -134,3 +111,52 @@ def _chain(order: list[int], points: list[complex]) -> list[int]:
 
 def _turns_left(a: complex, b: complex, c: complex) -> bool:
     return ((b - a).conjugate() * (c - b)).imag > 0.0
+
+
+def spans(
+    samples: Samples, low: float, high: float, margin: Callable[[Number], Number]
+) -> tuple[tuple[float, float], ...]:
+    """Find the spans of parameters where `margin` is not positive; on a closed curve the last may run past `high`.
+
+    >>> s = np.linspace(0.0, 1.0, 11)
+    >>> ((start, end),) = spans(Samples(s, s + 0j, closed=False), 0.0, 1.0, lambda s: s - 0.25)
+    >>> start, round(end, 12)
+    (0.0, 0.25)
+    """
+    cut = margin(samples.s) <= 0.0
+    if cut.all():
+        return ((low, high),)
+    before, after = np.roll(cut, 1), np.roll(cut, -1)
+    if not samples.closed:
+        before[0] = after[-1] = False
+    starts = _edge(samples, samples.s[cut & ~before], -samples.step, margin)
+    ends = _edge(samples, samples.s[cut & ~after], samples.step, margin)
+    if before[0] and cut[0]:
+        ends = np.append(ends[1:], ends[0] + high - low)
+    return tuple([(float(a), float(b)) for a, b in zip(starts, ends, strict=True)])
+
+
+def _edge(samples: Samples, inside: Number, step: float, margin: Callable[[Number], Number]) -> Number:
+    """Find where `margin` becomes positive within a step from places where it is not."""
+    outside = inside + step
+    if not samples.closed:
+        outside = np.clip(outside, samples.s[0], samples.s[-1])
+    return bisected(lambda s: ~(margin(s) > 0.0), inside, outside, HALVINGS)[0]
+
+
+def checked_range(low: float, high: float) -> None:
+    """Raise `InvalidMechanism` unless a range of parameters is finite and not empty."""
+    if not (isfinite(low) and isfinite(high) and low < high):
+        what = f"the parameter of a curve cannot run from {low} to {high}"
+        raise InvalidMechanism(Problem("range", what, "give low < high, both finite"))
+
+
+def check_points(s: Number, points: Number, size: float, closed: bool) -> None:
+    """Raise `InvalidMechanism` unless all points are finite and, on a closed curve, the last is the first."""
+    lost = ~np.isfinite(points)
+    if lost.any():
+        raise InvalidMechanism(Problem(f"s = {s[lost][0]:g}", "the point of the curve is not a finite number"))
+    gap = abs(points[-1] - points[0])
+    if closed and gap > CLOSES * size:
+        what = f"the curve ends {gap:g} away from where it begins"
+        raise InvalidMechanism(Problem("closed", what, "say it is open, or let it run one period"))

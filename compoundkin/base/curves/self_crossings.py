@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import Number, cross
 from compoundkin.base.curves.samples import Samples
-from compoundkin.base.series import Number, cross
+from compoundkin.base.newton import newton
 
 # Sides of the sampled polygon that meet in a corner of it may miss each other by rounding: this part of a side.
 ROUNDING = 1e-9
@@ -25,7 +26,7 @@ class Crossing(NamedTuple):
 
 
 def crossings(samples: Samples, expansion: Callable[[Number, int], tuple[Number, ...]]) -> tuple[Crossing, ...]:
-    """Every crossing of a curve with itself in the order of the parameters, found on its sampled polygon.
+    """Find every crossing of a curve with itself, in the order of the parameters, found on its sampled polygon.
 
     Loops smaller than the distance of two samples are not seen.
     """
@@ -50,7 +51,7 @@ def _sides(samples: Samples) -> tuple[Number, Number]:
 
 
 def _meeting(starts: Number, sides: Number, closed: bool) -> tuple[Number, Number, Number, Number]:
-    """The pairs of sides (the earlier first) that cross, and where on each, 0 to 1."""
+    """Find the pairs of sides (the earlier first) that cross, and where on each, 0 to 1."""
     one, other = _overlapping(starts, sides)
     apart = other - one
     neighbours = (apart == 1) | (closed & (apart == starts.size - 1))
@@ -66,7 +67,7 @@ def _meeting(starts: Number, sides: Number, closed: bool) -> tuple[Number, Numbe
 
 
 def _overlapping(starts: Number, sides: Number) -> tuple[Number, Number]:
-    """The pairs of sides (the earlier first) whose boxes overlap, by sorting along the longer side of the whole box."""
+    """Find the pairs of sides (the earlier first) whose boxes overlap, sorted along the longer side of the whole."""
     ends = starts + sides
     if np.ptp(starts.imag) > np.ptp(starts.real):
         starts, ends = starts * -1j, ends * -1j
@@ -87,17 +88,21 @@ def _overlapping(starts: Number, sides: Number) -> tuple[Number, Number]:
 def _refined(
     first: Number, second: Number, expansion: Callable[[Number, int], tuple[Number, ...]], step: float
 ) -> tuple[Number, Number]:
-    """The parameters after Newton on C(first) = C(second); as they were where branches touch without crossing."""
-    a, b = first, second
-    for _ in range(STEPS):
-        (p, v), (q, w) = expansion(a, 1), expansion(b, 1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            da, db = cross(q - p, w) / cross(v, w), cross(q - p, v) / cross(v, w)
-        a, b = a + _within(da, step), b + _within(db, step)
-    good = (np.abs(a - first) < step) & (np.abs(b - second) < step)
-    return np.where(good, a, first), np.where(good, b, second)
+    """Solve C(first) = C(second) from there; keep the parameters where branches touch without crossing."""
+
+    def apart(both: Number) -> tuple[Number, Number]:
+        (p, v), (q, w) = expansion(both[:, 0], 1), expansion(both[:, 1], 1)
+        return _parts(p - q), np.stack((_parts(v), _parts(-w)), axis=-1)
+
+    def within(change: Number) -> Number:
+        # none where it leaves the two sides or the branches are parallel
+        return np.where(np.abs(change) < step, change, 0.0)
+
+    start = np.stack((first, second), axis=-1)
+    found = newton(apart, start, 0.0, STEPS, limited=within).x
+    good = (np.abs(found - start) < step).all(axis=-1)
+    return np.where(good, found[:, 0], first), np.where(good, found[:, 1], second)
 
 
-def _within(change: Number, step: float) -> Number:
-    """Newton's change, or none where it leaves the two sides or the branches are parallel."""
-    return np.where(np.abs(change) < step, change, 0.0)
+def _parts(z: Number) -> Number:
+    return np.stack((z.real, z.imag), axis=-1)

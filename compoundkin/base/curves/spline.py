@@ -1,17 +1,17 @@
-"""A curve through given points."""
+"""Splines: piecewise polynomials with all derivatives, and the curve through given points."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import factorial
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.curves.curve import SAMPLES, Curve
-from compoundkin.base.curves.piecewise import Pieces, interpolated
 from compoundkin.base.errors import InvalidMechanism, Problem
-from compoundkin.base.series import Number
 
 FEWEST = 4
 # Through fewer points than this goes a cubic spline, through more one of degree five, whose third derivative (the jerk
@@ -26,6 +26,49 @@ ROUNDS = 2
 GAUSS = 8
 # Samples for each piece of the spline.
 SAMPLES_PER_PIECE = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Polynomials between breaks: `coefficients[j, k]` belongs to ``(s - breaks[k])**j`` on the k-th piece.
+
+    Left of the first and right of the last break the outermost polynomials go on.
+    """
+
+    breaks: Number
+    coefficients: Number
+
+    def taylor(self, s: Number, order: int) -> tuple[Number, ...]:
+        """Return the Taylor coefficients 0 .. order at `s`, an array of any shape.
+
+        >>> parabola = Pieces(np.array([0.0, 1.0]), np.array([[0j], [0j], [1 + 0j]]))
+        >>> parabola.taylor(np.array([3.0]), 2)
+        (array([9.+0.j]), array([6.+0.j]), array([1.+0.j]))
+        """
+        piece = np.clip(np.searchsorted(self.breaks, s, side="right") - 1, 0, self.breaks.size - 2)
+        x = s - self.breaks[piece]
+        # repeated synthetic division by (s - x): D. E. Knuth, The Art of Computer Programming 2, section 4.6.4
+        rest = list(np.take(self.coefficients, piece, axis=1))
+        degree = len(rest) - 1
+        for k in range(min(order, degree - 1) + 1):
+            for j in range(degree - 1, k - 1, -1):
+                rest[j] = rest[j] + rest[j + 1] * x
+        return (*rest[: order + 1], *[np.zeros(np.shape(s), dtype=complex)[()]] * (order - degree))
+
+
+def interpolated(s: Number, points: Number, degree: int, closed: bool) -> Pieces:
+    """Return the spline of odd degree through points at increasing parameters, as smooth as the degree allows.
+
+    A closed one has its first point again at the end, and is periodic; an open one is fixed at its ends by leaving out
+    knots (not-a-knot). Source: C. de Boor, A Practical Guide to Splines, revised ed., chapters IV and XIII.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    both = np.stack((points.real, points.imag), axis=-1)
+    spline = make_interp_spline(s, both, k=degree, bc_type="periodic" if closed else None)
+    breaks = spline.t[degree:-degree]
+    rows = [spline(breaks[:-1], k) / factorial(k) for k in range(degree + 1)]
+    return Pieces(breaks, np.array([row[:, 0] + 1j * row[:, 1] for row in rows]))
 
 
 @dataclass(frozen=True)
@@ -79,7 +122,7 @@ class Spline(Curve):
 
 
 def checked_points(given: Sequence[complex] | Number, closed: bool) -> Number:
-    """The points of a profile as an array, without a repetition of the first at the end; else `InvalidMechanism`."""
+    """Return the points as an array, the first not repeated at the end; else raise `InvalidMechanism`."""
     try:
         points = np.array(given, dtype=complex)
     except (TypeError, ValueError):
@@ -112,7 +155,7 @@ def _summed(lengths: Number) -> Number:
 
 
 def _arcs(pieces: Pieces, s: Number) -> Number:
-    """The lengths of arc between parameters."""
+    """Measure the lengths of arc between parameters."""
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
     half = 0.5 * np.diff(s)[:, None]
     return (np.abs(pieces.taylor(s[:-1, None] + half * (nodes + 1.0), 1)[1]) * half) @ weights

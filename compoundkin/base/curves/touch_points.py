@@ -7,13 +7,20 @@ from typing import Protocol
 
 import numpy as np
 
+from compoundkin.base.arrays import Number, dot
+from compoundkin.base.bracketing import greatest
 from compoundkin.base.composition import composed, differentiated, implicit
-from compoundkin.base.curves.samples import Samples, climbed
-from compoundkin.base.series import Number, Series
+from compoundkin.base.curves.samples import Samples
+from compoundkin.base.series import Series
 
 # Seen from an end, a point is beyond it if it is in front of it by this part of the curve's size, a direction if it
 # leans forward by this angle: what touches the very end moves on like its neighbours.
 BEYOND = 1e-12
+# Newton doubles its digits with every step: after a step below this part of two samples' distance, what is left
+# is rounding.
+LAST_STEP = 1e-8
+# Bisection gains one digit in 3.3 steps: from two samples to rounding within these.
+STEPS = 60
 
 
 class Searched(Protocol):
@@ -27,14 +34,45 @@ class Searched(Protocol):
     def samples(self) -> Samples:
         """Points from which to start."""
 
+    @property
+    def size(self) -> float:
+        """The length scale of the curve."""
+
     def expansion(self, s: Number, order: int) -> tuple[Number, ...]:
         """Taylor coefficients of the curve."""
+
+    def derivatives(self, s: Number, order: int) -> list[Number]:
+        """The curve and its derivatives."""
 
     def wrapped(self, s: Number) -> Number:
         """Parameters within the period."""
 
 
-def touching(
+def foot(curve: Searched, p: Series) -> Series:
+    """Find the parameter of the point of the curve nearest to a point that moves."""
+
+    def rise(s: Number, point: Number) -> tuple[Number, Number]:
+        place, first, second = curve.derivatives(s, 2)
+        return dot(point - place, first), dot(point - place, second) - dot(first, first)
+
+    return _touching(
+        curve, p, curve.size, rise, curve.samples.nearest, lambda place, along, point: (point - place).dot(along)
+    )
+
+
+def farthest(curve: Searched, n: Series) -> Series:
+    """Find the parameter of the point of the curve farthest in a direction that turns."""
+
+    def rise(s: Number, direction: Number) -> tuple[Number, Number]:
+        _, first, second = curve.derivatives(s, 2)
+        return dot(direction, first), dot(direction, second)
+
+    return _touching(
+        curve, n, np.abs(n.c[0]), rise, curve.samples.outermost, lambda _, along, direction: direction.dot(along)
+    )
+
+
+def _touching(
     curve: Searched,
     given: Series,
     scale: Number,
@@ -42,7 +80,7 @@ def touching(
     best: Callable[[Number], Number],
     condition: Callable[[Series, Series, Series], Series],
 ) -> Series:
-    """The parameter that `given`, as large as `scale`, belongs to: the best sample, Newton, then order by order."""
+    """Find the parameter that belongs to `given`, as large as `scale`: the best sample, Newton, then order by order."""
     lead = np.asarray(given.c[0], dtype=complex)
     flat = lead.ravel()
     known = np.isfinite(flat)
@@ -50,7 +88,7 @@ def touching(
     targets = flat[known]
     if targets.size:
         bounds = curve.samples.around(best(targets))
-        found[known] = climbed(lambda s, which: rise(s, targets[which]), *bounds)
+        found[known] = greatest(lambda s, which: rise(s, targets[which]), bounds, LAST_STEP, STEPS)
     s = found.reshape(lead.shape)[()]
     if given.order == 0:
         return Series((curve.wrapped(s),))
@@ -62,7 +100,7 @@ def touching(
 
 
 def held(curve: Searched, s: Number, ahead: Number) -> Number:
-    """Where a search ended at an end of the curve, what it looks for lying this far ahead (a pure number)."""
+    """Tell where a search ended at an end of the curve, what it looks for lying this far ahead (a pure number)."""
     if curve.closed:
         return np.zeros(np.shape(s), dtype=bool)[()]
     return ((s <= curve.low) & (ahead < -BEYOND)) | ((s >= curve.high) & (ahead > BEYOND))
@@ -75,7 +113,7 @@ def _rates(
     coefficients: tuple[Number, ...],
     condition: Callable[[Series, Series, Series], Series],
 ) -> tuple[Number, ...]:
-    """The coefficients after the first of the parameter that keeps a condition of point, derivative and `given`."""
+    """Return the parameter's coefficients after the first that keep a condition of point, derivative and `given`."""
     along = differentiated(coefficients)
 
     def residual(trial: Series) -> Series:

@@ -18,9 +18,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import joined
 from compoundkin.base.linear import Inverse, Row, stacked
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series, as_series, constant, joined
+from compoundkin.base.series import Number, Series, as_series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.bars import Bar, bars_of
 from compoundkin.model.pairs import Pair

@@ -9,8 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.composition import planar
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, Series, as_series, planar
+from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.groups.contract import (
     COINCIDENT,
     Attachment,

@@ -9,9 +9,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import dot
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, as_series, dot
+from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.fields import Key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import (

@@ -8,9 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import cross
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
-from compoundkin.base.series import Number, Series, cross
+from compoundkin.base.series import Number, Series
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import named_problems
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses

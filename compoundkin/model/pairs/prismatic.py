@@ -8,9 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import cross, dot
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, cross, dot
+from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table

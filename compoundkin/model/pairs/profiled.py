@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from compoundkin.base.curves import Curve
-from compoundkin.base.curves.undercut import spans
+from compoundkin.base.curves.samples import spans
 from compoundkin.base.series import Number
 from compoundkin.model.pairs.contact import Contact
 from compoundkin.model.pairs.contract import Ends, Poses

@@ -16,9 +16,10 @@ from math import acos, asin, hypot, sqrt
 
 import numpy as np
 
+from compoundkin.base.arrays import dot
 from compoundkin.base.composition import composed, differentiated
 from compoundkin.base.curves import Analytic
-from compoundkin.base.series import Number, Series, constant, dot
+from compoundkin.base.series import Number, Series, constant
 from compoundkin.model.laws.motion_programs import Program
 
 FULL_TURN = 2.0 * np.pi

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compoundkin.base.curves.undercut import spans
+from compoundkin.base.curves.samples import spans
 from compoundkin.base.errors import Problem, nearest
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.profiles.envelopes import FULL_TURN, Oscillating, reach

@@ -1,0 +1,174 @@
+"""Numbers and arrays of them alike: plane vectors, coefficients, angles, and values at one design and pose."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import inf
+from typing import Any, TypeAlias
+
+import numpy as np
+
+# A number or an array of numbers; NumPy's stubs cannot say "the same array library as the operand".
+Number: TypeAlias = Any
+
+TURN = 2.0 * np.pi
+
+
+# --- plane vectors ---
+
+
+def joined(x: Number, y: Number) -> Number:
+    """Join two parts to a complex number or array; twice as fast as ``x + 1j * y``, which converts both.
+
+    >>> joined(1.0, 2.0)
+    (1+2j)
+    """
+    if not (isinstance(x, np.ndarray) or isinstance(y, np.ndarray)):
+        return complex(x, y)
+    out = np.empty(np.broadcast(x, y).shape, dtype=complex)
+    out.real, out.imag = x, y
+    return out
+
+
+def dot(a: Number, b: Number) -> Number:
+    """Return the scalar product of plane vectors that are numbers or arrays.
+
+    >>> dot(1 + 2j, 3 + 4j)
+    11.0
+    """
+    # one complex product takes less time than the four passes over strided parts
+    return (a.conjugate() * b).real
+
+
+def cross(a: Number, b: Number) -> Number:
+    """Return the third component of the vector product of plane vectors, numbers or arrays.
+
+    >>> cross(1 + 2j, 3 + 4j)
+    -2.0
+    """
+    # written out, so that the cross product of a vector with itself is exactly zero
+    return a.real * b.imag - a.imag * b.real
+
+
+# --- coefficients of series ---
+
+
+def is_number(value: Number, number: int) -> bool:
+    """Tell whether a coefficient is a Python number of this value; an array never is, whatever its entries."""
+    return isinstance(value, (float, complex, int)) and value == number
+
+
+def negative(a: Number) -> Number:
+    """Return the negative of a coefficient."""
+    # NumPy's negation of complex arrays is not vectorised, its subtraction is: three times as fast
+    return 0.0 - a
+
+
+def reciprocal(a: Number) -> Number:
+    """Return one divided by a coefficient, infinite for a zero."""
+    # Python's numbers raise an error where arrays give infinity
+    return inf if is_number(a, 0) else 1.0 / a
+
+
+def real_product(a: Number, b: Number) -> Number:
+    """Return the real part of a product."""
+    return (a * b).real
+
+
+def convolved(a: Sequence[Number], b: Sequence[Number], product: Callable[[Number, Number], Number]) -> Number:
+    """Return the sum of the products of a[0] b[-1], a[1] b[-2] ... a[-1] b[0]."""
+    # products are not given names, so that NumPy may add to a large one in place
+    if len(a) == 1:
+        return product(a[0], b[0])
+    return product(a[0], b[-1]) + convolved(a[1:], b[:-1], product)
+
+
+def folded(a: Sequence[Number], b: Sequence[Number], k: int, product: Callable[[Number, Number], Number]) -> Number:
+    """Return the k-th coefficient of a product in which a[i] b[j] and a[j] b[i] are the same."""
+    half = (k + 1) // 2
+    if k == 0:
+        return product(a[0], b[0])
+    if k % 2:
+        return convolved(a[:half], b[half : k + 1], product) * 2.0
+    return convolved(a[:half], b[half + 1 : k + 1], product) * 2.0 + product(a[half], b[half])
+
+
+# --- angles ---
+
+
+def wrapped(angle: Number) -> Number:
+    """Return the same angle above -pi and up to pi.
+
+    >>> [round(float(wrapped(x)), 6) for x in (-np.pi, 1.0, 4.0)]
+    [3.141593, 1.0, -2.283185]
+    """
+    return angle - TURN * np.ceil((angle - np.pi) / TURN)
+
+
+def whole_turns(angle: Number, turn: Number = TURN) -> Number:
+    """Return the multiple of a turn that is nearest to an angle.
+
+    >>> whole_turns(700.0, 360.0)
+    np.float64(720.0)
+    """
+    return turn * np.round(angle / turn)
+
+
+def turns_above(angle: Number, low: Number, turn: Number = TURN) -> Number:
+    """Return the multiple of a turn by which an angle lies above the turn that begins at `low`.
+
+    >>> turns_above(np.array([-10.0, 350.0, 370.0]), 0.0, 360.0).tolist()
+    [-360.0, 0.0, 360.0]
+    """
+    return turn * np.floor((angle - low) / turn)
+
+
+def unwrapped(angle: Number) -> Number:
+    """Make an angle continuous along the last axis where it is known, over gaps of NaN too.
+
+    >>> unwrapped(np.array([3.0, np.nan, -3.0])).round(3).tolist()
+    [3.0, nan, 3.283]
+    """
+    if np.ndim(angle) == 0 or np.shape(angle)[-1] < 2:
+        return angle
+    if not np.isnan(angle).any():
+        return np.unwrap(angle)
+    rows = np.array(angle).reshape(-1, np.shape(angle)[-1])
+    for row in rows:
+        known = ~np.isnan(row)
+        row[known] = np.unwrap(row[known])
+    return rows.reshape(np.shape(angle))
+
+
+# --- values at one design and pose ---
+
+
+def entry(value: Number, at: tuple[int, ...]) -> Number:
+    """Return the entry at an index of whatever shape the value broadcasts with.
+
+    An axis of length 1, or one that is not there, stands for every place along it.
+
+    >>> entry(np.array([[1.0, 2.0]]), (3, 1)), entry(5.0, (3, 1))
+    (np.float64(2.0), np.float64(5.0))
+    """
+    array = np.asarray(value)
+    own = at[len(at) - array.ndim :]
+    return array[tuple([k if n > 1 else 0 for k, n in zip(own, array.shape, strict=True)])]
+
+
+def column(value: Number, designs: int) -> Number:
+    """Return one number for each design, of a value that broadcasts with designs at one pose.
+
+    >>> column(2.0, 3).tolist()
+    [2.0, 2.0, 2.0]
+    """
+    return np.broadcast_to(value, (designs, 1))[:, 0]
+
+
+def row(value: Number, poses: int) -> Number:
+    """Return one number for each pose, of a value that broadcasts with the poses of one design.
+
+    >>> row(np.array([[1.0]]), 2).tolist()
+    [1.0, 1.0]
+    """
+    return np.broadcast_to(value, (1, poses))[0]

@@ -1,0 +1,142 @@
+"""Zeros and extremes between bounds, in many brackets at once: bisection, false position, golden section, Newton."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+
+GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+
+
+def bisected(
+    holds: Callable[[Number], Number], inside: Number, outside: Number, halvings: int, enough: float = 0.0
+) -> tuple[Number, Number]:
+    """Narrow brackets, at whose first end something `holds` and at the second not, by so many halvings.
+
+    They end sooner where all are narrower than the part `enough` of their first end.
+
+    >>> inside, outside = bisected(lambda x: x * x < 2.0, np.array([0.0, 1.0]), np.array([3.0, 2.0]), 40)
+    >>> inside.round(9).tolist()
+    [1.414213562, 1.414213562]
+    """
+    for _ in range(halvings if np.size(inside) else 0):
+        if np.all(np.abs(outside - inside) <= enough * np.abs(inside)):
+            break
+        middle = 0.5 * (inside + outside)
+        good = holds(middle)
+        inside, outside = np.where(good, middle, inside), np.where(good, outside, middle)
+    return inside, outside
+
+
+def false_position(
+    f: Callable[[Number], Number], high: Number, at_low: Number, at_high: Number, flat: float, trials: int
+) -> Number:
+    """Find the zeros of functions between 0 and `high` by the Illinois method.
+
+    `at_low` and `at_high`, of opposite signs, are the values there; it ends where every value, or bracket, is `flat`.
+
+    >>> false_position(lambda x: x**3 - 2.0, np.array([2.0]), np.array([-2.0]), np.array([6.0]), 1e-12, 40).round(9)
+    array([1.25992105])
+    """
+    low, f_low, f_high = np.zeros_like(high), at_low, at_high
+    kept = np.zeros(len(high))
+    for _ in range(trials):
+        place = low - f_low * (high - low) / (f_high - f_low)
+        value = f(place)
+        if not np.any((np.abs(value) > flat) & (high - low > flat)):
+            break
+        before = value * f_low > 0
+        # the end that stays a second time counts half, so that it gives way
+        f_low, f_high = (
+            np.where(before, value, np.where(kept < 0, f_low / 2.0, f_low)),
+            np.where(before, np.where(kept > 0, f_high / 2.0, f_high), value),
+        )
+        low, high = np.where(before, place, low), np.where(before, high, place)
+        kept = np.where(before, 1.0, -1.0)
+    return place
+
+
+def least(
+    f: Callable[[Number, Number], Number],
+    low: Number,
+    high: Number,
+    steps: int,
+    going: Callable[[Number, Number], Number],
+) -> tuple[Number, Number]:
+    """Find the least values of functions in brackets by golden section: places and values.
+
+    `f(s, which)` gives the values of the functions `which` (a mask) at places; `going(values, widths)` says which
+    brackets are worth more steps. The others stand still.
+
+    >>> where, value = least(lambda s, _: (s - 1.0) ** 2, np.zeros(1), np.full(1, 3.0), 60, lambda v, w: w > 1e-6)
+    >>> where.round(6)
+    array([1.])
+    """
+    if not len(low):
+        return low, low
+    on: Number = np.ones(len(low), dtype=bool)
+    a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    fa, fb = f(a, on), f(b, on)
+    for _ in range(steps):
+        on = on & going(np.fmin(fa, fb), high - low)
+        if not on.any():
+            break
+        left = fa < fb
+        low, high = np.where(on & ~left, a, low), np.where(on & left, b, high)
+        new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
+        value: Number = np.where(left, fa, fb)
+        value[on] = f(new[on], on)
+        a, b, fa, fb = (
+            np.where(on, now, then)
+            for now, then in (
+                (np.where(left, new, b), a),
+                (np.where(left, a, new), b),
+                (np.where(left, value, fb), fa),
+                (np.where(left, fa, value), fb),
+            )
+        )
+    return np.where(fa < fb, a, b), np.minimum(fa, fb)
+
+
+def greatest(
+    rise: Callable[[Number, Number], tuple[Number, Number]],
+    bounds: tuple[Number, Number, Number],
+    last_step: float,
+    steps: int,
+) -> Number:
+    """Find where functions are greatest, each from its own start between its own two `bounds` (low, start, high).
+
+    `rise(s, which)` gives the first and second derivatives of the functions `which` (indices). Newton's steps that
+    leave the bounds, climb down or do not halve the step before are replaced by bisection, so that a maximum or a
+    bound is always reached. After one below the part `last_step` of the bounds, what is left is rounding.
+    Source: W. H. Press et al., Numerical Recipes, 3rd ed., section 9.4, `rtsafe`.
+
+    >>> greatest(lambda s, _: (np.cos(s), -np.sin(s)), (np.zeros(1), np.ones(1), np.full(1, 2.0)), 1e-8, 60).round(9)
+    array([1.57079633])
+    """
+    a: Number = bounds[0]
+    s: Number = bounds[1]
+    b: Number = bounds[2]
+    found: Number = np.array(s)
+    going: Number = np.arange(found.size)
+    before: Number = 2.0 * (b - a)
+    close: Number = last_step * (b - a)
+    rounding = np.spacing(np.maximum(np.abs(a), np.abs(b)))
+    for _ in range(steps):
+        first, second = rise(s, going)
+        a, b = np.where(first >= 0.0, s, a), np.where(first <= 0.0, s, b)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            newton = s - first / second
+        trusted = (second < 0.0) & (a <= newton) & (newton <= b) & (2.0 * np.abs(newton - s) <= before)
+        new: Number = np.where(trusted, newton, 0.5 * (a + b))
+        found[going] = new
+        before = np.abs(new - s)
+        on = before > np.where(trusted, close, rounding)
+        if not on.any():
+            break
+        going, s, a, b, before = going[on], new[on], a[on], b[on], before[on]
+        close, rounding = close[on], rounding[on]
+    return found

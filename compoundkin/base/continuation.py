@@ -1,0 +1,113 @@
+"""Solutions followed while a system changes: predictor and corrector, a step of its own length for every path.
+
+Source: E. L. Allgower and K. Georg, Introduction to Numerical Continuation Methods, SIAM 2003, chapters 2 and 6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.linear import solve
+from compoundkin.base.newton import Solved, System, newton
+
+
+class StepLengths(NamedTuple):
+    """How long steps are: halved where one fails, doubled after `easy` successes in a row.
+
+    A path is given up where its step falls to `shortest`, or after `most` steps of all.
+    """
+
+    first: float
+    longest: float
+    shortest: float
+    easy: int
+    most: int
+
+
+class Taken(NamedTuple):
+    """Steps of some paths: their lengths, whether they are good, and whether their paths have arrived."""
+
+    length: Number
+    good: Number
+    arrived: Number
+
+
+Step: TypeAlias = Callable[[Number, Number], Taken]
+
+
+def follow(step: Step, alive: Number, lengths: StepLengths) -> Number:
+    """Step along the paths that are `alive` until they arrive or fail; return which arrived.
+
+    `step(i, h)` tries one step of the paths `i` (indices), of the lengths `h` or less, and keeps the good ones.
+
+    >>> t = np.zeros(2)
+    >>> def step(i, h):
+    ...     good = (t[i] + h < 0.5) | (i == 0)  # the second path ends half way
+    ...     t[i] += np.where(good, h, 0.0)
+    ...     return Taken(h, good, t[i] >= 1.0)
+    >>> follow(step, np.ones(2, dtype=bool), StepLengths(0.125, 0.25, 1e-6, 1, 99)).tolist(), t.round(4).tolist()
+    ([True, False], [1.125, 0.5])
+    """
+    alive, arrived = np.array(alive), np.zeros(len(alive), dtype=bool)
+    h, successes = np.full(len(alive), lengths.first), np.zeros(len(alive), dtype=int)
+    for _ in range(lengths.most):
+        i = np.flatnonzero(alive)
+        if not len(i):
+            break
+        taken = step(i, h[i])
+        successes[i] = np.where(taken.good, successes[i] + 1, 0)
+        easy = successes[i] >= lengths.easy
+        longer = np.where(easy, np.minimum(2.0 * taken.length, lengths.longest), taken.length)
+        h[i] = np.where(taken.good, longer, taken.length / 2.0)
+        successes[i[easy]] = 0
+        arrived[i] = taken.arrived
+        alive[i] = ~taken.arrived & (h[i] > lengths.shortest)
+    return arrived
+
+
+def runge_kutta(slope: Callable[[Number, Number], Number], x: Number, t: Number, h: Number) -> Number:
+    """Predict ``x(t + h)`` (paths, d) along dx/dt = slope(x, t) by the classical step of fourth order.
+
+    >>> runge_kutta(lambda x, t: x, np.array([[1.0]]), np.zeros(1), np.array([0.1])).round(6).tolist()
+    [[1.105171]]
+    """
+    step = h[:, None]
+    one = slope(x, t)
+    two = slope(x + step / 2 * one, t + h / 2)
+    three = slope(x + step / 2 * two, t + h / 2)
+    four = slope(x + step * three, t + h)
+    return x + step / 6 * (one + 2 * two + 2 * three + four)
+
+
+def corrected_across(system: System, guess: Number, across: Number, converged: float, steps: int) -> Solved:
+    """Solve systems of one equation too few (d - 1 of d) in the hyperplanes across a direction through guesses."""
+
+    def closed(y: Number) -> tuple[Number, Number]:
+        residual, matrix = system(y)
+        return np.concatenate([residual, np.zeros((len(y), 1))], axis=1), bordered(matrix, across)
+
+    found = newton(closed, guess, converged, steps)
+    return found._replace(matrix=found.matrix[:, :-1])
+
+
+def tangent(matrix: Number, along: Number) -> tuple[Number, Number]:
+    """Return the unit null vectors of matrices (paths, d - 1, d) along a direction, and their sides of a singularity.
+
+    >>> tangent(np.array([[[0.0, 2.0]]]), np.array([[-1.0, 0.0]]))[0].tolist()
+    [[-1.0, 0.0]]
+    """
+    whole = bordered(matrix, along)
+    right = np.zeros(along.shape)
+    right[:, -1] = 1.0
+    found = solve(whole, right)
+    found = found / np.sqrt(np.sum(found**2, axis=1))[:, None]
+    return found, np.linalg.slogdet(np.nan_to_num(whole))[0]
+
+
+def bordered(matrix: Number, row: Number) -> Number:
+    """Return matrices with one more row."""
+    return np.concatenate([matrix, row[:, None]], axis=1)

@@ -1,0 +1,120 @@
+"""Newton's method: a system, a stop, and a report of what converged; for many starts, or by least squares for one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.linear import solve
+
+# A system at some unknowns: its residuals (..., d) and their derivatives (..., d, d).
+System: TypeAlias = Callable[[Number], tuple[Number, Number]]
+
+
+class Solved(NamedTuple):
+    """Where Newton's steps led from every start, and how they came to rest.
+
+    `x` (..., d) are the unknowns, `last` (...) the sizes of the last steps, `longest` those of the longest ones;
+    `matrix` belongs to the unknowns before the last step.
+    """
+
+    x: Number
+    matrix: Number
+    last: Number
+    longest: Number
+
+
+def largest(step: Number, x: Number) -> Number:
+    """Return the largest change of any unknown."""
+    return np.abs(step).max(axis=-1)
+
+
+def newton(
+    system: System,
+    start: Number,
+    converged: float,
+    steps: int,
+    size: Callable[[Number, Number], Number] = largest,
+    limited: Callable[[Number], Number] | None = None,
+) -> Solved:
+    """Solve square systems from many starts at once, until no step is larger than `converged`.
+
+    `size` measures a step at the unknowns that it led to; `limited` may shorten it before it is made. A start whose
+    matrix is singular gets NaN, and holds up no other.
+
+    >>> found = newton(lambda x: (x * x - 2.0, 2.0 * x[..., None]), np.array([[1.0], [-3.0]]), 1e-8, 9)
+    >>> found.x.ravel().round(9).tolist(), bool((found.last <= 1e-8).all())
+    ([1.414213562, -1.414213562], True)
+    """
+    x, longest = start, np.zeros(np.shape(start)[:-1])
+    for _ in range(steps):
+        residual, matrix = system(x)
+        step = -solve(matrix, residual)
+        if limited is not None:
+            step = limited(step)
+        x = x + step
+        last = size(step, x)
+        longest = np.maximum(longest, last)
+        if not np.any(last > converged):
+            break
+    return Solved(x, matrix, last, longest)
+
+
+class Rest(NamedTuple):
+    """When least-squares steps come to rest; all sizes are of the largest entry.
+
+    `exact`: a residual or step that is rounding, so that none could be less. `rounding`: where a step gains nothing
+    below this, what is left is rounding too. `longest`: no step is longer. `patience`: so many steps must leave less
+    than the part `gain` of a residual.
+    """
+
+    exact: float
+    rounding: float
+    longest: float
+    patience: int
+    gain: float
+
+
+class Fitted(NamedTuple):
+    """The best that least-squares steps led to, its largest residual, and how many steps it took."""
+
+    x: Number
+    residual: float
+    steps: int
+
+
+def gauss_newton(
+    system: System, step_of: Callable[[Number, Number], Number], start: Number, steps: int, rest: Rest
+) -> Fitted:
+    """Reduce the residual of one system, of any rank, by Gauss's and Newton's steps; keep the best.
+
+    `step_of(matrix, right)` is the least solution of the linear system, as far as it has one. A start whose residual is
+    rounding already is taken as it is, with no step.
+
+    >>> circle = lambda x: (np.array([x @ x - 1.0]), 2.0 * x[None])
+    >>> rest = Rest(1e-15, 1e-12, 0.5, 10, 0.9)
+    >>> found = gauss_newton(circle, lambda m, r: np.linalg.lstsq(m, r)[0], np.array([3.0, 4.0]), 20, rest)
+    >>> found.x.round(12).tolist()
+    [0.6, 0.8]
+    """
+    x, best, before = start, Fitted(start, np.inf, 0), list[float]()
+    for k in range(steps):
+        residual, matrix = system(x)
+        worst = float(np.max(np.abs(residual), initial=0.0))
+        before.append(worst)
+        if not np.isfinite(worst) or (k >= rest.patience and worst > rest.gain * before[k - rest.patience]):
+            break
+        stalls = worst > best.residual / 2.0
+        if worst < best.residual:
+            best = Fitted(x, worst, k)
+        if worst <= rest.exact or (worst <= rest.rounding and (stalls or not k)):
+            break
+        step = step_of(matrix, -residual)
+        length = float(np.max(np.abs(step), initial=0.0))
+        if length <= rest.exact:
+            break
+        x = x + step * min(1.0, rest.longest / length)
+    return best
