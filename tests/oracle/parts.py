@@ -43,7 +43,7 @@ def names(mechanism: Any) -> Any:
     words = ("title", "mobility", "assortment", "chain", "also", "driven", "derived_from", "parts", "fractionated_at")
     more = ("symmetries", "equivalent_links", "equivalent_pairs", "variety", "code")
     return {
-        "name": asked(lambda: _of(found.name, *words, *more)),
+        "name": asked(lambda: _of(program.name_of(found), *words, *more)),
         "trusses": [asked(lambda group=group: program.truss_names(group)) for group in found.groups],
     }
 

@@ -43,6 +43,13 @@ def structure_of(mechanism: Any) -> Any:
     return ck.decompose(mechanism)
 
 
+def name_of(structure: Any) -> Any:
+    """What a mechanism is called by its graph, frame and drivers."""
+    from compoundkin.synthesis.chains import structure_name
+
+    return structure_name(structure)
+
+
 def mobility_of(mechanism: Any) -> Any:
     """The mobility by count, for general dimensions and at the pose."""
     return ck.mobility_analysis(mechanism)
@@ -102,7 +109,7 @@ def equations_of(mechanism: Any) -> Any:
 
 def equation_texts(equation: Any) -> dict[str, str]:
     """An equation as text and as LaTeX."""
-    from compoundkin.equations import latex, text
+    from compoundkin.analysis.equations import latex, text
 
     return {"text": text(equation), "latex": latex(equation)}
 
@@ -114,7 +121,7 @@ def alternatives_of(mechanism: Any) -> Sequence[Any]:
 
 def truss_names(group: Any) -> tuple[str, ...]:
     """The trusses that a group is made of."""
-    from compoundkin.chains import group_truss
+    from compoundkin.synthesis.chains import group_truss
 
     return tuple(group_truss(group))
 
