@@ -27,7 +27,8 @@ from compoundkin.base.version import VERSION
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.gaps import Gap, gaps
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.elements import deg, drawn, drive, expect, link, mode, polar
+from compoundkin.model.elements import drawn, drive, expect, link, mode
+from compoundkin.model.geometry import deg, polar
 from compoundkin.model.laws import constant_acceleration, constant_speed, dwell, fall, program, rise, time_table
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot

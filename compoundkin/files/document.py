@@ -9,7 +9,6 @@ from compoundkin.model.elements import Drive
 from compoundkin.model.fields import Key
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import KINDS, WRITTEN
-from compoundkin.model.validation import drivable
 
 FORMATS = (1,)
 
@@ -81,7 +80,7 @@ def is_angle(mechanism: Mechanism, drive: Drive) -> bool | None:
     >>> is_angle(m, Drive("crank", "crank"))
     True
     """
-    choices = drivable(mechanism, drive)
+    choices = mechanism.drivable(drive)
     if len(choices) != 1:
         return None
     written = {pair.name: pair.free_is_angle for pair in mechanism.written_pairs}

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from compoundkin.base.series import Number
 from compoundkin.files.written_quantities import RPM, spaced
-from compoundkin.model.elements import polar
+from compoundkin.model.geometry import polar
 
 Floats: TypeAlias = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from compoundkin.files.kind_tables import KIND, PROGRAM, SEGMENT
 from compoundkin.model.elements import FRAME
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import WRITTEN as LAWS
-from compoundkin.model.laws.motion_programs import Segment
+from compoundkin.model.laws.motion_programs import ProgramSegment
 from compoundkin.model.profiles import WRITTEN as PROFILES
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -46,7 +46,7 @@ def schema() -> dict[str, Any]:
         "$defs": {
             **DEFINITIONS,
             "law": _tagged(LAWS, "How a driven coordinate moves in time."),
-            "segment": _table(Segment.keys),
+            "segment": _table(ProgramSegment.keys),
             "turned": _table(SEGMENT),
             "program": _table(PROGRAM),
             "profile": _tagged(PROFILES, "The profile of a cam or curved slot, in the coordinates of its link."),

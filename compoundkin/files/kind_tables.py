@@ -13,7 +13,7 @@ from compoundkin.model import laws, profiles
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import Law
 from compoundkin.model.laws.cam_laws import LAWS
-from compoundkin.model.laws.motion_programs import Program, Segment
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.profiles import Profile
 
 KIND = "kind"
@@ -21,7 +21,7 @@ KIND = "kind"
 DWELL = "dwell"
 RISING = tuple(name for name in LAWS if name != DWELL)
 # The spans of a cam's program are of its rotation.
-SEGMENT = tuple(replace(key, kind="turn") if key.kind == "span" else key for key in Segment.keys)
+SEGMENT = tuple(replace(key, kind="turn") if key.kind == "span" else key for key in ProgramSegment.keys)
 # It is told what repeats by the cam.
 PROGRAM = (
     Key("segments", "turned", "Its dwells, rises and falls over a full turn, one after another.", required=True),
@@ -52,13 +52,13 @@ def of_kind(
 
 
 def segments(
-    log: Recovery, raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] = Segment.keys
-) -> tuple[Segment, ...]:
+    log: Recovery, raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] = ProgramSegment.keys
+) -> tuple[ProgramSegment, ...]:
     """The segments of a program; those that are broken are left out, which is reported."""
     if not isinstance(raw, list):
         log.report(wrong(where, raw, "a list of segments", 'write [{ law = "cycloidal", over = 1, rise = 90 }]'))
         return ()
-    found = [made(log, Segment, table, f"{where}[{index}]", angle, keys) for index, table in enumerate(raw)]
+    found = [made(log, ProgramSegment, table, f"{where}[{index}]", angle, keys) for index, table in enumerate(raw)]
     for index, table in enumerate(raw):
         if isinstance(table, dict) and "rise" not in table and table.get("law") in RISING:
             log.report(bad(f"{where}[{index}].rise", "it is missing", f'write rise = 30, or law = "{DWELL}"'))
@@ -83,7 +83,7 @@ def program(log: Recovery, raw: Any, where: str, angle: bool | None) -> Program 
     return found
 
 
-def turned(log: Recovery, raw: Any, where: str, angle: bool | None) -> tuple[Segment, ...]:
+def turned(log: Recovery, raw: Any, where: str, angle: bool | None) -> tuple[ProgramSegment, ...]:
     """The segments of a cam's program."""
     return segments(log, raw, where, angle, SEGMENT)
 

@@ -13,8 +13,8 @@ from compoundkin.files.kind_tables import DWELL, KIND, PROGRAM, SEGMENT
 from compoundkin.files.reader import default_name
 from compoundkin.model.elements import Expectation, Link
 from compoundkin.model.fields import Key, Kind
-from compoundkin.model.laws import Function
-from compoundkin.model.laws.motion_programs import Program, Segment
+from compoundkin.model.laws import FunctionLaw
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.mechanism import Mechanism, same
 from compoundkin.model.pairs import WRITTEN, Pair
 
@@ -75,7 +75,7 @@ def _pair(item: Pair) -> dict[str, Any]:
 
 def _drive(mechanism: Mechanism, index: int) -> dict[str, Any]:
     item = mechanism.drives[index]
-    if isinstance(item.law, Function):
+    if isinstance(item.law, FunctionLaw):
         what, remedy = "a Python function cannot be written to a file", "write a time_table of its values instead"
         raise InvalidInput(Problem(f"drives.{item.name}.law", what, remedy))
     out = _table(item, type(item).keys, bool(doc.is_angle(mechanism, item)))
@@ -86,7 +86,7 @@ def _tagged(item: Any, angle: bool) -> dict[str, Any]:
     return {KIND: item.kind, **_table(item, item.keys, angle)}
 
 
-def _segment(item: Segment, keys: tuple[Key, ...], angle: bool) -> dict[str, Any]:
+def _segment(item: ProgramSegment, keys: tuple[Key, ...], angle: bool) -> dict[str, Any]:
     """Whatever is not a dwell says how far it rises, even by nothing."""
     rise = {} if item.law == DWELL else {"rise": exact_numbers.coordinate(item.rise, angle)}
     return _table(item, keys, angle) | rise

@@ -25,8 +25,8 @@ from compoundkin.files.single_values import (
     whole,
     wrong,
 )
-from compoundkin.model.elements import polar, vector
 from compoundkin.model.fields import Kind
+from compoundkin.model.geometry import polar, vector
 
 # {from, to, step} beyond this many values is taken for a slip: it would only fill the memory.
 MOST_VALUES = 1_000_000

@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.model.elements import vector
+from compoundkin.model.geometry import vector
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.motion import Motion

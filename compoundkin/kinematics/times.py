@@ -12,7 +12,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.elements import Drive
 from compoundkin.model.laws import Law
-from compoundkin.model.laws.law_numbers import taylor
+from compoundkin.model.laws.constant_laws import taylor
 from compoundkin.model.mechanism import Mechanism
 
 # A period is sampled as finely as a full turn in steps of five degrees.

@@ -21,7 +21,7 @@ from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.redundant_residuals import closed_with, openings
 from compoundkin.kinematics.sampling import CLOSE
 from compoundkin.kinematics.solving_order import Plan
-from compoundkin.model.elements import vector
+from compoundkin.model.geometry import vector
 
 
 class Tracker:

@@ -1,4 +1,4 @@
-"""The words to write a mechanism with: link, drive, drawn, mode, expect, deg, polar."""
+"""The words to write a mechanism with, and what they make: link, drive, drawn, mode, expect."""
 
 from __future__ import annotations
 
@@ -6,35 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias
 
-import numpy as np
-
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.fields import Key
+from compoundkin.model.geometry import real, vector
 from compoundkin.model.laws import Law, as_law
 from compoundkin.model.pairs import Pair
 
 FRAME = "frame"
-
-
-def deg(angle: Any) -> Number:
-    """Degrees as radians: a number, a list, a range or an array.
-
-    >>> round(deg(180), 6)
-    3.141593
-    """
-    value = np.deg2rad(np.asarray(angle, dtype=float))
-    return float(value) if value.ndim == 0 else value
-
-
-def polar(radius: Any, angle: Any) -> Number:
-    """The planar vector of a length and an angle (radians), a complex number or array.
-
-    >>> polar(2.0, 0.0)
-    (2+0j)
-    """
-    value = np.asarray(radius) * (np.cos(angle) + 1j * np.sin(angle))
-    return complex(value) if value.ndim == 0 else value
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,35 +182,6 @@ def expect(quantity: str, value: Any, tolerance: float, **at: float) -> Expectat
     )
 
 
-def vector(where: str, value: Any) -> Number:
-    """A planar vector written as complex or as (x, y), either of them a number or an array.
-
-    Raises InvalidMechanism naming `where`.
-
-    >>> vector("A", (1, [2, 3])).tolist()
-    [(1+2j), (1+3j)]
-    """
-    try:
-        if isinstance(value, tuple | list) and len(value) == 2:
-            x, y = (np.asarray(v, dtype=float) for v in value)
-            out = x + 1j * y
-        elif value is None or isinstance(value, tuple | list | str):
-            raise ValueError
-        else:
-            out = np.asarray(value, dtype=complex)
-    except (TypeError, ValueError):
-        raise InvalidMechanism(
-            Problem(where, f"{value!r} is not a point", "write (x, y) or a complex number")
-        ) from None
-    return complex(out) if out.ndim == 0 else _frozen(out)
-
-
-def _frozen(array: Any) -> Any:
-    out = np.array(array)
-    out.setflags(write=False)
-    return out
-
-
 def _points(where: str, points: Mapping[str, Any]) -> dict[str, Number]:
     problems: list[Problem] = []
     placed: dict[str, Number] = {}
@@ -243,18 +193,3 @@ def _points(where: str, points: Mapping[str, Any]) -> dict[str, Number]:
     if problems:
         raise InvalidMechanism(problems)
     return placed
-
-
-def real(where: str, value: Any) -> Number:
-    """A number, or an array that cannot be written to; None stays None. Raises InvalidMechanism naming `where`.
-
-    >>> real("time", [0, 1]).tolist()
-    [0.0, 1.0]
-    """
-    if value is None:
-        return None
-    try:
-        out = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidMechanism(Problem(where, f"{value!r} is not a number or an array of numbers")) from None
-    return float(out) if out.ndim == 0 else _frozen(out)

@@ -20,13 +20,13 @@ from typing import Any, Literal
 #   whole    whole number                                 int
 #   span     positive number; degrees where it is of a rotation   float
 #   times    list of seconds or {from, to, step}          array
-#   segments list of tables, as Segment has keys          tuple of Segment
+#   segments list of tables, as ProgramSegment has keys          tuple of ProgramSegment
 #   law      table with a kind, and the keys of that law  law
 #   number   a single number                              float
 #   turn     a single angle in degrees, or {rad = ...}    float, radians
 #   place    [x, y], {polar = [radius, degrees]}, single  complex
 #   places   list of such points                          tuple of complex
-#   turned   list of segments over degrees                tuple of Segment over radians
+#   turned   list of segments over degrees                tuple of ProgramSegment over radians
 #   program  such a list, or a table of it and a start    Program over radians
 #   profile  table with a kind, and the keys of that profile   Profile
 # Of a driven coordinate, an angle (degrees in files) or a length, as its pair has it:

@@ -1,12 +1,14 @@
-"""A mechanism's dimensions as numbers: points in link frames, and the poses that a drawing shows."""
+"""Points and numbers as they are written, and the dimensions of a mechanism that are made of them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 
@@ -76,3 +78,87 @@ def fitted_pose(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> P
     turned = (sketch[b] - sketch[a]) * np.conjugate(points[b] - points[a])
     turned = turned / np.abs(turned)
     return Pose(constant(sketch[a] - turned * points[a]), constant(turned))
+
+
+def deg(angle: Any) -> Number:
+    """Degrees as radians: a number, a list, a range or an array.
+
+    >>> round(deg(180), 6)
+    3.141593
+    """
+    value = np.deg2rad(np.asarray(angle, dtype=float))
+    return float(value) if value.ndim == 0 else value
+
+
+def polar(radius: Any, angle: Any) -> Number:
+    """The planar vector of a length and an angle (radians), a complex number or array.
+
+    >>> polar(2.0, 0.0)
+    (2+0j)
+    """
+    value = np.asarray(radius) * (np.cos(angle) + 1j * np.sin(angle))
+    return complex(value) if value.ndim == 0 else value
+
+
+def vector(where: str, value: Any) -> Number:
+    """A planar vector written as complex or as (x, y), either of them a number or an array.
+
+    Raises InvalidMechanism naming `where`.
+
+    >>> vector("A", (1, [2, 3])).tolist()
+    [(1+2j), (1+3j)]
+    """
+    try:
+        if isinstance(value, tuple | list) and len(value) == 2:
+            x, y = (np.asarray(v, dtype=float) for v in value)
+            out = x + 1j * y
+        elif value is None or isinstance(value, tuple | list | str):
+            raise ValueError
+        else:
+            out = np.asarray(value, dtype=complex)
+    except (TypeError, ValueError):
+        raise InvalidMechanism(
+            Problem(where, f"{value!r} is not a point", "write (x, y) or a complex number")
+        ) from None
+    return complex(out) if out.ndim == 0 else _frozen(out)
+
+
+def _frozen(array: Any) -> Any:
+    out = np.array(array)
+    out.setflags(write=False)
+    return out
+
+
+def real(where: str, value: Any) -> Number:
+    """A number, or an array that cannot be written to; None stays None. Raises InvalidMechanism naming `where`.
+
+    >>> real("time", [0, 1]).tolist()
+    [0.0, 1.0]
+    """
+    if value is None:
+        return None
+    try:
+        out = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidMechanism(Problem(where, f"{value!r} is not a number or an array of numbers")) from None
+    return float(out) if out.ndim == 0 else _frozen(out)
+
+
+def place_of(value: Any, where: str = "profile") -> complex:
+    """A point written as (x, y) or as a complex number; raises InvalidMechanism for anything else."""
+    try:
+        if isinstance(value, str):  # Python reads "1+2j" as a number
+            raise ValueError
+        return complex(value) if np.ndim(value) == 0 else complex(*(float(v) for v in value))
+    except (TypeError, ValueError):
+        raise InvalidMechanism(Problem(where, f"{value!r} is not a point", "write (x, y)")) from None
+
+
+def number_of(value: Any, where: str) -> float:
+    """One real number; raises InvalidMechanism naming `where` for anything else."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InvalidMechanism(
+            Problem(where, f"{value!r} is not one number", "give one; one profile for each design")
+        ) from None

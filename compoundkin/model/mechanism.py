@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from functools import cached_property
 from typing import Any, cast
@@ -13,13 +13,13 @@ from compoundkin.base.display import ShowsPicture
 from compoundkin.base.errors import InvalidMechanism, Problem, UnknownName, nearest
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
-from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, real
-from compoundkin.model.geometry import Geometry, fitted_pose, read_off
-from compoundkin.model.pairs import Pair
-from compoundkin.model.validation import misfits_of, problems_of
+from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Link, Mode
+from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
+from compoundkin.model.validation import problems_of
+from compoundkin.model.written import Written
 
 
-class Mechanism(ShowsPicture):
+class Mechanism(Written, ShowsPicture):
     """Links, pairs and drivers, written with the words of this module; checked as a whole when it is made.
 
     Two links that have a point of the same name are pinned there; the link called "frame" is the frame.
@@ -58,76 +58,14 @@ class Mechanism(ShowsPicture):
         self.outputs: tuple[str, ...] = (outputs,) if isinstance(outputs, str) else tuple(outputs)
         self.time: Number | None = real("time", time)
         self.items: tuple[Item, ...] = items
-        problems = list(problems_of(self)) or list(misfits_of(self))
+        problems = list(problems_of(self)) or list(self._misfits())
         if problems:
             raise InvalidMechanism(problems, heading=f"{title!r} cannot be built")
 
-    @cached_property
-    def links(self) -> dict[str, Link]:
-        """The links by name, as written; the frame among them."""
-        return {item.name: item for item in self.items if isinstance(item, Link)}
-
-    @cached_property
-    def written_pairs(self) -> tuple[Pair, ...]:
-        """The pairs that are written out: all but the pins."""
-        letters = {name: item.letters for name, item in self.links.items()}
-        return tuple(item.completed(letters) for item in self.items if isinstance(item, Pair))
-
-    @cached_property
-    def drives(self) -> tuple[Drive, ...]:
-        """The drivers, as written."""
-        return tuple(item for item in self.items if isinstance(item, Drive))
-
-    @cached_property
-    def modes(self) -> tuple[Mode, ...]:
-        """The assembly modes chosen by sign."""
-        return tuple(item for item in self.items if isinstance(item, Mode))
-
-    @cached_property
-    def expectations(self) -> tuple[Expectation, ...]:
-        """The published numbers that come with it."""
-        return tuple(item for item in self.items if isinstance(item, Expectation))
-
-    @cached_property
-    def sketch(self) -> dict[str, Number]:
-        """The points as drawn, in global coordinates."""
-        return {k: v for item in self.items if isinstance(item, Drawn) for k, v in item.points.items()}
-
-    @cached_property
-    def carriers(self) -> dict[str, tuple[str, ...]]:
-        """The links that carry each letter, in the order written."""
-        found: dict[str, list[str]] = {}
-        for name, item in self.links.items():
-            for letter in item.points:
-                found.setdefault(letter, []).append(name)
-        return {letter: tuple(names) for letter, names in found.items()}
-
-    @cached_property
-    def pins(self) -> dict[str, tuple[str, ...]]:
-        """The letters that two links or more share, with those links."""
-        return {letter: names for letter, names in self.carriers.items() if len(names) > 1}
-
-    @cached_property
-    def pins_on(self) -> dict[str, dict[str, None]]:
-        """The letters of the pins on each link, as the keys of a dictionary in the order of `pins`."""
-        found: dict[str, dict[str, None]] = {name: {} for name in self.links}
-        for letter, names in self.pins.items():
-            for name in names:
-                found[name][letter] = None
-        return found
-
-    def pins_between(self, one: str, other: str) -> list[str]:
-        """The letters at which two links, which need not exist, are pinned to each other."""
-        fewer, more = sorted((self.pins_on.get(name, {}) for name in (one, other)), key=len)
-        return [letter for letter in fewer if letter in more and one != other]
-
-    @cached_property
-    def pairs_between(self) -> dict[frozenset[str], list[Pair]]:
-        """The written pairs by the links they join."""
-        found: dict[frozenset[str], list[Pair]] = {}
-        for pair in self.written_pairs:
-            found.setdefault(frozenset(pair.members), []).append(pair)
-        return found
+    def _misfits(self) -> Iterator[Problem]:
+        """Find what is wrong with the dimensions of pairs, in a mechanism that has no other problems."""
+        for where, pair in self.placed_pairs:
+            yield from pair.misfits(self.geometry, where)
 
     @cached_property
     def geometry(self) -> Geometry:

@@ -10,7 +10,6 @@ from functools import cached_property
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair, Revolute
-from compoundkin.model.validation import drivable
 from compoundkin.structure.parts import Body, DrivenPair, Passive
 
 GROUND = -1
@@ -127,7 +126,7 @@ def passive_freedoms(mechanism: Mechanism) -> Iterator[Passive]:
 def driven_pair(pins: Pins, drive: Drive) -> Pair:
     """The pair that a drive prescribes: a written one, or the pin between precisely its two links."""
     mechanism = pins.mechanism
-    (name,) = drivable(mechanism, drive)
+    (name,) = mechanism.drivable(drive)
     if name in mechanism.pins_between(drive.link, drive.on):
         return pins.pair(name, drive.on, drive.link)
     between = mechanism.pairs_between[frozenset((drive.link, drive.on))]

@@ -15,7 +15,8 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.kinematics.groups import DYADS
-from compoundkin.model.elements import FRAME, Item, drawn, drive, link, vector
+from compoundkin.model.elements import FRAME, Item, drawn, drive, link
+from compoundkin.model.geometry import vector
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
 from compoundkin.synthesis.chains import AssurGroup, assur_group

@@ -14,7 +14,8 @@ from jsonschema import Draft202012Validator
 
 from compoundkin.base.errors import InvalidMechanism
 from compoundkin.files import dumps, loads, schema
-from compoundkin.model.elements import deg, drive, link
+from compoundkin.model.elements import drive, link
+from compoundkin.model.geometry import deg
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair, belt, gear, rack, roll, roll_around
 

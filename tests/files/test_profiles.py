@@ -14,9 +14,10 @@ from compoundkin.base.errors import InvalidInput, InvalidMechanism
 from compoundkin.files import dumps, loads, schema
 from compoundkin.files.writer import document
 from compoundkin.kinematics import solve
-from compoundkin.model.elements import deg, drive, link, mode
+from compoundkin.model.elements import drive, link, mode
+from compoundkin.model.geometry import deg
 from compoundkin.model.laws.cam_laws import LAWS
-from compoundkin.model.laws.motion_programs import Program, Segment, dwell, fall, program, rise
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment, dwell, fall, program, rise
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import arc, cam, face, slide, slot
 from compoundkin.model.profiles import Profile, Synthesised, disc, formula, profile
@@ -32,7 +33,7 @@ def programs(draw: st.DrawFn) -> Program:
     """Segments of any spans; whether a cam can have them is told elsewhere."""
     spans = draw(st.lists(st.one_of(st.integers(1, 180).map(deg), st.floats(0.01, 3.0)), min_size=1, max_size=4))
     laws = st.sampled_from([law for law in LAWS if law != "dwell"])
-    segments = [draw(st.one_of(st.builds(Segment, laws, st.just(s), real), st.just(dwell(s)))) for s in spans]
+    segments = [draw(st.one_of(st.builds(ProgramSegment, laws, st.just(s), real), st.just(dwell(s)))) for s in spans]
     return Program(tuple(segments), draw(st.one_of(st.just(0.0), real)))
 
 

@@ -15,7 +15,8 @@ from hypothesis.extra.numpy import arrays
 
 from compoundkin.base.errors import InvalidInput, InvalidMechanism
 from compoundkin.files import dumps, exact_numbers, load, loads
-from compoundkin.model.elements import Expectation, Link, deg, drawn, drive, expect, link, mode, polar
+from compoundkin.model.elements import Expectation, Link, drawn, drive, expect, link, mode
+from compoundkin.model.geometry import deg, polar
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
 

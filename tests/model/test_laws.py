@@ -20,8 +20,8 @@ from jsonschema import Draft202012Validator
 import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files import dumps, loads, schema
-from compoundkin.model.laws import Function, Law
-from compoundkin.model.laws.differences import differentiated
+from compoundkin.model.laws import FunctionLaw, Law
+from compoundkin.model.laws.function_law import differentiated
 from compoundkin.model.laws.motion_programs import Program, program, rise
 from compoundkin.model.laws.time_tables import TimeTable
 from tests.model.test_programs import MOVING, programs
@@ -73,7 +73,7 @@ LAWS: dict[str, Law] = {
     "table": ck.time_table(np.linspace(-0.5, 2.5, 13), np.sin(np.linspace(-0.5, 2.5, 13))),
     "cubic": ck.time_table(np.linspace(-0.5, 2.5, 13), np.sin(np.linspace(-0.5, 2.5, 13)), degree=3),
     "wheel": ck.time_table([0.0, 0.2, 0.5, 0.7, 0.8, 1.1, 1.2], [0.0, 1.0, 2.2, 3.1, 4.0, 5.5, 6.3], repeat=True),
-    "function": Function(lambda t: 0.5 * np.sin(3.0 * t) + t**2 / (1.0 + t**2)),
+    "function": FunctionLaw(lambda t: 0.5 * np.sin(3.0 * t) + t**2 / (1.0 + t**2)),
 }
 # Joints of a program, where a derivative may jump.
 TIMES = [0.123, 0.456, 0.83, 1.234, 1.93]
@@ -180,10 +180,10 @@ def test_differences_are_as_good_as_they_say(scale: float, phase: float) -> None
 
 def test_a_function_may_return_its_derivatives() -> None:
     t = np.linspace(0.0, 1.0, 5)
-    all_four = Function(lambda t: (t**2, 2 * t, 2 + 0 * t, 7 + 0 * t)).coordinate(t, 3)
+    all_four = FunctionLaw(lambda t: (t**2, 2 * t, 2 + 0 * t, 7 + 0 * t)).coordinate(t, 3)
     assert all_four.derivative(3).tolist() == [7.0] * 5
     # the acceleration and the jerk then follow from the speed it returns
-    two = Function(lambda t: (0 * t, np.sin(t))).coordinate(t, 3)
+    two = FunctionLaw(lambda t: (0 * t, np.sin(t))).coordinate(t, 3)
     np.testing.assert_allclose(two.derivative(2), np.cos(t), atol=1e-14)
     np.testing.assert_allclose(two.derivative(3), -np.sin(t), atol=1e-14)
 

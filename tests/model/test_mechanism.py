@@ -7,7 +7,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import Problem, nearest
-from compoundkin.model.elements import Drive, vector
+from compoundkin.model.elements import Drive
+from compoundkin.model.geometry import vector
 from compoundkin.model.pairs import slide
 
 

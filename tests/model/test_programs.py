@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from compoundkin.base.errors import InvalidMechanism
 from compoundkin.base.series import Series
-from compoundkin.model.laws.cam_laws import LAWS, unit_arcs
-from compoundkin.model.laws.motion_programs import Discontinuity, Program, Segment, dwell, fall, program, rise
+from compoundkin.model.laws.cam_laws import LAWS, unit_pieces
+from compoundkin.model.laws.motion_programs import Discontinuity, Program, ProgramSegment, dwell, fall, program, rise
 
 MOVING = [law for law in LAWS if law != "dwell"]
 
@@ -92,11 +92,11 @@ def test_velocity_integrates_to_the_rise_and_never_turns_back(law: str) -> None:
 
 @pytest.mark.parametrize("law", ["modified-trapezoid", "modified-sine", "cycloidal", "3-4-5", "4-5-6-7"])
 def test_position_velocity_and_acceleration_are_continuous_at_every_joint(law: str) -> None:
-    arcs = unit_arcs(law)
-    ends = [*(arc.start for arc in arcs[1:]), 1.0]
+    pieces = unit_pieces(law)
+    ends = [*(piece.start for piece in pieces[1:]), 1.0]
     for k in range(3):
-        before = [0.0, *(arc.derivative(k, end - arc.start) for arc, end in zip(arcs, ends, strict=True))]
-        after = [*(arc.derivative(k, 0.0) for arc in arcs), 1.0 if k == 0 else 0.0]
+        before = [0.0, *(piece.derivative(k, end - piece.start) for piece, end in zip(pieces, ends, strict=True))]
+        after = [*(piece.derivative(k, 0.0) for piece in pieces), 1.0 if k == 0 else 0.0]
         np.testing.assert_allclose(before, after, atol=1e-13)
     assert program(dwell(1.0), rise(1.0, 1.0, law), dwell(1.0), fall(1.0, 1.0, law)).discontinuities() == ()
 
@@ -189,7 +189,7 @@ programs = st.builds(
     lambda parts, start: Program(tuple(parts), start),
     st.lists(
         st.builds(
-            lambda law, over, amount: Segment(law, over, 0.0 if law == "dwell" else amount),
+            lambda law, over, amount: ProgramSegment(law, over, 0.0 if law == "dwell" else amount),
             st.sampled_from(list(LAWS)),
             st.floats(0.2, 5.0),
             st.floats(-10.0, 10.0),
@@ -203,10 +203,10 @@ programs = st.builds(
 
 @given(programs, st.floats(0.02, 0.98), st.integers(0, 4))
 def test_derivatives_are_those_that_differences_show(moving: Program, share: float, index: int) -> None:
-    arc = moving.arcs[index % len(moving.arcs)]
-    ends = [*(one.start for one in moving.arcs[1:]), moving.period]
-    length = ends[index % len(moving.arcs)] - arc.start
-    x, h = arc.start + share * length, 0.01 * length
+    piece = moving.pieces[index % len(moving.pieces)]
+    ends = [*(one.start for one in moving.pieces[1:]), moving.period]
+    length = ends[index % len(moving.pieces)] - piece.start
+    x, h = piece.start + share * length, 0.01 * length
     steps = np.array([-2.0, -1.0, 0.0, 1.0, 2.0]) * h
     found = derivatives(moving, x + steps, repeat=False)
     natural = max(abs(s.rise) for s in moving.segments) + 1e-3
@@ -242,7 +242,7 @@ def test_values_at_the_breaks_are_sums_of_the_rises(moving: Program) -> None:
         (lambda: rise(float("nan"), over=1.0), "segment.rise"),
         (lambda: fall("1", over=1.0), "segment.rise"),  # type: ignore[arg-type]
         (lambda: dwell(-1.0), "segment.over"),
-        (lambda: Segment("dwell", 1.0, 2.0), "a dwell rises by 0"),
+        (lambda: ProgramSegment("dwell", 1.0, 2.0), "a dwell rises by 0"),
         (lambda: program(), "there is no segment"),
         (lambda: program(rise(1.0, 1.0), 5.0), "program.segments[1]"),  # type: ignore[arg-type]
         (lambda: program(rise(1.0, 1.0), start=float("inf")), "program.start"),

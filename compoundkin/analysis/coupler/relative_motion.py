@@ -14,7 +14,8 @@ from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, Unk
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import LinkMotion, Motion, PointMotion
-from compoundkin.model.elements import FRAME, vector
+from compoundkin.model.elements import FRAME
+from compoundkin.model.geometry import vector
 
 # Rates come from sums of terms as large as the fastest of the two links and the drivers, each rounded to 1e-16 and
 # carried over the groups of the solving order. What is smaller than this part of that scale is rounding, not motion:

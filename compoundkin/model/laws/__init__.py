@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-from compoundkin.model.laws.drive_laws import (
-    WRITTEN,
-    ConstantAcceleration,
-    ConstantSpeed,
-    Function,
-    Law,
-    as_law,
-    constant_acceleration,
-    constant_speed,
-    time_table,
-)
-from compoundkin.model.laws.motion_programs import Program, Segment, dwell, fall, program, rise
+from typing import Any, TypeAlias
+
+from compoundkin.base.errors import InvalidMechanism, Problem
+from compoundkin.model.laws.constant_laws import ConstantAcceleration, ConstantSpeed
+from compoundkin.model.laws.function_law import FunctionLaw
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment, dwell, fall, program, rise
 from compoundkin.model.laws.time_tables import TimeTable
 
 __all__ = [
     "WRITTEN",
     "ConstantAcceleration",
     "ConstantSpeed",
-    "Function",
+    "FunctionLaw",
     "Law",
     "Program",
-    "Segment",
+    "ProgramSegment",
     "TimeTable",
     "as_law",
     "constant_acceleration",
@@ -34,3 +28,49 @@ __all__ = [
     "rise",
     "time_table",
 ]
+
+Law: TypeAlias = ConstantSpeed | ConstantAcceleration | Program | TimeTable | FunctionLaw
+
+# The laws that files can say.
+WRITTEN: dict[str, type[Any]] = {kind.kind: kind for kind in (ConstantSpeed, ConstantAcceleration, Program, TimeTable)}
+
+
+def constant_speed(speed: Any, start: Any = 0.0) -> ConstantSpeed:
+    """The law of a constant speed (rad/s or length/s), from `start` at time 0.
+
+    >>> constant_speed(2.0).speed
+    2.0
+    """
+    return ConstantSpeed(speed, start)
+
+
+def constant_acceleration(acceleration: Any, speed: Any = 0.0, start: Any = 0.0) -> ConstantAcceleration:
+    """The law of a constant acceleration, from `start` at `speed` at time 0.
+
+    >>> constant_acceleration(2.0).coordinate(3.0, order=0).c
+    (9.0,)
+    """
+    return ConstantAcceleration(acceleration, speed, start)
+
+
+def time_table(times: Any, values: Any, *, degree: int = 5, repeat: bool = False) -> TimeTable:
+    """The law of a table of values at times (seconds): a spline through them.
+
+    >>> time_table([0, 1, 2], [0, 1, 4]).span
+    (0.0, 2.0)
+    """
+    return TimeTable(times, values, degree, repeat)
+
+
+def as_law(where: str, law: Any) -> Law | None:
+    """A law as it is, a Python function as a law; raises InvalidMechanism naming `where` for anything else.
+
+    >>> as_law("drives.crank.law", np.sin).kind
+    'function'
+    """
+    if law is None or isinstance(law, Law):
+        return law
+    if callable(law) and not isinstance(law, type):
+        return FunctionLaw(law)
+    remedy = "write constant_speed(...), program(...), time_table(...) or a function of time"
+    raise InvalidMechanism(Problem(where, f"{law!r} is not a law", remedy))

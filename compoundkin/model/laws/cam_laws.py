@@ -20,10 +20,12 @@ from compoundkin.base.series import Number
 
 # Terms that cancel leave no more than this part of their sizes: a few units in the last place.
 ROUNDING = 1e-15
+# Rounding leaves no jump of a derivative where there is none above this part of what is natural for the program.
+JUMP = 1e-9
 
 
 @dataclass(frozen=True)
-class Piece:
+class AccelerationPiece:
     """A part of a law: its span, the acceleration ``sum a[k] u**k + A sin(w u + phase)``, u from its start.
 
     `wave` is (A, w, phase); `leap` a velocity taken on at once at the start.
@@ -36,31 +38,31 @@ class Piece:
 
 
 # The accelerations; their scale follows from the rise. The waves of the modified curves take an eighth of the span.
-LAWS: dict[str, tuple[Piece, ...]] = {
-    "dwell": (Piece(1.0),),
-    "constant-velocity": (Piece(1.0, leap=1.0),),
-    "parabolic": (Piece(0.5, (1.0,)), Piece(0.5, (-1.0,))),
-    "harmonic": (Piece(1.0, wave=(1.0, pi, pi / 2)),),
-    "cycloidal": (Piece(1.0, wave=(1.0, 2 * pi, 0.0)),),
-    "3-4-5": (Piece(1.0, (0.0, 60.0, -180.0, 120.0)),),
-    "4-5-6-7": (Piece(1.0, (0.0, 0.0, 420.0, -1680.0, 2100.0, -840.0)),),
+LAWS: dict[str, tuple[AccelerationPiece, ...]] = {
+    "dwell": (AccelerationPiece(1.0),),
+    "constant-velocity": (AccelerationPiece(1.0, leap=1.0),),
+    "parabolic": (AccelerationPiece(0.5, (1.0,)), AccelerationPiece(0.5, (-1.0,))),
+    "harmonic": (AccelerationPiece(1.0, wave=(1.0, pi, pi / 2)),),
+    "cycloidal": (AccelerationPiece(1.0, wave=(1.0, 2 * pi, 0.0)),),
+    "3-4-5": (AccelerationPiece(1.0, (0.0, 60.0, -180.0, 120.0)),),
+    "4-5-6-7": (AccelerationPiece(1.0, (0.0, 0.0, 420.0, -1680.0, 2100.0, -840.0)),),
     "modified-trapezoid": (
-        Piece(0.125, wave=(1.0, 4 * pi, 0.0)),
-        Piece(0.25, (1.0,)),
-        Piece(0.25, wave=(1.0, 4 * pi, pi / 2)),
-        Piece(0.25, (-1.0,)),
-        Piece(0.125, wave=(1.0, 4 * pi, -pi / 2)),
+        AccelerationPiece(0.125, wave=(1.0, 4 * pi, 0.0)),
+        AccelerationPiece(0.25, (1.0,)),
+        AccelerationPiece(0.25, wave=(1.0, 4 * pi, pi / 2)),
+        AccelerationPiece(0.25, (-1.0,)),
+        AccelerationPiece(0.125, wave=(1.0, 4 * pi, -pi / 2)),
     ),
     "modified-sine": (
-        Piece(0.125, wave=(1.0, 4 * pi, 0.0)),
-        Piece(0.75, wave=(1.0, 4 * pi / 3, pi / 2)),
-        Piece(0.125, wave=(1.0, 4 * pi, -pi / 2)),
+        AccelerationPiece(0.125, wave=(1.0, 4 * pi, 0.0)),
+        AccelerationPiece(0.75, wave=(1.0, 4 * pi / 3, pi / 2)),
+        AccelerationPiece(0.125, wave=(1.0, 4 * pi, -pi / 2)),
     ),
 }
 
 
 @dataclass(frozen=True)
-class Arc:
+class PositionPiece:
     """A position ``sum p[k] u**k + A sin(w u + phase)``, u counted from `start`; `wave` is (A, w, phase)."""
 
     start: float
@@ -70,7 +72,7 @@ class Arc:
     def derivative(self, k: int, u: float) -> float:
         """The k-th derivative at a distance from the start.
 
-        >>> Arc(0.0, (1.0, 2.0, 3.0), (0.0, 1.0, 0.0)).derivative(1, 2.0)
+        >>> PositionPiece(0.0, (1.0, 2.0, 3.0), (0.0, 1.0, 0.0)).derivative(1, 2.0)
         14.0
         """
         amplitude, frequency, phase = self.wave
@@ -79,49 +81,79 @@ class Arc:
         )
         return smooth + amplitude * frequency**k * sin(frequency * u + phase + k * pi / 2)
 
-    def scaled(self, start: float, over: float, place: float, rise: float) -> Arc:
+    def scaled(self, start: float, over: float, place: float, rise: float) -> PositionPiece:
         """The same for a span and rise that are not 1, from a place."""
         amplitude, frequency, phase = self.wave
         polynomial = [c * rise / over**k for k, c in enumerate(self.polynomial)]
         polynomial[0] += place
-        return Arc(start + self.start * over, tuple(polynomial), (amplitude * rise, frequency / over, phase))
+        return PositionPiece(start + self.start * over, tuple(polynomial), (amplitude * rise, frequency / over, phase))
 
 
 @cache
-def unit_arcs(law: str) -> tuple[Arc, ...]:
+def unit_pieces(law: str) -> tuple[PositionPiece, ...]:
     """A law with a rise of 1 over a span of 1; raises KeyError for one that there is not.
 
-    >>> [arc.start for arc in unit_arcs("modified-sine")]
+    >>> [piece.start for piece in unit_pieces("modified-sine")]
     [0.0, 0.125, 0.875]
     """
     start = place = speed = 0.0
-    arcs = []
-    for piece in LAWS[law]:
-        arc = _integrated(piece, start, place, speed + piece.leap)
-        start, place, speed = start + piece.span, arc.derivative(0, piece.span), arc.derivative(1, piece.span)
-        arcs.append(arc)
-    return tuple(arc.scaled(0.0, 1.0, 0.0, 1.0 / place if place else 1.0) for arc in arcs)
+    pieces = []
+    for part in LAWS[law]:
+        piece = _integrated(part, start, place, speed + part.leap)
+        start, place, speed = start + part.span, piece.derivative(0, part.span), piece.derivative(1, part.span)
+        pieces.append(piece)
+    return tuple(piece.scaled(0.0, 1.0, 0.0, 1.0 / place if place else 1.0) for piece in pieces)
 
 
-def _integrated(piece: Piece, start: float, place: float, speed: float) -> Arc:
-    """The position of a piece that begins at a place with a speed."""
-    amplitude, frequency, phase = piece.wave
+def _integrated(part: AccelerationPiece, start: float, place: float, speed: float) -> PositionPiece:
+    """The position of a part that begins at a place with a speed."""
+    amplitude, frequency, phase = part.wave
     wave = -amplitude / frequency**2
     fixed = (place - wave * sin(phase), speed - wave * frequency * cos(phase))
-    return Arc(start, (*fixed, *(a / ((k + 1) * (k + 2)) for k, a in enumerate(piece.acceleration))),
+    return PositionPiece(start, (*fixed, *(a / ((k + 1) * (k + 2)) for k, a in enumerate(part.acceleration))),
                (wave, frequency, phase))  # fmt: skip
 
 
-class Arcs:
-    """The arcs of a program as arrays, to look them up by index."""
+@dataclass(frozen=True)
+class Discontinuity:
+    """A place of a program where a derivative jumps: of order 1 the velocity, 2 the acceleration."""
 
-    def __init__(self, arcs: Sequence[Arc], end: float) -> None:
-        self.starts = np.array([arc.start for arc in arcs])
+    place: float
+    order: int
+    jump: float
+
+
+def jumps(
+    pieces: Sequence[PositionPiece], end: float, natural: Sequence[float], goes_on: bool
+) -> tuple[Discontinuity, ...]:
+    """Find where derivatives of order 1, 2 ... jump from piece to piece, and at both ends.
+
+    `natural` is what is natural for each order. If it `goes_on`, the end is joined to the beginning.
+    """
+    ends = [*(piece.start for piece in pieces[1:]), end]
+    found = []
+    for order, size in enumerate(natural, 1):
+        last = [piece.derivative(order, at - piece.start) for piece, at in zip(pieces, ends, strict=True)]
+        first = [piece.derivative(order, 0.0) for piece in pieces]
+        before, after = [last[-1] if goes_on else 0.0, *last], [*first, first[0] if goes_on else 0.0]
+        for place, a, b in zip([0.0, *ends], before, after, strict=True):
+            if abs(b - a) > JUMP * size:
+                found.append(Discontinuity(place, order, b - a))
+    return tuple(sorted(found, key=lambda one: (one.place, one.order)))
+
+
+class PieceTable:
+    """The pieces of a program as arrays, to look them up by index."""
+
+    def __init__(self, pieces: Sequence[PositionPiece], end: float) -> None:
+        self.starts = np.array([piece.start for piece in pieces])
         self.end = end
-        longest = max(len(arc.polynomial) for arc in arcs)
+        longest = max(len(piece.polynomial) for piece in pieces)
         # one row for every power
-        self.powers = np.array([[*arc.polynomial, *[0.0] * (longest - len(arc.polynomial))] for arc in arcs]).T.copy()
-        self.waves = np.array([arc.wave for arc in arcs]).T.copy()
+        self.powers = np.array(
+            [[*piece.polynomial, *[0.0] * (longest - len(piece.polynomial))] for piece in pieces]
+        ).T.copy()
+        self.waves = np.array([piece.wave for piece in pieces]).T.copy()
 
     def taylor(self, x: Number, order: int, stops: bool) -> list[Number]:
         """The Taylor coefficients at places x; outside it stands still, if it `stops`."""
@@ -138,7 +170,7 @@ class Arcs:
         return [out[0], *(np.where(np.abs(c) <= self._rounding(k)[index], 0.0, c) for k, c in enumerate(out[1:], 1))]
 
     def _rounding(self, k: int) -> Number:
-        """Below which the k-th coefficient of each arc is the rounding of terms that cancel, as where a rise ends."""
+        """Below which the k-th coefficient of each piece is the rounding of terms that cancel, as where a rise ends."""
         spans = np.diff([*self.starts, self.end])
         smooth = sum(comb(j, k) * np.abs(p) * spans ** (j - k) for j, p in enumerate(self.powers) if j >= k)
         return ROUNDING * (smooth + np.abs(self.waves[0]) * self.waves[1] ** k / factorial(k))

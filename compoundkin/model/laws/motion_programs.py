@@ -14,21 +14,20 @@ from compoundkin.base.composition import composed
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
-from compoundkin.model.laws.cam_laws import LAWS, Arc, Arcs, unit_arcs
+from compoundkin.model.laws.cam_laws import JUMP, LAWS, Discontinuity, PieceTable, PositionPiece, jumps, unit_pieces
 
 Array: TypeAlias = np.ndarray[Any, Any]
 
-# Rounding leaves no jump of a derivative where there is none above this part of what is natural for the program.
-JUMP = 1e-9
+_WORDS = "write rise(...), fall(...), dwell(...)"
 
 
 @dataclass(frozen=True)
-class Segment:
+class ProgramSegment:
     """A part of a program: a law, the span it takes, and how far it rises (negative: falls; a dwell 0).
 
     Raises InvalidMechanism for a law that there is not, a span that is not positive, a dwell that rises.
 
-    >>> Segment("cycloidal", over=2.0, rise=10.0).rise
+    >>> ProgramSegment("cycloidal", over=2.0, rise=10.0).rise
     10.0
     """
 
@@ -59,15 +58,6 @@ class Segment:
 
 
 @dataclass(frozen=True)
-class Discontinuity:
-    """A place of a program where a derivative jumps: of order 1 the velocity, 2 the acceleration."""
-
-    place: float
-    order: int
-    jump: float
-
-
-@dataclass(frozen=True)
 class Program:
     """Segments one after another, from place 0 and value `start`; `repeat`: begun anew after each period.
 
@@ -81,7 +71,7 @@ class Program:
     (3.0, 10.0, True)
     """
 
-    segments: tuple[Segment, ...]
+    segments: tuple[ProgramSegment, ...]
     start: float = 0.0
     repeat: bool = False
 
@@ -99,12 +89,11 @@ class Program:
 
     def _problems(self) -> Iterator[Problem]:
         if not isinstance(self.segments, tuple) or not self.segments:
-            yield Problem("program.segments", "there is no segment", "write rise(...), fall(...), dwell(...)")
+            yield Problem("program.segments", "there is no segment", _WORDS)
             return
         for index, segment in enumerate(self.segments):
-            if not isinstance(segment, Segment):
-                yield Problem(f"program.segments[{index}]", f"{segment!r} is not a segment",
-                              "write rise(...), fall(...), dwell(...)")  # fmt: skip
+            if not isinstance(segment, ProgramSegment):
+                yield Problem(f"program.segments[{index}]", f"{segment!r} is not a segment", _WORDS)
         if not isinstance(self.repeat, bool):
             yield Problem("program.repeat", f"{self.repeat!r} is not True or False")
         if not _is_real(self.start):
@@ -160,7 +149,7 @@ class Program:
         value = x.c[0] if isinstance(x.c[0], np.ndarray) else float(x.c[0])
         turns = np.floor(value / self.period) if goes_on else 0.0
         outer = self._table.taylor(value - turns * self.period if goes_on else value, x.order, not goes_on)
-        if goes_on and not self._closes:
+        if goes_on and abs(self._advance) > JUMP * self.lift:
             outer[0] = outer[0] + turns * self._advance
         return composed(outer if isinstance(value, np.ndarray) else [float(c) for c in outer], x)
 
@@ -168,19 +157,15 @@ class Program:
         """As a law in time: value and derivatives at times t (seconds); it goes on after its end if `repeat`."""
         return self.at(Series((t, 1.0, *[0.0] * (order - 1))[: order + 1]), self.repeat)
 
-    @property
-    def _closes(self) -> bool:
-        return abs(self._advance) <= JUMP * self.lift
-
     @cached_property
-    def arcs(self) -> tuple[Arc, ...]:
+    def pieces(self) -> tuple[PositionPiece, ...]:
         """Its pieces, from the first to the last."""
         places = zip(self.breaks[:-1].tolist(), self.values[:-1].tolist(), self.segments, strict=True)
-        return tuple(arc.scaled(at, s.over, value, s.rise) for at, value, s in places for arc in unit_arcs(s.law))
+        return tuple(piece.scaled(at, s.over, value, s.rise) for at, value, s in places for piece in unit_pieces(s.law))
 
     @cached_property
-    def _table(self) -> Arcs:
-        return Arcs(self.arcs, self.period)
+    def _table(self) -> PieceTable:
+        return PieceTable(self.pieces, self.period)
 
     def discontinuities(self, repeat: bool | None = None) -> tuple[Discontinuity, ...]:
         """The places where velocity or acceleration jump, its beginning and end included, in order.
@@ -189,24 +174,11 @@ class Program:
         [(0.0, 2), (1.0, 2), (2.0, 2)]
         """
         goes_on = self.repeats if repeat is None else repeat
-        found = []
-        for order in (1, 2):
-            natural = max(abs(s.rise) / s.over**order for s in self.segments)
-            ends = [arc.derivative(order, end - arc.start) for arc, end in zip(self.arcs, self._ends, strict=True)]
-            starts = [arc.derivative(order, 0.0) for arc in self.arcs]
-            before = [ends[-1] if goes_on else 0.0, *ends]
-            after = [*starts, starts[0] if goes_on else 0.0]
-            for place, a, b in zip([0.0, *self._ends], before, after, strict=True):
-                if abs(b - a) > JUMP * natural:
-                    found.append(Discontinuity(place, order, b - a))
-        return tuple(sorted(found, key=lambda one: (one.place, one.order)))
-
-    @property
-    def _ends(self) -> list[float]:
-        return [*(arc.start for arc in self.arcs[1:]), self.period]
+        natural = [max(abs(s.rise) / s.over**order for s in self.segments) for order in (1, 2)]
+        return jumps(self.pieces, self.period, natural, goes_on)
 
 
-def program(*segments: Segment, start: float = 0.0, repeat: bool = False) -> Program:
+def program(*segments: ProgramSegment, start: float = 0.0, repeat: bool = False) -> Program:
     """A program of dwells, rises and falls.
 
     >>> program(dwell(1.0), rise(2.0, over=1.0), start=3.0).values.tolist()
@@ -215,16 +187,16 @@ def program(*segments: Segment, start: float = 0.0, repeat: bool = False) -> Pro
     return Program(segments, start, repeat)
 
 
-def rise(amount: float, over: float, law: str = "cycloidal") -> Segment:
+def rise(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
     """A rise by an amount over a span.
 
     >>> rise(10.0, over=2.0, law="3-4-5").law
     '3-4-5'
     """
-    return Segment(law, over, amount)
+    return ProgramSegment(law, over, amount)
 
 
-def fall(amount: float, over: float, law: str = "cycloidal") -> Segment:
+def fall(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
     """A fall by an amount over a span: a rise by its opposite.
 
     >>> fall(10.0, over=2.0).rise
@@ -232,16 +204,16 @@ def fall(amount: float, over: float, law: str = "cycloidal") -> Segment:
     """
     if not _is_real(amount):
         raise InvalidMechanism(Problem("segment.rise", f"{amount!r} is not a finite number"))
-    return Segment(law, over, -amount)
+    return ProgramSegment(law, over, -amount)
 
 
-def dwell(over: float) -> Segment:
+def dwell(over: float) -> ProgramSegment:
     """A dwell over a span.
 
     >>> dwell(2.0).law
     'dwell'
     """
-    return Segment("dwell", over)
+    return ProgramSegment("dwell", over)
 
 
 def _is_real(value: Any) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
-from compoundkin.model.laws.law_numbers import Compared, as_number, from_derivatives, hold_numbers, taylor
+from compoundkin.model.laws.constant_laws import Compared, as_number, from_derivatives, hold_numbers, taylor
 
 # Times beyond the ends of a table by no more than this part of its range are its ends: rounding of 0.1 + 0.1 + 0.1.
 SLACK = 1e-9

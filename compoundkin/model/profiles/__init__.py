@@ -1,12 +1,10 @@
-"""Profiles of cams and curved slots as they are written, one file per kind.
+"""Profiles of cams and curved slots as they are written.
 
 Coordinates are those of the link that carries the profile. What they have in common is their `curve`.
 """
 
 from compoundkin.model.profiles.contract import Profile, side_of
-from compoundkin.model.profiles.disc import Disc, disc
-from compoundkin.model.profiles.formula import Formula, formula
-from compoundkin.model.profiles.points import Points, profile
+from compoundkin.model.profiles.given_profiles import Disc, Formula, Points, disc, formula, profile
 from compoundkin.model.profiles.synthesised import Synthesised, synthesise
 
 KINDS: tuple[type[Profile], ...] = (Disc, Points, Formula, Synthesised)

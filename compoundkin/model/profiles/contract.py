@@ -6,9 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, ClassVar
-
-import numpy as np
+from typing import ClassVar
 
 from compoundkin.base.curves import Curve
 from compoundkin.base.errors import InvalidMechanism, Problem
@@ -59,26 +57,6 @@ class Profile(ABC):
     def _without_loop(self) -> str:
         """How to get rid of a loop."""
         return "change the points that make the loop"
-
-
-def place_of(value: Any, where: str = "profile") -> complex:
-    """A point written as (x, y) or as a complex number; raises InvalidMechanism for anything else."""
-    try:
-        if isinstance(value, str):  # Python reads "1+2j" as a number
-            raise ValueError
-        return complex(value) if np.ndim(value) == 0 else complex(*(float(v) for v in value))
-    except (TypeError, ValueError):
-        raise InvalidMechanism(Problem(where, f"{value!r} is not a point", "write (x, y)")) from None
-
-
-def number_of(value: Any, where: str) -> float:
-    """One real number; raises InvalidMechanism naming `where` for anything else."""
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise InvalidMechanism(
-            Problem(where, f"{value!r} is not one number", "give one; one profile for each design")
-        ) from None
 
 
 def side_of(curve: Curve) -> float:

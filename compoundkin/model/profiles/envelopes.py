@@ -42,7 +42,7 @@ class Lift:
     def breaks(self) -> tuple[float, ...]:
         """The cam's angles at which a law or a part of it begins, so that derivatives may jump."""
         sense = -1.0 if self.clockwise else 1.0
-        return tuple((self.start + sense * arc.start) % FULL_TURN for arc in self.program.arcs)
+        return tuple((self.start + sense * piece.start) % FULL_TURN for piece in self.program.pieces)
 
 
 class Way(ABC):

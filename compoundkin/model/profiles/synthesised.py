@@ -13,8 +13,9 @@ from compoundkin.base.curves import Analytic, Curve
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Series, as_series
 from compoundkin.model.fields import Key
+from compoundkin.model.geometry import place_of
 from compoundkin.model.laws.motion_programs import Program
-from compoundkin.model.profiles.contract import Profile, place_of
+from compoundkin.model.profiles.contract import Profile
 from compoundkin.model.profiles.envelopes import Envelope, Lift, Oscillating, Translating, Way
 from compoundkin.model.profiles.fitness import faults, undercuts
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.attributes import PER_SECOND
-from compoundkin.model.laws import ConstantAcceleration, ConstantSpeed, Function, Law
-from compoundkin.model.laws.motion_programs import Program, Segment
+from compoundkin.model.laws import ConstantAcceleration, ConstantSpeed, FunctionLaw, Law
+from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.laws.time_tables import TimeTable
 from compoundkin.view.report.digits import number
 from compoundkin.view.report.wording import counted, listed
@@ -53,7 +53,7 @@ class Wording:
         return f"along {spline} from {number(first)} to {number(last)} s{again}"
 
     @law.register
-    def _(self, law: Function) -> str:
+    def _(self, law: FunctionLaw) -> str:
         return "by a Python function of time"
 
     @law.register
@@ -62,7 +62,7 @@ class Wording:
         segments = "; ".join(self._segment(segment) for segment in law.segments)
         return f"by {period}, from {self._value(law.start)}: {segments}.{''.join(self._jumps(law))}".rstrip(".")
 
-    def _segment(self, segment: Segment) -> str:
+    def _segment(self, segment: ProgramSegment) -> str:
         over = f"over {number(segment.over)} s"
         if segment.law == "dwell":
             return f"dwell {over}"

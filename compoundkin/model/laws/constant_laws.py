@@ -1,14 +1,15 @@
-"""What driving laws have in common: the numbers they hold, and series made of derivatives."""
+"""Driving laws of constant speed and acceleration, and what all driving laws share: numbers, Taylor polynomials."""
 
 from __future__ import annotations
 
-from dataclasses import fields
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number, Series
+from compoundkin.model.fields import Key
 
 
 class Compared:
@@ -74,3 +75,59 @@ def hold_numbers(law: Any, *names: str) -> None:
             raise InvalidMechanism(Problem(f"law.{name}", what, remedy))
         held.setflags(write=False)
         object.__setattr__(law, name, as_number(held))
+
+
+@dataclass(frozen=True, eq=False)
+class ConstantSpeed(Compared):
+    """The coordinate grows at a constant speed (rad/s or length/s), from `start` at time 0.
+
+    Numbers, or arrays for designs.
+
+    >>> ConstantSpeed(10.0, start=1.0).coordinate(0.5, order=2).c
+    (6.0, 10.0, 0.0)
+    """
+
+    speed: Number
+    start: Number = 0.0
+
+    kind: ClassVar[str] = "constant-speed"
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("speed", "rate", "Rate of the coordinate.", required=True),
+        Key("start", "coordinate", "The value at time 0.", default=0.0),
+    )
+    span: ClassVar[None] = None
+
+    def __post_init__(self) -> None:
+        hold_numbers(self)
+
+    def coordinate(self, t: Number, order: int) -> Series:
+        """Value and derivatives at times t (seconds)."""
+        return taylor((self.start, self.speed), t, order)
+
+
+@dataclass(frozen=True, eq=False)
+class ConstantAcceleration(Compared):
+    """The coordinate grows at a constant acceleration (rad/s^2 or length/s^2), from `start` at `speed` at time 0.
+
+    >>> ConstantAcceleration(4.0, speed=1.0).coordinate(0.5, order=2).c
+    (1.0, 3.0, 2.0)
+    """
+
+    acceleration: Number
+    speed: Number = 0.0
+    start: Number = 0.0
+
+    kind: ClassVar[str] = "constant-acceleration"
+    keys: ClassVar[tuple[Key, ...]] = (
+        Key("acceleration", "length", "Second rate, rad/s^2 or length/s^2.", required=True),
+        Key("speed", "rate", "Rate of the coordinate at time 0.", default=0.0),
+        Key("start", "coordinate", "The value at time 0.", default=0.0),
+    )
+    span: ClassVar[None] = None
+
+    def __post_init__(self) -> None:
+        hold_numbers(self)
+
+    def coordinate(self, t: Number, order: int) -> Series:
+        """Value and derivatives at times t (seconds)."""
+        return taylor((self.start, self.speed, self.acceleration), t, order)

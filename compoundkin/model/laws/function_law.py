@@ -1,18 +1,21 @@
-"""Derivatives of a Python function of time: exact where it can be followed, by differences otherwise."""
+"""The driving law by a Python function, with its derivatives: exact where it can be followed, or by differences."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from dataclasses import dataclass
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Series
+from compoundkin.base.series import Number, Series
+from compoundkin.model.laws.constant_laws import Compared, as_number, from_derivatives
 from compoundkin.model.laws.jets import Jet
 
 Array: TypeAlias = np.ndarray[Any, Any]
 
+MOST_DERIVATIVES = 4
 # Nine points: the error of a third derivative is of the sixth power of the step.
 NODES = np.arange(-4.0, 5.0)
 # The steps tried, as parts of the range of times; the best is about a fiftieth of the function's own time scale.
@@ -22,6 +25,73 @@ STEPS = 0.0625 * 0.618 ** np.arange(18.0)
 AGREEMENT = 1e-2
 # Two ways to the same value differ by rounding only.
 SAME = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class FunctionLaw(Compared):
+    """A Python function of an array of times that returns the coordinate at each, or (value, speed, ...) as a tuple.
+
+    A tuple may go to the jerk. Derivatives that it does not return are exact where the function is written with
+    NumPy's ordinary functions; otherwise they are differences (see `differentiated`). Raises InvalidInput where it
+    fails, or returns something of another shape or not finite.
+
+    >>> FunctionLaw(lambda t: np.sin(2.0 * t)).coordinate(np.array([0.0]), order=3).derivative(3).tolist()
+    [-8.0]
+    """
+
+    f: Callable[[Any], Any]
+
+    kind: ClassVar[str] = "function"
+    span: ClassVar[None] = None
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, FunctionLaw) and self.f is other.f
+
+    def __hash__(self) -> int:
+        return hash(self.f)
+
+    def coordinate(self, t: Number, order: int) -> Series:
+        """Value and derivatives at times t (seconds)."""
+        times = np.asarray(t, dtype=float)
+        given = self._called(times)[: order + 1]
+        if len(given) <= order:
+            last = len(given) - 1
+            given += differentiated(lambda x: self._component(x, last), times, order - last)[1:]
+        return from_derivatives([as_number(values) for values in given])
+
+    def _component(self, times: Any, k: int) -> Any:
+        """One of what the function returns, unchecked."""
+        made = self.f(times)
+        return made[k] if isinstance(made, tuple) else made
+
+    def _called(self, times: Array) -> list[Array]:
+        """What the function returns, checked."""
+        try:
+            made = self.f(times.copy())
+        except Exception as error:
+            what = f"the function fails: {type(error).__name__}: {error}"
+            raise InvalidInput(Problem("law", what, "it is called with an array of times")) from error
+        parts = list(made) if isinstance(made, tuple) else [made]
+        if not 1 <= len(parts) <= MOST_DERIVATIVES:
+            what = f"the function returns {len(parts)} arrays"
+            raise InvalidInput(Problem("law", what, "return the coordinate, or (value, speed, acceleration, jerk)"))
+        return [_checked(part, times) for part in parts]
+
+
+def _checked(part: Any, times: Array) -> Array:
+    try:
+        if np.iscomplexobj(part):  # its real part is not what its author meant
+            raise TypeError
+        values = np.asarray(part, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInput(Problem("law", "the function does not return numbers", "return an array of reals")) from None
+    if values.shape != times.shape:
+        what = f"the function returns shape {values.shape} for times of shape {times.shape}"
+        raise InvalidInput(Problem("law", what, "return one value for each time, such as c + 0 * t for a constant"))
+    bad = times[~np.isfinite(values)]
+    if bad.size:
+        raise InvalidInput(Problem("law", f"the function is not finite at {bad.flat[0]:g} s"))
+    return values
 
 
 def differentiated(f: Callable[[Any], Any], times: Array, order: int) -> list[Array]:

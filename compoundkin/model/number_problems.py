@@ -1,0 +1,167 @@
+"""What can be wrong with the numbers of a mechanism: points, dimensions, rates, and shapes of arrays."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import Problem, nearest
+from compoundkin.model.attributes import OF_DRIVERS
+from compoundkin.model.elements import Drive
+from compoundkin.model.fields import Key
+from compoundkin.model.pairs import Pair
+from compoundkin.model.written import Written
+
+# Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
+ZERO_LENGTH = 1e-12
+
+# What a driver says of its coordinate in numbers, and the rates among it.
+RATES = OF_DRIVERS[1:]
+DRIVEN = ("values", *RATES)
+
+# What is no array, and is looked at without NumPy: most mechanisms hold nothing else.
+_NUMBERS = (complex, float, int)
+# A direction in which points of a drawing hardly ever lie one behind the other.
+_OBLIQUE = cmath.rect(1.0, 1.0)
+
+
+def point_problems(mechanism: Written) -> Iterator[Problem]:
+    """Find points that are missing, no numbers, or coincident."""
+    size = _size(mechanism)
+    for name, link in mechanism.links.items():
+        if not link.points:
+            yield Problem(f"links.{name}.points", "a link needs at least one point")
+        for letter, p in link.points.items():
+            where = f"links.{name}.points.{letter}"
+            if p is None and letter not in mechanism.sketch:
+                yield Problem(where, "this point is neither given nor drawn", _undrawn(letter, mechanism.sketch))
+            elif p is not None and not is_finite(p):
+                yield Problem(where, f"{p!r} is empty or not finite")
+        yield from _lengths(mechanism, name, size)
+    for letter, p in mechanism.sketch.items():
+        if letter not in mechanism.carriers:
+            yield Problem(f"drawn.{letter}", "no link carries this point", nearest(letter, list(mechanism.carriers)))
+        if not is_finite(p):
+            yield Problem(f"drawn.{letter}", f"{p!r} is empty or not finite")
+
+
+def is_finite(value: Any) -> bool:
+    """Whether a value is a number or an array of numbers, all finite and at least one."""
+    try:
+        if isinstance(value, _NUMBERS):
+            return cmath.isfinite(value)
+        return bool(np.size(value)) and bool(np.all(np.isfinite(value)))
+    except (TypeError, ValueError, OverflowError):  # a text, a ragged list, a whole number of hundreds of digits
+        return False
+
+
+def _undrawn(letter: str, sketch: Mapping[str, Any]) -> str:
+    return f"add {letter} to the drawing" + (f"; {nearest(letter, list(sketch))}" if sketch else "")
+
+
+def _lengths(mechanism: Written, name: str, size: float) -> Iterator[Problem]:
+    """Pinned points of one link that coincide: a link of no length between two pairs."""
+    link = mechanism.links[name]
+    place = {k: mechanism.sketch.get(k) if p is None else p for k, p in link.points.items()}
+    pinned = [(k, p) for k, p in place.items() if k in mechanism.pins and p is not None]
+    for a, b in _coincident([p for _, p in pinned], ZERO_LENGTH * size):
+        yield Problem(
+            f"links.{name}.points.{pinned[b][0]}",
+            f"{pinned[a][0]} and {pinned[b][0]} coincide: a link of zero length",
+            "move one of them or give both one letter",
+        )
+
+
+def _coincident(points: list[Any], nearer: float) -> Iterator[tuple[int, int]]:
+    """The pairs of points that coincide in any design."""
+    if all(isinstance(p, _NUMBERS) for p in points):
+        yield from sorted(_near_in_order(points, nearer))
+    else:
+        for i, p in enumerate(points):
+            yield from ((i, j) for j in range(i + 1, len(points)) if np.any(np.abs(points[j] - p) <= nearer))
+
+
+def _near_in_order(points: list[complex], nearer: float) -> Iterator[tuple[int, int]]:
+    """The pairs of points that coincide; each is held against those next to it along one direction only."""
+    along = sorted(((p * _OBLIQUE).real, i) for i, p in enumerate(points) if cmath.isfinite(p))
+    for here, (t, i) in enumerate(along):
+        for there in range(here + 1, len(along)):
+            farther, j = along[there]
+            # twice: rounding of the products
+            if farther - t > 2.0 * nearer:
+                break
+            if abs(points[j] - points[i]) <= nearer:
+                yield min(i, j), max(i, j)
+
+
+def _size(mechanism: Written) -> float:
+    values = [p for link in mechanism.links.values() for p in link.points.values() if p is not None]
+    return max(map(_greatest, [*values, *mechanism.sketch.values()]), default=0.0)
+
+
+def _greatest(value: Any) -> float:
+    """The greatest absolute value, of what is finite."""
+    if isinstance(value, _NUMBERS):
+        return abs(value) if cmath.isfinite(value) else 0.0
+    return float(np.max(np.abs(np.asarray(value))[np.isfinite(value)], initial=0.0))
+
+
+def no_numbers(pair: Pair, where: str) -> Iterator[Problem]:
+    """Find what a pair holds in place of real numbers, and of true or false."""
+    for key in pair.keys:
+        for value in _numbers_of(pair, key):
+            if not is_finite(value) or np.iscomplexobj(value):
+                yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite, or not a number")
+        flag = getattr(pair, key.name, None)
+        if key.kind == "flag" and not isinstance(flag, bool | np.bool_):
+            yield Problem(f"{where}.{key.name}", f"{flag!r} is neither True nor False")
+
+
+def _numbers_of(pair: Pair, key: Key) -> tuple[Any, ...]:
+    """The numbers and arrays that a pair holds under a key."""
+    value: Any = getattr(pair, key.name, None)
+    if key.kind not in ("length", "angle", "two") or (value is None and key.default is None and not key.required):
+        return ()
+    return value if key.kind == "two" else (value,)
+
+
+def drive_problems(drive: Drive, where: str) -> Iterator[Problem]:
+    """Find numbers of a driver that are none, or that are given beside a law, which says it all."""
+    for key in DRIVEN:
+        value = getattr(drive, key)
+        if value is not None and not is_finite(value):
+            yield Problem(f"{where}.{key}", "the value is empty or not finite")
+    for key, default in ((key.name, key.default) for key in drive.keys if key.name in DRIVEN):
+        if drive.law is not None and not np.array_equal(getattr(drive, key), default):
+            remedy = f"leave the {key} or the law out"
+            yield Problem(f"{where}.{key}", "the driver has a law as well, which says how it moves", remedy)
+
+
+def shape_problems(mechanism: Written) -> Iterator[Problem]:
+    """Find arrays that do not broadcast together."""
+    shapes: list[tuple[str, tuple[int, ...]]] = []
+    for name, link in mechanism.links.items():
+        arrays = ((k, p) for k, p in link.points.items() if not (p is None or isinstance(p, _NUMBERS)))
+        shapes += [(f"links.{name}.points.{k}", np.shape(p)) for k, p in arrays]
+    shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
+    for where, pair in mechanism.placed_pairs:
+        shapes += [(f"{where}.{key.name}", np.shape(value)) for key in pair.keys for value in _numbers_of(pair, key)]
+    for index, drive in enumerate(mechanism.drives):
+        shapes += [
+            (f"drives[{index}].{k}", np.shape(getattr(drive, k))) for k in DRIVEN if getattr(drive, k) is not None
+        ]
+    total: tuple[int, ...] = ()
+    for where, shape in shapes:
+        if not shape:
+            continue
+        try:
+            total = np.broadcast_shapes(total, shape)
+        except ValueError:
+            yield Problem(
+                where,
+                f"shape {shape} does not broadcast with {total}",
+                "give a new axis to designs: the last axis is the motion",
+            )
