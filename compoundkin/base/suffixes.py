@@ -63,9 +63,13 @@ def suffix_of(path: str | os.PathLike[str]) -> str:
     return Path(path).suffix.lower()
 
 
-def first_suffix(kind: Kind) -> str:
-    """Return the suffix that a kind of file has where nobody chose one."""
-    return next(iter(SUFFIXES[kind]))
+def suffix_for(kind: Kind, form: str) -> str:
+    """Return the suffix that is told to people for a form.
+
+    >>> suffix_for("report", "markdown")
+    '.md'
+    """
+    return next(suffix for suffix, meant in SUFFIXES[kind].items() if meant == form)
 
 
 def alternatives(kind: Kind) -> str:
@@ -80,10 +84,7 @@ def alternatives(kind: Kind) -> str:
 
 def _told(kind: Kind) -> list[str]:
     """The first suffix of each form."""
-    firsts: dict[str, str] = {}
-    for suffix, form in SUFFIXES[kind].items():
-        firsts.setdefault(form, suffix)
-    return list(firsts.values())
+    return [suffix_for(kind, form) for form in dict.fromkeys(SUFFIXES[kind].values())]
 
 
 def _ends(kind: Kind) -> str:

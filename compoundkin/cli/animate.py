@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from compoundkin.base.suffixes import alternatives
 from compoundkin.cli.drive_options import DESIGN, drive_options, solved_at
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.progress import counting
@@ -47,7 +48,9 @@ Examples:
 @click.option("--fps", type=float, metavar="COUNT", help="Frames a second at most; 25 if left out.")
 @click.option("--back/--no-back", default=None, help="Go back the way it came; else where it does not end as it began.")
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
-@click.option("-o", "--to-file", "path", metavar="PATH", help="Write a .gif, .mp4 or .svg file; else SVG to stdout.")
+@click.option(
+    "-o", "--to-file", "path", metavar="PATH", help=f"Write a {alternatives('animation')} file; else SVG to stdout."
+)
 def command(file: str, path: str | None, **asked: Any) -> int:
     """Animate the motion of a mechanism.
 

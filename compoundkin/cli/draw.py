@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import pose_options, solved_at
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.shell import put, say
@@ -56,7 +57,9 @@ Examples:
 @pose_options
 @LABELS
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
-@click.option("-o", "--to-file", "path", metavar="PATH", help="Write an .svg, .png or .pdf file; else SVG to stdout.")
+@click.option(
+    "-o", "--to-file", "path", metavar="PATH", help=f"Write an {alternatives('picture')} file; else SVG to stdout."
+)
 def command(file: str, path: str | None, **asked: Any) -> None:
     """Draw a mechanism in the conventions of textbooks, at one pose.
 
@@ -64,6 +67,8 @@ def command(file: str, path: str | None, **asked: Any) -> None:
     """
     from compoundkin.structure import decompose
 
+    if path is not None:
+        form_of("picture", path)
     picture = _picture(decompose(loaded(file)), asked)
     if path is None:
         put(picture.svg)

@@ -78,11 +78,12 @@ Examples:
 def command(path: str, force: bool) -> int:
     """Write a commented mechanism file (a four-bar linkage) to PATH, to be changed into your own."""
     from compoundkin.base.errors import InvalidInput, Problem
+    from compoundkin.base.suffixes import suffix_for, suffix_of
     from compoundkin.cli.new_files import write_new
 
     target = Path(path)
     target = target / "mechanism.toml" if target.is_dir() else target
-    if target.suffix.lower() != ".toml":
+    if suffix_of(target) != suffix_for("mechanism", "toml"):
         raise InvalidInput(Problem(path, "only TOML files have comments", "choose a name that ends in .toml"))
     write_new(target, starting_file(target).encode("utf-8"), force)
     say(f"Wrote {target}; see it with: compoundkin report {target}")

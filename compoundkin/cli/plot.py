@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import drive_options, solved
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.shell import put, say
@@ -62,7 +63,7 @@ Examples:
 @click.option("--every", type=click.IntRange(1), metavar="POSES", help="Distance of the marks along curves in a plane.")
 @click.option("--title", help="Instead of the mechanism's own.")
 @click.option(
-    "-o", "--to-file", "path", metavar="PATH", help="Write a .png, .svg or .pdf file; SVG on stdout if left out."
+    "-o", "--to-file", "path", metavar="PATH", help=f"Write a {alternatives('plot')} file; SVG on stdout if left out."
 )
 def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: Any) -> int:
     """Draw quantities of a motion: over its driver, over time, against each other, or as curves in the plane.
@@ -71,11 +72,10 @@ def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: A
     outputs. What cannot be assembled is shaded; stderr says why, and the exit code is 3.
     """
     from compoundkin.structure import decompose
-    from compoundkin.view.plot.plot_picture import form_of
     from compoundkin.view.plot.plot_style import require_matplotlib
 
     if path is not None:
-        form_of(path)
+        form_of("plot", path)
     require_matplotlib()
     _fitting(asked)
     structure = decompose(loaded(file))

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.suffixes import SUFFIXES, suffix_for
 
 if TYPE_CHECKING:
     from compoundkin.model.mechanism import Mechanism
 
-SUFFIX = ".toml"
+SUFFIX = suffix_for("mechanism", "toml")
 # A wheel carries the files inside the package; a checkout or an editable install has them beside it.
 FOLDERS = (Path(__file__).parents[1] / "_catalog", Path(__file__).parents[2] / "catalog")
 
@@ -78,7 +79,7 @@ def resolve(name_or_path: str | PathLike[str]) -> Path:
         return Path(text)
     if text in names():
         return path(text)
-    if Path(text).suffix in (SUFFIX, ".json") or "/" in text or "\\" in text:
+    if Path(text).suffix in SUFFIXES["mechanism"] or "/" in text or "\\" in text:
         raise InvalidInput(Problem(text, "there is no such file", _remedy(text)))
     raise UnknownName(Problem(text, "neither a file nor in the catalog", nearest(text, names())))
 

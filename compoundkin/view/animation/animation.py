@@ -7,9 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import ClassVar
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.suffixes import Kind, form_of
 from compoundkin.files.atomic import write_atomically
+from compoundkin.files.saved_files import Savable
 from compoundkin.view.animation.frame_caption import Caption
 from compoundkin.view.animation.gif import gif, require_pillow
 from compoundkin.view.animation.mp4 import mp4, require_ffmpeg
@@ -22,17 +25,18 @@ from compoundkin.view.sketch.picture import PAGE, Picture
 from compoundkin.view.sketch.shapes import Shape
 from compoundkin.view.sketch.svg import NATURAL
 
-SUFFIXES = (".gif", ".mp4", ".svg")
 # What is told of progress: how many frames are done, of how many.
 Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Animation:
+class Animation(Savable):
     """A motion as frames, `len(animation)` of them, shown for `seconds`; made by `animate`.
 
     `course` says which poses they show, in which order and when; `sketch` holds the parts that move.
     """
+
+    saved_as: ClassVar[Kind] = "animation"
 
     sketch: MovingSketch
     course: Course
@@ -117,7 +121,7 @@ class Animation:
 
 def ready_for(path: str | os.PathLike[str]) -> str:
     """The form of a file that can be written; raises InvalidInput where it cannot, before anything is drawn."""
-    form = form_of(path)
+    form = form_of("animation", path)
     if not Path(path).absolute().parent.is_dir():
         raise InvalidInput(Problem(str(path), "it cannot be written: there is no such folder", "make it first"))
     if form == "mp4":
@@ -127,19 +131,6 @@ def ready_for(path: str | os.PathLike[str]) -> str:
     if form == "gif":
         require_pillow()
     return form
-
-
-def form_of(path: str | os.PathLike[str]) -> str:
-    """The form that a file's suffix tells; raises InvalidInput where it tells none.
-
-    >>> form_of("six-bar.GIF")
-    'gif'
-    """
-    suffix = Path(path).suffix.lower()
-    if suffix not in SUFFIXES:
-        what = f"an animation is not saved as {suffix!r}" if suffix else "the file has no suffix"
-        raise InvalidInput(Problem(str(path), what, f"one of {', '.join(SUFFIXES)}"))
-    return suffix[1:]
 
 
 def _untold(done: int, total: int) -> None:

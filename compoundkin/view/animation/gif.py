@@ -11,6 +11,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
+from compoundkin.base.suffixes import suffix_for
 from compoundkin.view.animation.film_palette import indices, nearest_table, palette
 
 # Browsers show a frame that should be shorter than this, hundredths of a second, for a tenth of a second.
@@ -60,7 +61,8 @@ def require_pillow() -> Any:
         from PIL import Image
     except ImportError:
         what = "GIF needs Pillow"
-        raise InvalidInput(Problem(".gif", what, "pip install compoundkin[animation], or save an .svg")) from None
+        remedy = "pip install compoundkin[animation], or save an .svg"
+        raise InvalidInput(Problem(suffix_for("animation", "gif"), what, remedy)) from None
     return Image
 
 

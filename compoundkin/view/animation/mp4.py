@@ -12,7 +12,9 @@ from tempfile import TemporaryDirectory, TemporaryFile
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
+from compoundkin.base.suffixes import suffix_for
 
+MP4 = suffix_for("animation", "mp4")
 # A frame takes a whole number of this many parts of a second, as in all films made for screens.
 CLOCK = 90_000
 # H.264 at a quality at which lines stay sharp (0 is lossless, 23 usual).
@@ -26,7 +28,7 @@ def require_ffmpeg() -> str:
     found = shutil.which("ffmpeg")
     if found is None:
         remedy = "install it (https://ffmpeg.org), or save a .gif or .svg, which do without"
-        raise InvalidInput(Problem(".mp4", "MP4 needs the program ffmpeg, which is not on the PATH", remedy))
+        raise InvalidInput(Problem(MP4, "MP4 needs the program ffmpeg, which is not on the PATH", remedy))
     return found
 
 
@@ -85,4 +87,4 @@ def _hand_over(
 def _failed(said: str) -> InvalidInput:
     lines = [line.strip() for line in said.splitlines() if line.strip()]
     what = "; ".join(lines[-TOLD:]) or "it says nothing"
-    return InvalidInput(Problem(".mp4", f"ffmpeg failed: {what}", "save a .gif or .svg, which do without it"))
+    return InvalidInput(Problem(MP4, f"ffmpeg failed: {what}", "save a .gif or .svg, which do without it"))

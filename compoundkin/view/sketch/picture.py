@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.atomic import write_atomically
+from compoundkin.base.suffixes import Kind
+from compoundkin.files.saved_files import Savable
 from compoundkin.view.sketch.raster import converted
 from compoundkin.view.sketch.shapes import Shape
 from compoundkin.view.sketch.svg import NATURAL, inline, svg
@@ -21,16 +20,16 @@ SMALLEST, LARGEST = 16, 20000
 # The longest side of a picture for which no size is asked for.
 PAGE = 800.0
 
-SUFFIXES = (".svg", ".png", ".pdf")
-
 
 @dataclass(frozen=True)
-class Picture:
+class Picture(Savable):
     """A picture: its shapes in picture units, how large it is in them, and shown (`size`, pixels of its longer side).
 
     Without a `size` texts are as large as those of a page, and no picture larger than a page. `window` tells where a
     place of the mechanism is on it; None where a picture is not to scale.
     """
+
+    saved_as: ClassVar[Kind] = "picture"
 
     shapes: tuple[Shape, ...] = field(repr=False)
     width: float
@@ -52,18 +51,12 @@ class Picture:
         """It as part of a page, which must have the style sheet for its shapes."""
         return inline(self.shapes, self.width, self.height, self.title, self.description)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it to an .svg, .png or .pdf file, whole or not at all.
+    def content(self, form: str) -> bytes:
+        """Return the bytes of a file in the form "svg", "png" or "pdf".
 
-        Raises InvalidInput for another suffix, where the file cannot be written, and for PNG and PDF where CairoSVG is
-        not installed.
+        Raises InvalidInput for PNG and PDF where CairoSVG is not installed.
         """
-        suffix = Path(path).suffix.lower()
-        if suffix not in SUFFIXES:
-            what = f"a picture is not saved as {suffix!r}" if suffix else "the file has no suffix"
-            raise InvalidInput(Problem(str(path), what, f"one of {', '.join(SUFFIXES)}"))
-        made = self.svg.encode("utf-8") if suffix == ".svg" else converted(self.svg, suffix[1:])
-        write_atomically(path, lambda file: file.write(made))
+        return self.svg.encode("utf-8") if form == "svg" else converted(self.svg, form)
 
     def _repr_svg_(self) -> str:
         return self.svg
