@@ -9,11 +9,10 @@ from typing import Any, ClassVar, TypeAlias
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.fields import Key
+from compoundkin.model.geometry import FRAME as FRAME
 from compoundkin.model.geometry import real, vector
 from compoundkin.model.laws import Law, as_law
 from compoundkin.model.pairs import Pair
-
-FRAME = "frame"
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,9 @@ from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 
+# The link that stands still.
+FRAME = "frame"
+
 
 @dataclass(frozen=True)
 class Geometry:

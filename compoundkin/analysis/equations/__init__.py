@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from compoundkin.analysis.equations.loop_equations import DriverEquation, LoopEquations, VectorLoop, loop_equations
-from compoundkin.analysis.equations.pair_terms import Auxiliary
-from compoundkin.analysis.equations.terms import Curved, Sum, Unknown, Vector
+from compoundkin.analysis.equations.pair_terms import pair_terms
 from compoundkin.analysis.equations.written_equations import latex, text
+from compoundkin.model.pairs.loop_terms import Auxiliary, Curved, Implicit, LoopTerms, Sum, Unknown, Vector
 
 __all__ = [
     "Auxiliary",
     "Curved",
     "DriverEquation",
+    "Implicit",
     "LoopEquations",
+    "LoopTerms",
     "Sum",
     "Unknown",
     "Vector",
     "VectorLoop",
     "latex",
     "loop_equations",
+    "pair_terms",
     "text",
 ]

@@ -7,21 +7,35 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
-from compoundkin.analysis.equations.pair_terms import Auxiliary, PairTerms, angle_of, crossing, difference, relation
-from compoundkin.analysis.equations.terms import Sum, Term, Unknown, Values, Vector
+from compoundkin.analysis.equations.pair_terms import pair_terms
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    Implicit,
+    LoopTerms,
+    Sum,
+    Term,
+    Unknown,
+    Values,
+    Vector,
+    angle_of,
+    difference,
+    times,
+)
 from compoundkin.structure import Loop, Structure, decompose
 from compoundkin.structure.graph import loops_through
 
+# A point of a pair on a link, and what it is called.
+Side: TypeAlias = tuple[Number, str]
 # A vector shorter than this part of the mechanism is the rounding of none.
 NO_LENGTH = 1e-12
 # An angle nearer than this to 0 or a half turn is one.
@@ -62,7 +76,7 @@ class LoopEquations:
 
     structure: Structure
     loops: tuple[VectorLoop, ...]
-    auxiliary: tuple[Auxiliary, ...]
+    auxiliary: tuple[Auxiliary | Implicit, ...]
     drivers: tuple[DriverEquation, ...]
     unknowns: tuple[Unknown, ...]
     lengths: Mapping[str, Number]
@@ -94,31 +108,29 @@ def loop_equations(mechanism: Mechanism | Structure) -> LoopEquations:
     """
     structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
     geometry = structure.mechanism.geometry
-    ends = {pair.name: pair.ends(geometry) for pair in structure.pairs}
-    crossings = {pair.name: crossing(pair, ends[pair.name]) for pair in structure.pairs}
-    pairs = [pair for pair in structure.pairs if crossings[pair.name] is not None]
+    terms = {pair.name: pair_terms(pair, pair.ends(geometry)) for pair in structure.pairs}
+    pairs = [pair for pair in structure.pairs if terms[pair.name].is_crossed]
     found = loops_through(structure, pairs)
     if len(found) > MOST_LOOPS:
         what = f"{len(found)} loops are too many to write out"
         raise InvalidInput(Problem("structure", what, f"take a part with {MOST_LOOPS} loops at most"))
-    walk = _Walk({name: c for name, c in crossings.items() if c is not None}, NO_LENGTH * geometry.size)
+    walk = _Walk(terms, NO_LENGTH * geometry.size)
     loops = tuple(VectorLoop(loop, tuple(walk.around(loop))) for loop in found)
-    auxiliary = [c.auxiliary for c in walk.crossings.values() if c.auxiliary is not None]
-    auxiliary += [a for pair in structure.pairs if (a := relation(pair, ends[pair.name])) is not None]
-    auxiliary += _racks(structure, pairs, walk, ends)
+    auxiliary = [equation for pair in pairs for equation in terms[pair.name].equations]
+    auxiliary += _beside(structure, pairs, walk)
     spun = {spin.link for spin in structure.passive}
     links = [name for name in structure.mechanism.links if name != FRAME and name not in spun]
     unknowns = [Unknown("angle", name) for name in links]
-    unknowns += [c.unknown for c in walk.crossings.values() if c.unknown is not None]
-    drivers = tuple(_drivers(structure, walk.crossings))
+    unknowns += [unknown for own in terms.values() for unknown in own.unknowns]
+    drivers = tuple(_drivers(structure, terms))
     return LoopEquations(structure, loops, tuple(auxiliary), drivers, tuple(unknowns), walk.lengths)
 
 
 class _Walk:
     """Walks from pair to pair and writes down the vectors, naming each length once."""
 
-    def __init__(self, crossings: Mapping[str, PairTerms], nothing: float) -> None:
-        self.crossings, self.nothing = crossings, nothing
+    def __init__(self, terms: Mapping[str, LoopTerms], nothing: float) -> None:
+        self.terms, self.nothing = terms, nothing
         self.lengths: dict[str, Number] = {}
 
     def around(self, loop: Loop) -> Iterator[Term]:
@@ -131,23 +143,23 @@ class _Walk:
             yield from self._arms(pair, first)
             point, label = self._side(pair, pair.members[1] if first else pair.members[0])
 
-    def along(self, links: Sequence[str], pairs: Sequence[Pair], start: Number, end: Number) -> Iterator[Term]:
+    def along(self, links: Sequence[str], pairs: Sequence[Pair], start: Side, end: Side) -> Iterator[Term]:
         """The vectors of an open way, from a point of its first link to one of its last."""
-        point, label = start, "line"
+        point, label = start
         for link, pair in zip(links, pairs, strict=False):
             yield from self._on(link, point, label, *self._side(pair, link))
             first = link == pair.members[0]
             yield from self._arms(pair, first)
             point, label = self._side(pair, pair.members[1] if first else pair.members[0])
-        yield from self._on(links[-1], point, label, end, "axis")
+        yield from self._on(links[-1], point, label, *end)
 
-    def _side(self, pair: Pair, link: str) -> tuple[Number, str]:
-        own = self.crossings[pair.name]
+    def _side(self, pair: Pair, link: str) -> Side:
+        own = self.terms[pair.name]
         k = pair.members.index(link)
         return own.points[k], own.labels[k]
 
     def _arms(self, pair: Pair, forward: bool) -> Iterator[Term]:
-        arms = self.crossings[pair.name].arms
+        arms = self.terms[pair.name].arms
         for arm in arms if forward else [arm.reversed() for arm in reversed(arms)]:
             if isinstance(arm, Vector) and arm.symbol:
                 self.lengths[arm.symbol] = arm.length.constant
@@ -182,22 +194,20 @@ def _symbol(first: str, last: str) -> str:
     return f"{first}{last}" if short else f"{first}-{last}"
 
 
-def _racks(
-    structure: Structure, pairs: Sequence[Pair], walk: _Walk, ends: Mapping[str, tuple[Any, ...]]
-) -> list[Auxiliary]:
-    """What racks add: the way of the axis along the pitch line, and the turn of the pinion."""
-    found = []
-    for pair in structure.pairs:
-        if pair.name in walk.crossings or pair.adds_angles:
-            continue
-        line, axis = ends[pair.name]
-        links, way = _way(pairs, *pair.members[:2])
-        path = tuple(walk.along(links, way, line.point, axis.point))
-        rack, pinion = (angle_of(name) for name in pair.members)
-        turned = tuple((axis.measure * factor, unknown) for factor, unknown in difference(rack, pinion).parts)
-        along = rack.plus(np.angle(line.along.c[0]))
-        found.append(Auxiliary(pair.name, Sum(-line.measure, turned), path, along, counts_turns=True))
-    return found
+def _beside(structure: Structure, pairs: Sequence[Pair], walk: _Walk) -> Iterator[Auxiliary | Implicit]:
+    """The equations of pairs that no loop runs through; those that ask for vectors have them through other pairs."""
+    others = [pair for pair in structure.pairs if not walk.terms[pair.name].is_crossed]
+    found = [(pair, equation) for pair in others for equation in walk.terms[pair.name].equations]
+    yield from (own for _, own in found if isinstance(own, Auxiliary) and own.along is None)
+    for pair, own in found:
+        if isinstance(own, Implicit):
+            start, *ends = ((at, f"{pair.name} on {name}") for at, name in zip(own.points, pair.members, strict=True))
+            ways = (_way(pairs, pair.members[0], name) for name in pair.members[1:])
+            paths = (walk.along(*way, start, end) for way, end in zip(ways, ends, strict=True))
+            yield replace(own, ways=tuple(map(tuple, paths)))
+        elif own.along is not None:
+            start, end = zip(walk.terms[pair.name].points, walk.terms[pair.name].labels, strict=True)
+            yield replace(own, path=tuple(walk.along(*_way(pairs, *pair.members[:2]), start, end)))
 
 
 def _way(pairs: Sequence[Pair], start: str, end: str) -> tuple[list[str], list[Pair]]:
@@ -220,15 +230,11 @@ def _way(pairs: Sequence[Pair], start: str, end: str) -> tuple[list[str], list[P
     return links[::-1], way[::-1]
 
 
-def _drivers(structure: Structure, crossings: Mapping[str, PairTerms]) -> Iterator[DriverEquation]:
+def _drivers(structure: Structure, terms: Mapping[str, LoopTerms]) -> Iterator[DriverEquation]:
     bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
     for step in (step for body in bodies for step in body.driven if not step.is_passive):
-        free = crossings[step.pair.name].unknown
-        if free is None:
-            first, second = (angle_of(name) for name in step.pair.members)
-            value = difference(first, second)
-        else:
-            value = Sum(0.0, ((1.0, free),))
-        if step.pair.driven_by(step.drive.link) < 0:
-            value = Sum(-value.constant, tuple((-factor, unknown) for factor, unknown in value.parts))
-        yield DriverEquation(step.drive.name, value, step.pair.free_is_angle)
+        free = terms[step.pair.name].unknowns[:1]
+        first, second = (angle_of(name) for name in step.pair.members)
+        value = Sum(0.0, tuple((1.0, unknown) for unknown in free)) if free else difference(first, second)
+        sign = step.pair.driven_by(step.drive.link)
+        yield DriverEquation(step.drive.name, value if sign > 0 else times(-1.0, value), step.pair.free_is_angle)

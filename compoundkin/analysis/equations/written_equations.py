@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
 from compoundkin.analysis.equations.loop_equations import DriverEquation, VectorLoop
-from compoundkin.analysis.equations.pair_terms import Auxiliary
-from compoundkin.analysis.equations.terms import Curved, Sum, Term, Unknown
 from compoundkin.base.series import Number
+from compoundkin.model.pairs.loop_terms import LETTERS, Auxiliary, Curved, Implicit, Sum, Term, Unknown
 
 # A constant below this is rounding; a factor nearer to one than this is one.
 ROUNDING = 1e-9
-_LETTERS = {"displacement": "s", "direction": r"\varphi", "parameter": "p"}
+_LETTERS = {**LETTERS, "direction": r"\varphi"}
+Equation: TypeAlias = VectorLoop | Auxiliary | Implicit | DriverEquation
 
 
-def text(equation: VectorLoop | Auxiliary | DriverEquation) -> str:
+def text(equation: Equation) -> str:
     """An equation as a line of text.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
@@ -27,7 +28,7 @@ def text(equation: VectorLoop | Auxiliary | DriverEquation) -> str:
     return _equation(equation, _TEXT)
 
 
-def latex(equation: VectorLoop | Auxiliary | DriverEquation) -> str:
+def latex(equation: Equation) -> str:
     """An equation as LaTeX, without the dollar signs."""
     return _equation(equation, _LATEX)
 
@@ -55,6 +56,10 @@ class _Text:
     @staticmethod
     def part(vector: str, angle: str) -> str:
         return f"Re[({vector}) e^(-i ({angle or '0'}))]"
+
+    @staticmethod
+    def function(of: Implicit) -> str:
+        return f"F{of.number}[{of.pair}]({', '.join(unknown.key for unknown in of.unknowns)})"
 
     @staticmethod
     def value(driver: str) -> str:
@@ -90,6 +95,11 @@ class _Latex:
         return rf"\operatorname{{Re}}\left[\left({vector}\right)e^{{-i({angle or '0'})}}\right]"
 
     @staticmethod
+    def function(of: Implicit) -> str:
+        arguments = r",\,".join(map(_Latex.unknown, of.unknowns))
+        return rf"F_{{{of.number},\text{{{_escaped(of.pair)}}}}}({arguments})"
+
+    @staticmethod
     def value(driver: str) -> str:
         return rf"q_{{\text{{{_escaped(driver)}}}}}"
 
@@ -98,13 +108,16 @@ _TEXT, _LATEX = _Text, _Latex
 _How = type[_Text] | type[_Latex]
 
 
-def _equation(equation: VectorLoop | Auxiliary | DriverEquation, how: _How) -> str:
+def _equation(equation: Equation, how: _How) -> str:
     if isinstance(equation, VectorLoop):
         return f"{_vectors(equation.terms, how)} = 0"
     if isinstance(equation, DriverEquation):
         return f"{_sum(equation.sum, how, how.angle if equation.is_angle else _plain)} = {how.value(equation.driver)}"
+    if isinstance(equation, Implicit):
+        result = "0" if equation.result is None else how.unknown(equation.result)
+        return f"{how.function(equation)} = {result}"
     constant = how.angle if all(unknown.kind in ("angle", "direction") for _, unknown in equation.sum.parts) else _plain
-    if equation.path:
+    if equation.along is not None:
         moved = how.part(_vectors(equation.path, how), _sum(equation.along, how, how.angle))
         rest = _sum(equation.sum, how, _plain)
         return f"{moved} {'- ' + rest[1:] if rest.startswith('-') else '+ ' + rest} = 0"

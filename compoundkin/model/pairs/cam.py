@@ -25,6 +25,7 @@ from compoundkin.model.pairs.contact import (
     row,
 )
 from compoundkin.model.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
+from compoundkin.model.pairs.loop_terms import Curved, LoopTerms, Unknown, angle_of
 from compoundkin.model.pairs.profiled import Profiled
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
@@ -160,6 +161,17 @@ class Cam(Profiled):
         reach = radius - ends[1].measure if self.inside else radius + ends[1].measure
         arc = ArcSlot(self.name, self.link, self.on, self.at, "middle of the disc", reach)
         return arc.equivalent((End(middle, 1 + 0j, reach), End(ends[1].point)))
+
+    def loop_terms(self, ends: Ends) -> LoopTerms | None:
+        """From the origin of the profile's link to the contact, and on to the roller's middle; not of a round disc."""
+        if self.profile.circle is not None:
+            return None
+        free, on, curve = Unknown("parameter", self.name), angle_of(self.on), self.curve
+        away = ends[1].measure * self.outward
+        contact = Curved(f"profile({free.key})", lambda values: curve.at(values[free.key]).c[0], on)
+        normal = Curved(f"normal({free.key})", lambda values: away * curve.normal(values[free.key]).c[0], on)
+        arms = (contact, normal) if np.any(away != 0.0) else (contact,)
+        return LoopTerms((ends[0].point, ends[1].point), (f"origin of {self.on}", self.at), arms, (free,))
 
     def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
         """Where the path of the roller's middle crosses the parallel curve.

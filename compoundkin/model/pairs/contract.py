@@ -17,6 +17,7 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
 from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.symbols import Mark
 
 
@@ -225,6 +226,10 @@ class Pair(ABC):
     def no_contact_reason(self) -> str:
         """Why a member has no contact where there are no candidates, in a sentence."""
         return f"{self.name} does not close"
+
+    def loop_terms(self, ends: Ends) -> LoopTerms | None:
+        """Return what it adds to vector loops; None to have it from its lower pairs, or else from its closure."""
+        return None
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation | None:
         """The centres of curvature of a higher pair at the leading coefficient of the poses; None for other pairs."""

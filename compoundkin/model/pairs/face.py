@@ -25,6 +25,17 @@ from compoundkin.model.pairs.contact import (
     row,
 )
 from compoundkin.model.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
+from compoundkin.model.pairs.loop_terms import (
+    Curved,
+    LoopTerms,
+    Sum,
+    Unknown,
+    Values,
+    Vector,
+    angle_of,
+    difference,
+    direction,
+)
 from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.model.pairs.profiled import Profiled
 from compoundkin.model.pairs.revolute import Revolute
@@ -145,6 +156,20 @@ class Face(Profiled):
         track = End(ends[1].point + 1j * self.side * radius * along, along)
         sides: dict[str, Ends] = {pairs[0].name: (End(middle), End(0j)), pairs[1].name: (track, End(0j, 1 + 0j))}
         return Equivalent(block, pairs, sides)
+
+    def loop_terms(self, ends: Ends) -> LoopTerms | None:
+        """From the origin of the profile's link to the contact, and along the face; not of a round disc."""
+        if self.profile.circle is not None:
+            return None
+        free, on, curve, side = Unknown("displacement", self.name), angle_of(self.on), self.curve, -1j * self.side
+        along = angle_of(self.link).plus(direction(ends[1]))
+        toward = difference(on, along)
+
+        def touched(values: Values) -> Number:
+            return curve.at(curve.support(np.exp(1j * toward.at(values)) * side).c[0]).c[0]
+
+        arms = Curved(f"contact({self.name})", touched, on), Vector("", Sum(0.0, ((1.0, free),)), along, -1)
+        return LoopTerms((ends[0].point, ends[1].point), (f"origin of {self.on}", self.at), arms, (free,))
 
     def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
         """On a slide the face's direction tells the contact; on a pin the face also touches a circle about it.

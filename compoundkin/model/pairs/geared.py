@@ -14,6 +14,7 @@ from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Osculation, Pair, Point, Poses, table
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, times
 
 Two = tuple[Number, Number]
 
@@ -187,6 +188,16 @@ class Geared(Pair):
         first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
         place = first * two + second * one
         return Point(-place.real / two, -place.imag / two, -(one + two) / two)
+
+    def loop_terms(self, ends: Ends) -> LoopTerms:
+        """The angles that it ties; no loop runs through it."""
+        first, second, carrier = (angle_of(name) for name in self.members)
+        turned = times(-ratio(ends), difference(carrier, first))
+        tied = difference(turned, difference(carrier, second)).plus(-ends[2].measure)
+        equation = Auxiliary(self.name, tied, counts_turns=True)
+        return LoopTerms(
+            (ends[0].point, ends[1].point), (self.first_at, self.second_at), equations=(equation,), is_crossed=False
+        )
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:
         """What the sizes are to be multiplied with to be radii of the circles that the line of action touches."""

@@ -15,6 +15,16 @@ from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    LoopTerms,
+    Sum,
+    Unknown,
+    Vector,
+    angle_of,
+    difference,
+    direction,
+)
 from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 
 
@@ -169,6 +179,14 @@ class Prismatic(Pair):
         """At infinity, at right angles to the guide."""
         guide = poses[0].carry(ends[0]).along.c[0]
         return Point(-guide.imag, guide.real, 0.0)
+
+    def loop_terms(self, ends: Ends) -> LoopTerms:
+        """Along the guide; the angles of block and guide are tied."""
+        free = Unknown("displacement", self.name)
+        guide, block = (angle_of(name).plus(direction(end)) for name, end in zip(self.members, ends, strict=True))
+        arm, tied = Vector("", Sum(0.0, ((1.0, free),)), guide), Auxiliary(self.name, difference(guide, block))
+        points = ends[0].point, ends[1].point
+        return LoopTerms(points, (f"{self.through}'", self.at), (arm,), (free,), (tied,))
 
     def placed(self, ends: Ends, free: Series) -> Pose:
         """The block moved along the guide by the given displacement."""

@@ -13,6 +13,7 @@ from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
 from compoundkin.model.pairs.contract import Ends, Pair, Poses, table
 from compoundkin.model.pairs.gear import UNCOUNTED
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, direction, times
 from compoundkin.model.pairs.pitch_line import FITS, OnLine, radius_problems
 from compoundkin.model.pairs.revolute import Revolute
 
@@ -114,6 +115,14 @@ class Rack(OnLine):
     def distance_error(self, ends: Ends, poses: Poses) -> Series:
         """The axis must be at its radius from the pitch line."""
         return self.distance(ends, poses)
+
+    def loop_terms(self, ends: Ends) -> LoopTerms:
+        """The way of the axis along the pitch line, by other pairs, and the turn of the pinion."""
+        rack, pinion = (angle_of(name) for name in self.members)
+        turned = times(ends[1].measure, difference(rack, pinion)).plus(-ends[0].measure)
+        rolled = Auxiliary(self.name, turned, along=rack.plus(direction(ends[0])), counts_turns=True)
+        points = ends[0].point, ends[1].point
+        return LoopTerms(points, ("line", "axis"), equations=(rolled,), is_crossed=False)
 
     def is_affine(self, lower: Pair, own: int) -> bool:
         """Where a member only slides, or the pinion only turns about its axis."""

@@ -13,6 +13,7 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.symbols import Mark, Pin
 
 
@@ -78,6 +79,10 @@ class Revolute(Pair):
         """The pin."""
         pin = poses[0].at(ends[0].point).c[0]
         return Point(pin.real, pin.imag, 1.0)
+
+    def loop_terms(self, ends: Ends) -> LoopTerms:
+        """A loop passes the pin itself."""
+        return LoopTerms((ends[0].point, ends[1].point), (self.at, self.at))
 
     def placed(self, ends: Ends, free: Series) -> Pose:
         """The second link turned about the pin by the given angle."""

@@ -6,11 +6,24 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
+import numpy as np
+
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
 from compoundkin.model.pairs.contract import Ends, Poses, table
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    LoopTerms,
+    Sum,
+    Unknown,
+    Vector,
+    angle_of,
+    difference,
+    direction,
+    times,
+)
 from compoundkin.model.pairs.pitch_line import OnLine, radius_problems
 
 
@@ -83,6 +96,17 @@ class Rolling(OnLine):
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Rows of distance, slip and displacement."""
         return table(*self.rows(ends, poses))
+
+    def loop_terms(self, ends: Ends) -> LoopTerms:
+        """Along the line and out to the wheel's middle."""
+        free, radius = Unknown("displacement", self.name), ends[1].measure
+        on, wheel = (angle_of(name) for name in self.members)
+        along, side = on.plus(direction(ends[0])), int(np.sign(np.ravel(radius)[0]))
+        out = Vector(f"r({self.name})", Sum(np.abs(radius)), along.plus(np.pi / 2.0), side)
+        turned = times(radius, difference(on, wheel))
+        rolled = Auxiliary(self.name, Sum(-ends[0].measure, ((1.0, free), *turned.parts)), counts_turns=True)
+        points, labels = (ends[0].point, ends[1].point), (f"{self.through}'", self.at)
+        return LoopTerms(points, labels, (Vector("", Sum(0.0, ((1.0, free),)), along), out), (free,), (rolled,))
 
     def placed(self, ends: Ends, free: Series) -> Pose:
         """The wheel's middle moved along the line by the given displacement, and turned as it rolls."""

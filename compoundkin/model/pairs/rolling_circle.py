@@ -15,6 +15,16 @@ from compoundkin.model.fields import Key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import named_problems
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.model.pairs.loop_terms import (
+    Auxiliary,
+    LoopTerms,
+    Sum,
+    Unknown,
+    Vector,
+    angle_of,
+    difference,
+    direction,
+)
 from compoundkin.model.pairs.pitch_line import TURN, radius_problems
 from compoundkin.model.pairs.symbols import Mark, Wheel
 
@@ -155,6 +165,17 @@ class RollingOnCircle(Pair):
         middle, axis = (pose.at(end.point).c[0] for pose, end in zip(poses, ends, strict=True))
         place = middle / k + axis * (1.0 - 1.0 / k)
         return Point(place.real * k, place.imag * k, k)
+
+    def loop_terms(self, ends: Ends) -> LoopTerms:
+        """From the middle of the circle to that of the wheel."""
+        free = Unknown("direction", self.name)
+        on, wheel = (angle_of(name) for name in self.members)
+        line = Sum(direction(ends[0]), (*on.parts, (1.0, free)))
+        turned = Sum(-ends[0].measure, (*difference(on, wheel).parts, (-ends[1].measure, free)))
+        arm = Vector(f"r({self.name})", Sum(np.abs(ends[0].along.c[0])), line)
+        rolled = Auxiliary(self.name, turned, counts_turns=True)
+        points, labels = (ends[0].point, ends[1].point), (self.centre_at, self.at)
+        return LoopTerms(points, labels, (arm,), (free,), (rolled,))
 
     def placed(self, ends: Ends, free: Series) -> Pose:
         """The wheel where the line of centres has the given direction."""

@@ -1,6 +1,6 @@
 r"""Formulas as MathML, from the LaTeX that reports write them in: a small part of it, and nothing of it unread.
 
-The part is letters, numbers, brackets, `_`, `^`, `\theta`, `\varphi`, `\circ`, `\text{...}`, `\overline{...}`,
+The part is letters, numbers, brackets, commas, `_`, `^`, `\theta`, `\varphi`, `\circ`, `\text{...}`, `\overline{...}`,
 `\operatorname{...}`, `\left` and `\right`.
 Source: W3C, MathML Core.
 """
@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from compoundkin.view.page.markup import safe
 
 LETTERS = {r"\theta": "θ", r"\varphi": "φ"}
-SIGNS = {"-": "−", "+": "+", "=": "="}
+SIGNS = {"-": "−", "+": "+", "=": "=", ",": ","}
 _TOKEN = re.compile(r"\s+|\\[a-zA-Z]+|\\.|\d+(?:\.\d+)?(?:e[+-]?\d+)?|.", re.DOTALL)
 _WORDS = (r"\text", r"\operatorname")
 

@@ -6,21 +6,23 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from compoundkin.analysis.equations import LoopEquations, latex, loop_equations, text
-from compoundkin.analysis.equations.terms import Unknown
+from compoundkin.analysis.equations import Implicit, LoopEquations, Unknown, latex, loop_equations, text
 from compoundkin.structure import Structure
 from compoundkin.view.report.report_data import Block, Cell, Column, Formula, Paragraph, Section, Table
-from compoundkin.view.report.wording import counted
+from compoundkin.view.report.wording import counted, joined
 
 NOTATION = (
     "A vector AB e^(i crank) has the length AB and is turned by the angle of the link crank; "
     "the frame's angle is zero. AB' starts or ends where a guide is, from which its displacement counts."
 )
+FUNCTIONS = "Of {pairs} no more is known than functions F of the angles and displacements in brackets."
 _MEANING = {
     "angle": "angle of the link",
     "displacement": "displacement along the guide",
     "direction": "direction of the line between centres",
     "parameter": "parameter of the profile at the contact",
+    "x": "way across the pair in x of its first link",
+    "y": "way across the pair in y of its first link",
 }
 
 
@@ -39,6 +41,9 @@ def _blocks(found: LoopEquations) -> Iterator[Block]:
             yield Paragraph(title)
         for equation in equations:
             yield Formula(text(equation), latex(equation))
+    unwritten = list(dict.fromkeys(one.pair for one in found.auxiliary if isinstance(one, Implicit)))
+    if unwritten:
+        yield Paragraph(FUNCTIONS.format(pairs=joined(unwritten)))
     yield Paragraph(_count(found))
     yield Table((Column("unknown"), Column("what it is")), tuple(_unknown(one) for one in found.unknowns))
     known = tuple((symbol, _length(length)) for symbol, length in found.lengths.items())

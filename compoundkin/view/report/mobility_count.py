@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from compoundkin.analysis.equations import pair_terms
 from compoundkin.structure import Structure, loop_count
 from compoundkin.view.report.report_data import Block, Column, Formula, Paragraph, Section, Table
 from compoundkin.view.report.wording import counted
@@ -54,11 +57,11 @@ def equation_count(structure: Structure) -> EquationCount:
     >>> count.equations, count.unknowns
     (2, 3)
     """
-    geared = [pair for pair in structure.pairs if pair.counts_turns and pair.held == 1]
-    running = [pair for pair in structure.pairs if pair not in geared and not (pair.is_simple and pair.free_is_angle)]
-    guided = [pair for pair in running if pair.held > 1]
-    loops, angles = loop_count(structure) - len(geared), len(structure.mechanism.links) - 1 - len(structure.passive)
-    return EquationCount(loops, angles, len(running), len(guided) + len(geared), structure.mobility.drivers)
+    terms = [pair_terms(pair, pair.generic(np.random.default_rng(0))) for pair in structure.pairs]
+    loops = loop_count(structure) - sum(not own.is_crossed for own in terms)
+    angles = len(structure.mechanism.links) - 1 - len(structure.passive)
+    unknowns, equations = sum(len(own.unknowns) for own in terms), sum(len(own.equations) for own in terms)
+    return EquationCount(loops, angles, unknowns, equations, structure.mobility.drivers)
 
 
 def loops_section(structure: Structure) -> Section:

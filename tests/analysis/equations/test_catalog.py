@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.equations import LoopEquations, Vector, latex, loop_equations, text
-from compoundkin.analysis.equations.pair_terms import crossing
+from compoundkin.analysis.equations import LoopEquations, Vector, latex, loop_equations, pair_terms, text
 from compoundkin.files.shipped_mechanisms import load_named, names
 from compoundkin.view.report.mobility_count import equation_count
 
@@ -28,22 +27,23 @@ def values_of(motion: ck.Motion, equations: LoopEquations) -> dict[str, np.ndarr
     values = {name: link.angle for name, link in motion.links.items()}
     geometry = motion.mechanism.geometry
     for pair in equations.structure.pairs:
-        how = crossing(pair, pair.ends(geometry))
-        if how is None or how.unknown is None:
+        how = pair_terms(pair, pair.ends(geometry))
+        if not how.unknowns:
             continue
+        (unknown,) = how.unknowns
         first, second = (motion.links[name].at(p).position for name, p in zip(pair.members, how.points, strict=False))
         gap = np.asarray(second - first)
-        if how.unknown.kind == "parameter":
-            values[how.unknown.key] = motion.pairs[pair.name].value
+        if unknown.kind == "parameter":
+            values[unknown.key] = motion.pairs[pair.name].value
             continue
-        zero = {**values, how.unknown.key: 0.0}
+        zero = {**values, unknown.key: 0.0}
         free = next(arm for arm in how.arms if (isinstance(arm, Vector) and not arm.symbol) or len(how.arms) == 1)
-        if how.unknown.kind == "displacement":
+        if unknown.kind == "displacement":
             along = free.sign * np.exp(1j * free.angle.at(zero))
             others = sum((arm.at(zero) for arm in how.arms if arm is not free), 0j)
-            values[how.unknown.key] = ((gap - others) * np.conj(along)).real
+            values[unknown.key] = ((gap - others) * np.conj(along)).real
         else:
-            values[how.unknown.key] = np.unwrap(np.angle(gap * np.exp(-1j * free.angle.at(zero))))
+            values[unknown.key] = np.unwrap(np.angle(gap * np.exp(-1j * free.angle.at(zero))))
     return values
 
 
