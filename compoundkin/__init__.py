@@ -49,10 +49,10 @@ if TYPE_CHECKING:
     from compoundkin.synthesis.composer import Composer, random_mechanism
     from compoundkin.synthesis.inversion import with_driver, with_frame
     from compoundkin.view.animation import Animation, animate
-    from compoundkin.view.page import Page, page
+    from compoundkin.view.page import Page
     from compoundkin.view.plot import plot
-    from compoundkin.view.report import rendered, report
-    from compoundkin.view.sketch import Picture, draw, draw_structure, vector_polygon
+    from compoundkin.view.report import page, report
+    from compoundkin.view.sketch import Picture, draw
 
 __version__ = VERSION
 
@@ -90,7 +90,6 @@ __all__ = [
     "deg",
     "disc",
     "draw",
-    "draw_structure",
     "drawn",
     "drive",
     "dwell",
@@ -115,7 +114,6 @@ __all__ = [
     "quantity",
     "rack",
     "random_mechanism",
-    "rendered",
     "report",
     "rise",
     "roll",
@@ -126,7 +124,6 @@ __all__ = [
     "solve",
     "synthesise",
     "time_table",
-    "vector_polygon",
     "verify",
     "with_driver",
     "with_frame",
@@ -154,8 +151,6 @@ _LATE = {
     "random_mechanism": "synthesis.composer",
     "Picture": "view.sketch",
     "draw": "view.sketch",
-    "draw_structure": "view.sketch",
-    "vector_polygon": "view.sketch",
     "loop_equations": "analysis.equations",
     "equivalent_linkage": "analysis.equivalents",
     "load": "files",
@@ -163,9 +158,8 @@ _LATE = {
     "with_driver": "synthesis.inversion",
     "with_frame": "synthesis.inversion",
     "Page": "view.page",
-    "page": "view.page",
+    "page": "view.report",
     "plot": "view.plot",
-    "rendered": "view.report",
     "report": "view.report",
 }
 

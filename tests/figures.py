@@ -76,15 +76,15 @@ FIGURES: dict[str, Callable[[], ck.Picture | ck.Animation]] = {
     "moving": lambda: ck.animate(SIX_BAR, paths="G"),
     "crank-rocker": crank_rocker,
     "six-bar": six_bar,
-    "apart": lambda: ck.draw_structure(posed()),
-    "graph": lambda: ck.draw_structure(SIX_BAR, "graph"),
-    "loops": lambda: ck.draw_structure(posed(), "loops"),
+    "apart": lambda: ck.draw(posed(), kind="groups"),
+    "graph": lambda: ck.draw(SIX_BAR, kind="graph"),
+    "loops": lambda: ck.draw(posed(), kind="loops"),
     "modes": modes,
     "limit": limit,
     "centres": lambda: ck.draw(SIX_BAR, AT, centres=True),
-    "circle": lambda: ck.draw_structure(SIX_BAR, "circle"),
-    "velocities": lambda: ck.vector_polygon(SIX_BAR, "velocity", AT),
-    "accelerations": lambda: ck.vector_polygon(SIX_BAR, "acceleration", AT),
+    "circle": lambda: ck.draw(SIX_BAR, kind="circle"),
+    "velocities": lambda: ck.draw(SIX_BAR, AT, kind="polygon"),
+    "accelerations": lambda: ck.draw(SIX_BAR, AT, kind="polygon", vectors="acceleration"),
 }
 
 

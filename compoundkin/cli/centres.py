@@ -9,7 +9,7 @@ import click
 
 from compoundkin.cli.drive_options import AT, pose_options, solved_at
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import About, put_report, report_options
+from compoundkin.cli.output_options import put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED
 from compoundkin.cli.structure import unsolvable
 
@@ -45,19 +45,19 @@ def command(
     from compoundkin.kinematics.solvable import solvable
     from compoundkin.view.report import Report, report
     from compoundkin.view.report.centres_section import derivation_section
-    from compoundkin.view.report.partial_reports import NOT_SOLVED, centres_report
+    from compoundkin.view.report.motion_report import centres_report
+    from compoundkin.view.report.report_data import NOT_SOLVED
 
     structure = solvable(loaded(file))
     if structure.faults:
-        put_report(report(structure), form, path, About(structure))
+        put_report(report(structure), form, path)
         return unsolvable(len(structure.faults))
-    made, about = Report(structure.mechanism.title, (), NOT_SOLVED), About(structure)
+    made = Report(structure.mechanism.title, (), NOT_SOLVED, structure)
     if at or not derivation:
-        motion = solved_at_pose(structure, at, asked)
-        made, about = centres_report(motion, design), About(structure, motion, design=design)
+        made = centres_report(solved_at_pose(structure, at, asked), design)
     if derivation:
         made = replace(made, sections=(derivation_section(structure), *made.sections))
-    put_report(made, form, path, about)
+    put_report(made, form, path)
     return NOT_ASSEMBLED if made.outcome.assembled < made.outcome.poses else 0
 
 

@@ -8,7 +8,7 @@ import click
 
 from compoundkin.cli.drive_options import drive_options, solved
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import About, put_report, report_options
+from compoundkin.cli.output_options import put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
 from compoundkin.cli.structure import unsolvable
 
@@ -36,16 +36,16 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     from compoundkin.cli.progress import working
     from compoundkin.kinematics.solvable import solvable
     from compoundkin.view.report import report
-    from compoundkin.view.report.partial_reports import check_report
+    from compoundkin.view.report.motion_report import check_report
 
     structure = solvable(loaded(file))
     if structure.faults:
-        put_report(report(structure), form, path, About(structure))
+        put_report(report(structure), form, path)
         return unsolvable(len(structure.faults))
     motion = solved(structure, asked)
     with working("checking"):
         made = check_report(motion)
-    put_report(made, form, path, About(motion=motion))
+    put_report(made, form, path)
     return _verdict(made)
 
 

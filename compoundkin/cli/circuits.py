@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import About, put_report, report_options
+from compoundkin.cli.output_options import put_report, report_options
 
 if TYPE_CHECKING:
     from compoundkin.structure import Structure
@@ -58,7 +58,7 @@ def command(
     fixed = _fixed(structure, at)
     with working("following all circuits"):
         made = circuits_report(circuits(structure, driver, fixed, between=range_of(structure, driver, start, stop)))
-    put_report(made, form, path, About(structure))
+    put_report(made, form, path)
     return 0
 
 

@@ -8,7 +8,7 @@ import click
 
 from compoundkin.cli.drive_options import AT
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import About, put_report, report_options
+from compoundkin.cli.output_options import put_report, report_options
 
 
 @click.command(
@@ -27,6 +27,8 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
 
     A name of the list chooses a configuration in Python: solve(..., modes="..."). Exit code 3: there is none.
     """
+    from dataclasses import replace
+
     from compoundkin.base.errors import UnassembledPoses
     from compoundkin.cli import typed_values
     from compoundkin.cli.progress import working
@@ -43,5 +45,5 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
         # where there is no configuration, the report says so
         warnings.simplefilter("ignore", UnassembledPoses)
         motion = solve(structure, driven)
-    put_report(made, form, path, About(structure, motion))
+    put_report(replace(made, subject=motion), form, path)
     return 0

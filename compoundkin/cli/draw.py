@@ -79,16 +79,16 @@ def command(file: str, path: str | None, **asked: Any) -> None:
 
 def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
     """The picture asked for; raises InvalidInput for options that do not go together."""
-    from compoundkin.view.sketch import draw, draw_structure, vector_polygon
+    from compoundkin.view.sketch import draw
 
     _fitting(asked)
     if asked["view"]:
-        return draw_structure(structure, asked["view"], size=asked["size"])
+        return draw(structure, kind=asked["view"], size=asked["size"])
     shown, at = _motion(structure, asked)
+    words = {key: asked[key] for key in ("design", "size")}
     if asked["polygon"]:
-        return vector_polygon(shown, asked["polygon"], at, design=asked["design"], size=asked["size"])
-    words = {key: asked[key] for key in OF_SKETCH}
-    return draw(shown, at, design=asked["design"], size=asked["size"], **words)
+        return draw(shown, at, kind="polygon", vectors=asked["polygon"], **words)
+    return draw(shown, at, **words, **{key: asked[key] for key in OF_SKETCH})
 
 
 def _fitting(asked: Mapping[str, Any]) -> None:

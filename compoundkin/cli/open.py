@@ -31,12 +31,12 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     """
     from compoundkin.view.page.report_page import shown_in_browser, temporary
 
-    made, about = reported(file, asked)
-    page = made_page(made, about)
+    made, closed = reported(file, asked)
+    page = made_page(made)
     target = Path(path) if path else temporary()
     page.save(target)
     if shown_in_browser(target):
         say(f"Opened {target}.")
     else:
         say(f"No browser can be opened here; the page is in {target}.")
-    return verdict(made, about)
+    return verdict(made, closed)

@@ -9,7 +9,7 @@ import click
 
 from compoundkin.cli.drive_options import drive_options, solved
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import About, put_report, report_options
+from compoundkin.cli.output_options import put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
 from compoundkin.cli.structure import unsolvable
 
@@ -49,13 +49,13 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     Angles are in degrees and lengths in the unit of the file. An .html file is a page with the moving sketch and plots.
     Exit code 3: some poses cannot be assembled; 4: a check failed or a published number was not reproduced.
     """
-    made, about = reported(file, asked)
-    put_report(made, form, path, about)
-    return verdict(made, about)
+    made, closed = reported(file, asked)
+    put_report(made, form, path)
+    return verdict(made, closed)
 
 
-def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, About]:
-    """The report of a mechanism, and what it is about: a structure alone where that cannot be solved."""
+def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, bool]:
+    """The report of a mechanism, and whether every pose that was asked for is assembled."""
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
@@ -64,31 +64,30 @@ def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, About]:
 
     structure, design = solvable(loaded(file)), asked["design"]
     if structure.faults:
-        return report(structure), About(structure)
+        return report(structure), True
     motion = solved(structure, asked)
     with working("checking and reporting"):
         parts = [report(motion, asked["outputs"], design)]
         if asked["centres"] is not None:
             parts.append(_of_centres(structure, asked["centres"].split(","), design, asked))
     closed = all(part.outcome.assembled == part.outcome.poses for part in parts)
-    made = replace(parts[0], sections=tuple(section for part in parts for section in part.sections))
-    return made, About(motion=motion, outputs=asked["outputs"], design=design, closed=closed)
+    return replace(parts[0], sections=tuple(section for part in parts for section in part.sections)), closed
 
 
-def verdict(made: Report, about: About) -> int:
+def verdict(made: Report, closed: bool) -> int:
     """The exit code of a report; what failed is said on stderr too."""
-    if about.structure is not None:
-        return unsolvable(len(about.structure.faults))
+    if (faults := made.section("faults")) is not None:
+        return unsolvable(len(faults.blocks) - 1)
     if not made.outcome.passed:
         say("A check or a published number FAILED; the report says which.")
         return FAILED
-    return 0 if about.closed else NOT_ASSEMBLED
+    return 0 if closed else NOT_ASSEMBLED
 
 
 def _of_centres(structure: Structure, at: Sequence[str], design: int, asked: Mapping[str, Any]) -> Report:
     """The instant centres at a pose, with the rates and modes of the motion."""
     from compoundkin.cli.centres import solved_at_pose
-    from compoundkin.view.report.partial_reports import centres_report
+    from compoundkin.view.report.motion_report import centres_report
 
     rates = {key: asked[key] for key in ("speeds", "modes")}
     return centres_report(solved_at_pose(structure, at, rates, "--centres"), design)

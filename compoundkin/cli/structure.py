@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import About, put_report, report_options
+from compoundkin.cli.output_options import put_report, report_options
 from compoundkin.cli.shell import say
 
 
@@ -44,7 +44,7 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
         from compoundkin.view.report.alternatives_section import alternatives_section
 
         made = replace(made, sections=(*made.sections, alternatives_section(structure)))
-    put_report(made, form, path, About(structure))
+    put_report(made, form, path)
     return unsolvable(len(structure.faults)) if structure.faults else 0
 
 

@@ -26,10 +26,11 @@ from compoundkin.view.report.centres_section import centre_blocks
 from compoundkin.view.report.configurations_section import circuits_report, configurations_section
 from compoundkin.view.report.links_and_pairs import links_section
 from compoundkin.view.report.mobility_section import analysis_blocks
-from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, Report, Table
+from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, Table
+from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import counted, listed
-from compoundkin.view.sketch import draw, draw_structure
+from compoundkin.view.sketch import draw
 
 # Pictures of more links than these take more than a second: they are drawn where they are asked for.
 MOST_LINKS = 30
@@ -76,7 +77,7 @@ def _drawn(mechanism: Mechanism) -> str | None:
 
 def _apart(structure: Structure) -> str:
     """The groups; the graph of what cannot be taken apart."""
-    return draw_structure(structure, "graph" if structure.faults else "groups").svg
+    return draw(structure, kind="graph" if structure.faults else "groups").svg
 
 
 def unguarded(what: object) -> str:

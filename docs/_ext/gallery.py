@@ -100,7 +100,7 @@ def files_of(name: str, mechanism: ck.Mechanism) -> dict[str, str]:
 def taken_apart(shown: ck.Motion | ck.Mechanism) -> ck.Picture | None:
     """The picture of its groups; none for what is not determined."""
     try:
-        return ck.draw_structure(shown)
+        return ck.draw(shown, kind="groups")
     except ck.NotDetermined:
         return None
 

@@ -185,7 +185,7 @@ def test_the_report_has_a_section_on_cams() -> None:
     assert high_at == pytest.approx(np.argmax(angle))
     assert rows["radius of curvature of the profile"][0] == pytest.approx(37.4, abs=0.1)
     for kind in ("text", "markdown", "json"):
-        assert "customary 30" in ck.rendered(report, kind)
+        assert "customary 30" in getattr(report, kind)()
     assert ck.report(ck.solve(ck.load("catalog/six-bar.toml"))).section("cams") is None
 
 

@@ -135,7 +135,8 @@ def simple_loop_texts(structure: Any, limit: int) -> list[str]:
 
 def report_text(subject: Any, form: str) -> str:
     """The report of a motion or a structure as text, Markdown or JSON."""
-    return str(ck.rendered(ck.report(subject), form))
+    report = ck.report(subject)
+    return str(getattr(report, form)() if hasattr(report, form) else ck.rendered(report, form))
 
 
 def sketch_svg(mechanism: Any, **options: Any) -> str:
@@ -145,12 +146,17 @@ def sketch_svg(mechanism: Any, **options: Any) -> str:
 
 def structure_svg(mechanism: Any, view: str) -> str:
     """A picture of the structure."""
-    return str(ck.draw_structure(mechanism, view).svg)
+    if hasattr(ck, "draw_structure"):
+        return str(ck.draw_structure(mechanism, view).svg)
+    return str(ck.draw(mechanism, kind=view).svg)
 
 
 def polygon_svg(motion: Any, kind: str) -> str:
     """The polygon of the vectors at one pose."""
-    return str(ck.vector_polygon(motion, kind, pose=motion.shape[-1] // 3).svg)
+    pose = motion.shape[-1] // 3
+    if hasattr(ck, "vector_polygon"):
+        return str(ck.vector_polygon(motion, kind, pose=pose).svg)
+    return str(ck.draw(motion, kind="polygon", vectors=kind, pose=pose).svg)
 
 
 def page_html(motion: Any) -> str:

@@ -16,7 +16,7 @@ import compoundkin as ck
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs" / "notebooks").glob("*.ipynb"))
 # The last lines of cells that show a picture.
-DRAWS = re.compile(r"(ck\.draw|ck\.vector_polygon|motion\.plot|plt\.show)")
+DRAWS = re.compile(r"(ck\.draw|motion\.plot|plt\.show)")
 PICTURES = ("image/svg+xml", "image/png")
 # In a process of its own: Jupyter's packages warn of many things that are not ours. Fonts are listed first, for
 # Matplotlib tells so where it is done for the first time.

@@ -183,8 +183,8 @@ def test_a_structure_shows_its_groups_in_solving_order(motion: ck.Motion) -> Non
     assert [row[1:] for row in table[2:]] == expected
     assert len(expected) == 2
     assert structure.mobility.formula in page.text
-    assert structure._repr_svg_() == ck.draw_structure(structure).svg
-    assert inside(ck.draw_structure(structure)) in page.html
+    assert structure._repr_svg_() == ck.draw(structure, kind="groups").svg
+    assert inside(ck.draw(structure, kind="groups")) in page.html
 
 
 def test_names_are_text_and_never_markup() -> None:
@@ -326,7 +326,6 @@ def test_a_mechanism_without_a_picture_shows_its_links() -> None:
 
 def test_what_is_large_is_shown_in_part_and_is_not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(notebook, "draw", never)
-    monkeypatch.setattr(notebook, "draw_structure", never)
     large = ck.random_mechanism(groups=300, seed=2)
     assert len(large.links) > MOST_LINKS
     for what, count in ((large, len(large.links)), (ck.decompose(large), 301)):

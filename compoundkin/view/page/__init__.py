@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from compoundkin.view.page.player import framed, player
-from compoundkin.view.page.report_page import Page, page, page_of
+from compoundkin.view.page.report_page import Page, page_of
 
-__all__ = ["Page", "framed", "page", "page_of", "player"]
+__all__ = ["Page", "framed", "page_of", "player"]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from compoundkin.kinematics import Motion
 from compoundkin.view.report.outputs_section import chosen_outputs, outputs_section
-from compoundkin.view.report.report_data import Report, Section, Table
+from compoundkin.view.report.report_data import Section, Table
 from compoundkin.view.report.shown_poses import Sample
 
 OUTPUTS = "outputs"
@@ -25,26 +25,27 @@ class Whole(Sample):
         return tuple(range(self.poses))
 
 
-def all_poses(report: Report, motion: Motion, outputs: Sequence[str], design: int) -> tuple[Report, tuple[int, ...]]:
-    """The report with the outputs at every pose, those of the report shown first; and the poses of the table's rows.
+def all_poses(
+    sections: Sequence[Section], motion: Motion, outputs: Sequence[str], design: int
+) -> tuple[Sequence[Section], tuple[int, ...]]:
+    """The sections with the outputs at every pose, those of the report shown first; and the poses of the table's rows.
 
     `outputs` are those that the report was made with.
     """
-    sample = Sample(motion, design)
-    section = report.section(OUTPUTS)
+    section = next((one for one in sections if one.key == OUTPUTS), None)
     table = _table(section)
     if section is None or table is None:
-        return report, ()
+        return sections, ()
+    sample = Sample(motion, design)
     if len(sample.rows) == sample.poses or sample.poses * len(table.columns) > MOST_CELLS:
-        return report, sample.rows
+        return sections, sample.rows
     whole = _table(outputs_section(Whole(motion, design), chosen_outputs(motion, outputs)))
     if whole is None or [c.name for c in whole.columns] != [c.name for c in table.columns]:
         # the report is about other outputs
-        return report, sample.rows
+        return sections, sample.rows
     full = replace(whole, shown=sample.rows)
     changed = replace(section, blocks=tuple(full if block is table else block for block in section.blocks))
-    sections = tuple(changed if one is section else one for one in report.sections)
-    return replace(report, sections=sections), tuple(range(sample.poses))
+    return tuple(changed if one is section else one for one in sections), tuple(range(sample.poses))
 
 
 def _table(section: Section | None) -> Table | None:

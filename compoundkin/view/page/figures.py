@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
 from compoundkin.view.page.markup import element, safe
-from compoundkin.view.report.report_data import Report
-from compoundkin.view.sketch import Picture, draw, draw_structure
+from compoundkin.view.report.report_data import Section
+from compoundkin.view.sketch import Picture, draw
 
 # Of more links than this no picture is legible, and drawing takes long.
 MOST_LINKS = 100
@@ -28,9 +28,9 @@ VIEWS = {
 }
 
 
-def figures(report: Report, subject: Subject | None) -> dict[str, str]:
+def figures(sections: Sequence[Section], subject: Subject | None) -> dict[str, str]:
     """The figures at the heads of the sections of a report, by the sections' keys."""
-    return dict(_figures(report, subject)) if subject is not None and _drawn(subject) else {}
+    return dict(_figures(sections, subject)) if subject is not None and _drawn(subject) else {}
 
 
 def sketch(subject: Subject) -> str:
@@ -53,12 +53,12 @@ def figure(picture: Picture, caption: str) -> str:
     return element("figure", f"{box}\n<figcaption>{safe(caption)}</figcaption>")
 
 
-def _figures(report: Report, subject: Subject) -> Iterator[tuple[str, str]]:
-    for section in report.sections:
+def _figures(sections: Sequence[Section], subject: Subject) -> Iterator[tuple[str, str]]:
+    for section in sections:
         if section.key in VIEWS:
             view, caption = VIEWS[section.key]
             try:
-                yield section.key, figure(draw_structure(subject, view), caption)
+                yield section.key, figure(draw(subject, kind=view), caption)
             except CompoundkinError:
                 # what has faults cannot be taken apart; the report says why
                 continue

@@ -11,7 +11,7 @@ from compoundkin.view.page.html_tables import Shown, table_html
 from compoundkin.view.page.link_names import Names
 from compoundkin.view.page.markup import element, hidden, lines, safe
 from compoundkin.view.page.mathml import Unread, mathml
-from compoundkin.view.report.report_data import Alert, Block, Formula, Paragraph, Report, Section, Step, Table
+from compoundkin.view.report.report_data import Alert, Block, Formula, Paragraph, Section, Step, Table
 from compoundkin.view.sketch.svg import link_names
 
 # The section that stands in the head of the page, and the one whose steps are the groups.
@@ -30,10 +30,6 @@ class Blocks:
     figures: Mapping[str, str] = field(default_factory=dict)
     poses: Mapping[str, Sequence[int]] = field(default_factory=dict)
 
-    def sections(self, report: Report) -> Iterator[str]:
-        """All sections but the one in the head."""
-        return (self.section(section) for section in report.sections if section.key != ABOUT)
-
     def section(self, section: Section) -> str:
         """A section with its heading, its pictures and its blocks.
 
@@ -47,10 +43,9 @@ class Blocks:
         body = lines([heading, self.figures.get(section.key, ""), *self._blocks(section)])
         return element("section", f"\n{body}\n", id=section.key, aria_labelledby=f"{section.key}-title")
 
-    def about(self, report: Report) -> str:
+    def about(self, sections: Sequence[Section]) -> str:
         """What stands in the head of the page: the paragraphs of the section about the whole."""
-        section = report.section(ABOUT)
-        return lines(self._blocks(section)) if section else ""
+        return lines(part for section in sections if section.key == ABOUT for part in self._blocks(section))
 
     def _blocks(self, section: Section) -> Iterator[str]:
         tables = steps = 0

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from compoundkin.view.page.asset_files import asset, vendored
 from compoundkin.view.page.markup import element, hidden, lines, safe
 from compoundkin.view.page.page_palette import palette
-from compoundkin.view.report.report_data import Outcome, Report
+from compoundkin.view.report.report_data import Outcome
 from compoundkin.view.sketch.sketch_style import page_css
 
 # The page asks for nothing from anywhere, whatever gets into it. Source: W3C, Content Security Policy Level 3.
@@ -27,13 +27,16 @@ THEMES = {"auto": "Auto", "light": "Light", "dark": "Dark"}
 
 @dataclass(frozen=True)
 class Document:
-    """What a page is made of: markup, safe already, but for the report, of which titles and outcome are used.
+    """What a page is made of: markup, safe already, but for its title.
 
-    `viewer` is what stands beside the text: the moving sketch and its plots. `styles` and `scripts` are what it needs
-    besides those of every page, and `data` elements with data for scripts.
+    `contents` are the keys and titles of sections. `viewer` is what stands beside the text: the moving sketch and its
+    plots. `styles` and `scripts` are what it needs besides those of every page, and `data` elements with data for
+    scripts.
     """
 
-    report: Report
+    title: str
+    outcome: Outcome
+    contents: tuple[tuple[str, str], ...]
     about: str
     sections: tuple[str, ...]
     version: str
@@ -56,7 +59,7 @@ class Document:
         yield '<meta name="viewport" content="width=device-width, initial-scale=1">'
         yield '<meta name="color-scheme" content="light dark">'
         yield f'<meta name="generator" content="compoundkin {safe(self.version)}">'
-        yield element("title", safe(self.report.title))
+        yield element("title", safe(self.title))
         yield f'<link rel="icon" href="{ICON}">'
         yield from (f"<style>\n{text}\n</style>" for text in (palette(), asset("page.css"), page_css(), *self.styles))
         # before anything is painted, so that no page flashes in the other theme
@@ -71,7 +74,7 @@ class Document:
     def _body(self) -> Iterator[str]:
         yield '<a class="skip" href="#content">Skip to the report</a>'
         yield element("header", f"\n{lines(self._header())}\n", class_="top")
-        yield _contents([*self.before, *((section.key, section.title) for section in self.report.sections)])
+        yield _contents([*self.before, *self.contents])
         kind = "columns" if self.viewer else "single"
         viewer = element("div", f"\n{self.viewer}\n", class_="stage", id="stage") if self.viewer else ""
         about = element("section", f"\n{self.about}\n", id="about", aria_label="About") if self.about else ""
@@ -81,8 +84,8 @@ class Document:
         yield '<div id="said" class="unseen" role="status" aria-live="polite"></div>'
 
     def _header(self) -> Iterator[str]:
-        yield f'<div class="title"><h1>{safe(self.report.title)}</h1>{_theme()}</div>'
-        badges = lines(element("li", badge) for badge in _badges(self.report.outcome))
+        yield f'<div class="title"><h1>{safe(self.title)}</h1>{_theme()}</div>'
+        badges = lines(element("li", badge) for badge in _badges(self.outcome))
         yield element("ul", badges, class_="badges", aria_label="Outcome") if badges else ""
 
 

@@ -1,4 +1,4 @@
-"""`page`: a report with its pictures as one HTML file."""
+"""A report with its pictures as one HTML file."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from compoundkin.structure import Structure
 from compoundkin.view.page.all_poses import OUTPUTS, all_poses
 from compoundkin.view.page.asset_files import asset, vendored
 from compoundkin.view.page.figures import figures, sketch
-from compoundkin.view.page.html_blocks import Blocks
+from compoundkin.view.page.html_blocks import ABOUT, Blocks
 from compoundkin.view.page.html_document import Document
 from compoundkin.view.page.link_names import names_of
 from compoundkin.view.page.markup import data_script
 from compoundkin.view.page.viewer import Viewer, viewer_of
-from compoundkin.view.report import Report, report
+from compoundkin.view.report.report_data import Outcome, Section
 
 
 @dataclass(frozen=True)
@@ -47,48 +47,33 @@ class Page:
         return path
 
 
-def page(subject: Structure | Motion, outputs: Sequence[str] = (), design: int = 0) -> Page:
-    """The report of a motion, or of a structure before it is solved, as a page; the arguments are those of `report`.
-
-    Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
-
-    >>> from compoundkin.model.mechanism import Mechanism
-    >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.structure import decompose
-    >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
-    >>> page(decompose(crank)).html.splitlines()[0]
-    '<!DOCTYPE html>'
-    """
-    made = report(subject, outputs, design)
-    if isinstance(subject, Motion):
-        return page_of(made, motion=subject, design=design, outputs=outputs)
-    return page_of(made, structure=subject)
-
-
 def page_of(
-    report: Report,
-    structure: Structure | None = None,
-    motion: Motion | None = None,
-    design: int = 0,
+    title: str,
+    sections: Sequence[Section],
+    outcome: Outcome,
+    subject: Structure | Motion | None = None,
     outputs: Sequence[str] = (),
+    design: int = 0,
 ) -> Page:
-    """Any report as a page: with pictures where its structure is given, with the moving sketch where its motion is."""
-    subject = motion if motion is not None else structure
-    known = motion.structure if motion is not None else structure
+    """Return any report as a page: with pictures of its subject, with the moving sketch where that is a motion."""
+    motion = subject if isinstance(subject, Motion) else None
+    known = subject.structure if isinstance(subject, Motion) else subject
     poses: dict[str, Sequence[int]] = {}
-    if motion is not None and report.section(OUTPUTS):
-        report, poses[OUTPUTS] = all_poses(report, motion, outputs, design)
-    blocks = Blocks(names_of(known), figures(report, subject), poses)
-    document = _document(report, blocks)
+    if motion is not None:
+        sections, poses[OUTPUTS] = all_poses(sections, motion, outputs, design)
+    blocks = Blocks(names_of(known), figures(sections, subject), poses)
+    document = _document(title, sections, outcome, blocks)
     moving = None if motion is None else viewer_of(motion, design, outputs)
     if moving is not None:
-        return Page(_with_viewer(document, moving).html, report.title)
-    return Page(replace(document, viewer=sketch(subject) if subject is not None else "").html, report.title)
+        return Page(_with_viewer(document, moving).html, title)
+    return Page(replace(document, viewer=sketch(subject) if subject is not None else "").html, title)
 
 
-def _document(report: Report, blocks: Blocks) -> Document:
+def _document(title: str, sections: Sequence[Section], outcome: Outcome, blocks: Blocks) -> Document:
     data = data_script("ck-groups", {"groups": blocks.names.members})
-    return Document(report, blocks.about(report), tuple(blocks.sections(report)), VERSION, data=(data,))
+    contents = tuple((section.key, section.title) for section in sections)
+    text = tuple(blocks.section(section) for section in sections if section.key != ABOUT)
+    return Document(title, outcome, contents, blocks.about(sections), text, VERSION, data=(data,))
 
 
 def _with_viewer(document: Document, moving: Viewer) -> Document:

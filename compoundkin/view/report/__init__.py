@@ -1,9 +1,8 @@
-"""Reports: what a lecturer would draw on the board, as data, and as text, Markdown and JSON."""
+"""Reports: what a lecturer would draw on the board, as data, and as text, Markdown, JSON and pages."""
 
 from __future__ import annotations
 
-from compoundkin.view.report.renderers import FORMATS, rendered
-from compoundkin.view.report.report_data import Report
-from compoundkin.view.report.structure_report import report
+from compoundkin.view.report.report_forms import Report
+from compoundkin.view.report.whole_report import page, report
 
-__all__ = ["FORMATS", "Report", "rendered", "report"]
+__all__ = ["Report", "page", "report"]

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.synthesis.chains import AssurGroup, Chain, assur_groups, chain_name, chains, inversions, trusses
 from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS
-from compoundkin.view.report.report_data import Block, Cell, Column, Outcome, Paragraph, Report, Section, Table
+from compoundkin.view.report.report_data import NOT_SOLVED, Block, Cell, Column, Paragraph, Section, Table
+from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted
 
 # Lists of more links are made where they are asked for: eleven take some seconds, twelve half a minute.
 MOST_MADE = 12
 # A group has one link less than its truss; those with more links are not listed.
 MOST_IN_GROUP = 8
-_NOTHING = Outcome(True, 0, 0, 0, 0, 0, 0)
 _FEWEST = 3
 _MOST_MOBILITY = 3
 
@@ -41,7 +41,7 @@ def atlas_report(
         sections.append(Section("trusses", "Baranov trusses", tuple(_trusses(links))))
     if with_groups:
         sections.append(Section("assur_groups", "Assur groups", tuple(_groups(links))))
-    return Report(f"Atlas: {links} links", tuple(sections), _NOTHING)
+    return Report(f"Atlas: {links} links", tuple(sections), NOT_SOLVED)
 
 
 def _checked(links: int, mobility: int, with_groups: bool) -> None:

@@ -17,7 +17,8 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.structure import Group, Structure
 from compoundkin.view.report.digits import number
-from compoundkin.view.report.report_data import Alert, Cell, Column, Outcome, Paragraph, Report, Section, Table
+from compoundkin.view.report.report_data import NOT_SOLVED, Alert, Cell, Column, Outcome, Paragraph, Section, Table
+from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted, listed
 
 # A reader needs no more rows than this of a table; the JSON report has all.
@@ -33,7 +34,7 @@ MISSING = "The numbers of configurations and of branches do not agree everywhere
 def configurations_report(found: AllConfigurations) -> Report:
     """All configurations at the first driver values."""
     outcome = Outcome(True, 1, int(any(True for _ in found)), 0, 0, 0, 0)
-    return Report(found.structure.mechanism.title, (configurations_section(found),), outcome)
+    return Report(found.structure.mechanism.title, (configurations_section(found),), outcome, found.structure)
 
 
 def configurations_section(found: AllConfigurations) -> Section:
@@ -78,7 +79,7 @@ def circuits_report(found: Circuits) -> Report:
     """Circuits, branches, limit positions, change points and toggle positions of one driver."""
     page = _Page(found)
     sections = (page.circuits(), page.branches(), *page.limits(), *page.changes(), *page.toggles())
-    return Report(found.structure.mechanism.title, sections, Outcome(True, 0, 0, 0, 0, 0, 0))
+    return Report(found.structure.mechanism.title, sections, NOT_SOLVED, found.structure)
 
 
 def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:

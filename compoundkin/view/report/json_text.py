@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict
 from functools import singledispatch
 from math import isfinite
 from typing import Any
 
-from compoundkin.view.report.report_data import Alert, Cell, Formula, Paragraph, Report, Step, Table
+from compoundkin.view.report.report_data import Alert, Cell, Formula, Outcome, Paragraph, Section, Step, Table
 
 
-def json_text(report: Report) -> str:
+def json_text(title: str, sections: Sequence[Section], outcome: Outcome) -> str:
     """The report as a JSON text: `title`, `outcome`, and `sections` by their keys in reading order.
 
     A table has `columns` (name and unit) and `rows`; what is not assembled is null, a vector is [x, y].
 
-    >>> from compoundkin.view.report.report_data import Outcome, Section
-    >>> one = Report("Crank", (Section("about", "", (Paragraph("Watch B."),)),), Outcome(True, 0, 0, 0, 0, 0, 0))
-    >>> json.loads(json_text(one))["sections"]["about"]["blocks"]
+    >>> sections = [Section("about", "", (Paragraph("Watch B."),))]
+    >>> json.loads(json_text("Crank", sections, Outcome(True, 0, 0, 0, 0, 0, 0)))["sections"]["about"]["blocks"]
     [{'kind': 'paragraph', 'text': 'Watch B.'}]
     """
-    sections = {s.key: {"title": s.title, "blocks": [_block(block) for block in s.blocks]} for s in report.sections}
-    outcome = {**asdict(report.outcome), "passed": report.outcome.passed}
-    whole = {"format": 1, "title": report.title, "outcome": outcome, "sections": sections}
+    parts = {s.key: {"title": s.title, "blocks": [_block(block) for block in s.blocks]} for s in sections}
+    comes_to = {**asdict(outcome), "passed": outcome.passed}
+    whole = {"format": 1, "title": title, "outcome": comes_to, "sections": parts}
     return json.dumps(whole, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import singledispatch
 
 from compoundkin.view.report.digits import written
-from compoundkin.view.report.report_data import Alert, Column, Formula, Paragraph, Report, Section, Step, Table
+from compoundkin.view.report.report_data import Alert, Column, Formula, Paragraph, Section, Step, Table
 
 
-def markdown(report: Report) -> str:
+def markdown(title: str, sections: Sequence[Section]) -> str:
     """The report as Markdown, for GitHub and the like.
 
-    >>> from compoundkin.view.report.report_data import Outcome
-    >>> one = Report("Crank", (Section("about", "", (Paragraph("a | b"),)),), Outcome(True, 0, 0, 0, 0, 0, 0))
-    >>> print(markdown(one))
+    >>> print(markdown("Crank", [Section("about", "", (Paragraph("a | b"),))]))
     # Crank
     <BLANKLINE>
     a \\| b
     <BLANKLINE>
     """
-    parts = [f"# {_plain(report.title)}", *(part for section in report.sections for part in _section(section))]
+    parts = [f"# {_plain(title)}", *(part for section in sections for part in _section(section))]
     return "\n\n".join(parts) + "\n"
 
 

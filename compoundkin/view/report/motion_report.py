@@ -1,31 +1,35 @@
-"""The report of a motion, section by section."""
+"""The report of a motion, and those on its checks and its instant centres alone."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.analysis.checks import Check, verify
+from compoundkin.analysis.checks import Check, Finding, verify
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.gaps import Gap, gaps
+from compoundkin.structure import Structure
 from compoundkin.view.report.cams_section import cams_sections
-from compoundkin.view.report.checks_section import checks_section, gaps_section
+from compoundkin.view.report.centres_section import centres_sections
+from compoundkin.view.report.checks_section import checks_section, finding_place, gaps_section
 from compoundkin.view.report.configurations_section import assembly_sections
+from compoundkin.view.report.digits import brief
 from compoundkin.view.report.equivalent_section import equivalent_section
 from compoundkin.view.report.groups_section import solving_section
 from compoundkin.view.report.outputs_section import chosen_outputs, drivers_section, outputs_section
 from compoundkin.view.report.published_section import Comparison, comparisons, published_section
-from compoundkin.view.report.report_data import Outcome, Report
+from compoundkin.view.report.report_data import Alert, Outcome, Paragraph, Section
+from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.structure_report import about_section, counted_sections, structure_in_short
 from compoundkin.view.report.wording import counted
 
 
-def report_of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
-    """The report of one design of a motion."""
-    motion, design = sample.motion, sample.design
-    structure = motion.structure
+def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 0) -> Report:
+    """Report one design of a motion."""
+    sample, structure = Sample(motion, design), motion.structure
     # outputs first: an unknown name is said before the slower work is done
     moving = outputs_section(sample, chosen_outputs(motion, outputs))
     check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
@@ -46,6 +50,9 @@ def report_of_motion(sample: Sample, outputs: Sequence[str]) -> Report:
             *([published_section(structure, published)] if published else []),
         ),
         outcome,
+        motion,
+        outputs,
+        design,
     )
 
 
@@ -94,3 +101,45 @@ def _results(outcome: Outcome) -> Iterator[str]:
         yield f"{wrong} of {counted(outcome.published, 'published number')} NOT reproduced"
     elif outcome.published:
         yield f"{outcome.published} of {counted(outcome.published, 'published number')} reproduced"
+
+
+def check_report(motion: Motion) -> Report:
+    """Report all findings about a motion, what failed in words, and where its first design is not assembled."""
+    sample, check = Sample(motion), verify(motion)
+    outcome = outcome_of(motion, check)
+    alerts = tuple(Alert(f"{finding_sentence(sample, f)}.") for f in check.findings if not f.passed)
+    failed = (Section("failed", "What failed", alerts),) if alerts else ()
+    about = Section("about", "", (Paragraph(motion_in_short(outcome)),))
+    sections = (about, *_missing(sample), checks_section(sample, check), *failed)
+    return Report(motion.mechanism.title, sections, outcome, motion)
+
+
+def centres_report(motion: Motion, design: int = 0) -> Report:
+    """Report the instant centres of the first pose of a design, or why it cannot be assembled."""
+    sample = Sample(motion, design)
+    closed = bool(sample.assembled[0])
+    # in a report on the whole motion the section of its own gaps has that key
+    missing = tuple(replace(section, key="centres") for section in _missing(sample))
+    sections = centres_sections(sample) if closed else missing
+    return Report(motion.mechanism.title, sections, Outcome(True, 1, int(closed), 0, 0, 0, 0), motion, design=design)
+
+
+def _missing(sample: Sample) -> tuple[Section, ...]:
+    missing = gaps_of(sample)
+    return (gaps_section(sample, missing),) if missing else ()
+
+
+def finding_sentence(sample: Sample, finding: Finding) -> str:
+    """A finding in words: what, how far, and the pair or link, the pose and the group."""
+    where = finding_place(sample, finding.pair, finding.pose)
+    place = ", ".join(part for part in (where, _group(sample.motion.structure, finding.pair)) if part)
+    said = f"{finding.name}: {brief(finding.value)}, above its limit {brief(finding.limit)}"
+    return f"{said}, at {place}" if place else said
+
+
+def _group(structure: Structure, name: str) -> str:
+    """The group that solves a pair or a link, in words; "" for one of the frame and its driven links."""
+    for group in structure.groups:
+        if name in group.links or name in [pair.name for pair in (*group.inner, *group.outer)]:
+            return f"in the {group.name} group of {' and '.join(group.links)}"
+    return ""

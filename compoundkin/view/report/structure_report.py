@@ -1,8 +1,6 @@
-"""The report of a structure or of a motion, section by section."""
+"""The report of a structure, section by section."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.solvable import relaxed
@@ -13,42 +11,20 @@ from compoundkin.view.report.links_and_pairs import faults_section, links_sectio
 from compoundkin.view.report.mobility_count import loops_section
 from compoundkin.view.report.mobility_section import mobility_section
 from compoundkin.view.report.outputs_section import drivers_section
-from compoundkin.view.report.report_data import Outcome, Paragraph, Report, Section
-from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.report_data import Outcome, Paragraph, Section
+from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted
 
 
-def report(subject: Structure | Motion, outputs: Sequence[str] = (), design: int = 0) -> Report:
-    """The report of a motion, or of a structure before it is solved (one with faults included).
-
-    `outputs` are quantities such as "G.velocity"; without any, those that the mechanism names. Of a motion
-    with several designs one is reported, by its index in the order of the motion's axes before the last;
-    the checks cover all.
-
-    Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
-
-    >>> from compoundkin.model.mechanism import Mechanism
-    >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.structure import decompose
-    >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
-    >>> [section.key for section in report(decompose(crank)).sections]
-    ['about', 'links', 'pairs', 'mobility', 'chain', 'loops', 'groups', 'drivers']
-    """
-    if isinstance(subject, Structure):
-        return _of_structure(subject)
-    # what a motion takes is not loaded for the report of a structure
-    from compoundkin.view.report.motion_report import report_of_motion
-
-    return report_of_motion(Sample(subject, design), outputs)
-
-
-def _of_structure(structure: Structure) -> Report:
+def report_of_structure(structure: Structure) -> Report:
+    """Report a structure before it is solved, one with faults included."""
     structure = relaxed(structure)
     outcome = Outcome(not structure.faults, 0, 0, 0, 0, 0, 0)
     about = about_section(structure, structure_in_short(structure))
     faults = [faults_section(structure)] if structure.faults else []
     solving = solving_section(structure, None), drivers_section(structure, None)
-    return Report(structure.mechanism.title, (about, *counted_sections(structure), *faults, *solving), outcome)
+    sections = about, *counted_sections(structure), *faults, *solving
+    return Report(structure.mechanism.title, sections, outcome, structure)
 
 
 def counted_sections(structure: Structure, design: int = 0, motion: Motion | None = None) -> tuple[Section, ...]:

@@ -14,9 +14,8 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from compoundkin.view.report.digits import written
-from compoundkin.view.report.report_data import Alert, Column, Formula, Paragraph, Report, Section, Step, Table
+from compoundkin.view.report.report_data import Alert, Column, Formula, Paragraph, Section, Step, Table
 
-WIDTH = 80
 # Between two columns of a table.
 GAP = 2
 # A rule under the heads and nothing else, in ASCII so that it survives any terminal and pipe.
@@ -24,12 +23,10 @@ RULE = Box("    \n    \n -- \n" + "    \n" * 5, ascii=True)
 STYLES = {"pass": "green", "FAIL": "bold red"}
 
 
-def text(report: Report, width: int = WIDTH, colour: bool = False) -> str:
+def text(title: str, sections: Sequence[Section], width: int = 80, colour: bool = False) -> str:
     """The report as text, no line longer than `width`.
 
-    >>> from compoundkin.view.report.report_data import Outcome
-    >>> one = Report("Crank", (Section("about", "", (Paragraph("Watch B."),)),), Outcome(True, 0, 0, 0, 0, 0, 0))
-    >>> print(text(one))
+    >>> print(text("Crank", [Section("about", "", (Paragraph("Watch B."),))]))
     Crank
     =====
     <BLANKLINE>
@@ -39,8 +36,8 @@ def text(report: Report, width: int = WIDTH, colour: bool = False) -> str:
     out = io.StringIO()
     console = Console(file=out, width=width, force_terminal=colour, color_system="standard" if colour else None,
                       highlight=False, emoji=False, markup=False, legacy_windows=False)  # fmt: skip
-    console.print(Text(report.title, "bold"), Text("=" * min(len(report.title), width), "bold"), sep="\n")
-    for section in report.sections:
+    console.print(Text(title, "bold"), Text("=" * min(len(title), width), "bold"), sep="\n")
+    for section in sections:
         _print(console, section, width)
     return "\n".join(line.rstrip() for line in out.getvalue().split("\n"))
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from compoundkin.view.sketch.picture import Picture
-from compoundkin.view.sketch.sketches import draw
-from compoundkin.view.sketch.structure_pictures import draw_structure
-from compoundkin.view.sketch.vector_polygons import vector_polygon
+from compoundkin.view.sketch.picture_kinds import draw
 
-__all__ = ["Picture", "draw", "draw_structure", "vector_polygon"]
+__all__ = ["Picture", "draw"]

@@ -26,7 +26,7 @@ SMALLER = 0.52
 HEADING = 30.0
 
 
-def apart(scene: Scene, size: float | None) -> Picture:
+def groups_picture(scene: Scene, size: float | None) -> Picture:
     """The picture of all parts in solving order, each in its own colour."""
     first = window_on(scene)
     whole = Window(first.scale * SMALLER, first.corner, first.width * SMALLER, first.height * SMALLER)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -28,15 +28,15 @@ SAME = 1e-9
 # Places nearer to each other than this part of the size are one.
 ROUNDING = 1e-6
 
+Drawable: TypeAlias = Motion | Mechanism | Structure
 
-def scene_of(what: Motion | Mechanism | Structure, at: Any, pose: int | None, design: int) -> Scene:
+
+def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
     """The scene that is asked for; raises InvalidInput, UnknownName or NotAssembled where there is none."""
     if at is not None and pose is not None:
         raise InvalidInput(Problem("pose", "driver values `at` are given too", "leave one of them out"))
     if isinstance(what, Motion):
         return scene_in(what, at, pose, design)
-    if not isinstance(what, Mechanism | Structure):
-        raise InvalidInput(Problem("draw", f"{what!r} is no motion and no mechanism", "load() one from a file"))
     motion = solved_over(what)
     if motion is not None:
         return scene_in(motion, at, pose, design)

@@ -1,4 +1,4 @@
-"""`draw`: the kinematic sketch of a mechanism at one pose."""
+"""The kinematic sketch of a mechanism at one pose."""
 
 from __future__ import annotations
 
@@ -8,69 +8,40 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.kinematics import Motion
-from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure import Structure
 from compoundkin.view.sketch.arrows import LONGEST, Scale, rates_of, scale_of, scale_shapes, vector_shapes, wanted
 from compoundkin.view.sketch.label_places import placed
 from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.picture import Picture, checked_size
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Shape, corners
-from compoundkin.view.sketch.shown_pose import pose_notes, scene_of
+from compoundkin.view.sketch.shown_pose import Drawable, pose_notes, scene_of
 from compoundkin.view.sketch.sketch_centres import centre_labels, centre_places, centre_shapes, shown_centres
 from compoundkin.view.sketch.sketch_labels import below, label_shapes, letters, lines_of_text, numbered
 from compoundkin.view.sketch.sketch_layers import ghost, layered, path, window_on
 from compoundkin.view.sketch.sketch_style import LINE
 from compoundkin.view.sketch.strokes import sheet
 from compoundkin.view.sketch.window import MARGIN, Window, fitted
+from compoundkin.view.sketch.wishes import Wishes
 
 # More ghosts than this are one grey stain.
 MOST_GHOSTS = 60
 LABELS = ("points", "links")
 
 
-def draw(
-    what: Motion | Mechanism | Structure,
-    at: Any = None,
-    *,
-    pose: int | None = None,
-    design: int = 0,
-    ghosts: int = 0,
-    paths: str | Sequence[str] | bool = (),
-    centres: bool = False,
-    vectors: str | Sequence[str] = (),
-    labels: bool | str | Sequence[str] = True,
-    size: float | None = None,
-) -> Picture:
-    """The kinematic sketch of a mechanism at one pose, in the conventions of textbooks.
-
-    The pose is that of the drivers' values `at` (radians or lengths: a number, or several by name), or the pose with
-    the index `pose`; else the one nearest to the mechanism's drawing. `ghosts` so many other poses are drawn faintly;
-    `paths` names points whose paths along the motion are drawn (True for all that are on one link only); `centres` adds
-    the instant centres and the lines that give them; `vectors` "velocity", "acceleration" or both. `labels` is True,
-    False, or some of "points", "links". `size` is the longer side in pixels, such that texts are legible if left out.
-
-    A mechanism is solved first; one that cannot be solved is shown as drawn. Raises InvalidInput, UnknownName for
-    what does not fit it, NotAssembled for a pose that does not close.
-
-    >>> from compoundkin.model.elements import drive, link
-    >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
-    >>> draw(crank, at=0.5).title
-    'Crank'
-    """
-    wanted_vectors, asked = wanted(vectors), asked_labels(labels)
-    scene = scene_of(what, at, pose, design)
-    traced = asked_paths(scene, paths)
-    others = _ghosts(scene, ghosts)
-    wishes = centre_places(scene) if centres else []
-    window, scales = _scaled(scene, window_on(scene, others, traced, wishes), wanted_vectors)
+def sketch(what: Drawable, wishes: Wishes) -> Picture:
+    """Draw the kinematic sketch of a mechanism at one pose."""
+    wanted_vectors, asked = wanted(wishes.vectors), asked_labels(wishes.labels)
+    scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
+    traced = asked_paths(scene, wishes.paths)
+    others = _ghosts(scene, wishes.ghosts)
+    places = centre_places(scene) if wishes.centres else []
+    window, scales = _scaled(scene, window_on(scene, others, traced, places), wanted_vectors)
     painter = Painter(scene, window)
     sketch = [*(line for letter in traced for line in path(scene, window, letter)), *layered(painter)]
     named = [*(numbered(painter) if "links" in asked else []), *(letters(painter) if "points" in asked else [])]
     notes = pose_notes(scene) if asked else []
     notes += [f"{number} {name}" for name, number in scene.numbers.items()] if "links" in asked else []
-    if centres:
+    if wishes.centres:
         found = shown_centres(scene, window)
         sketch += centre_shapes(found)
         named += centre_labels(found)
@@ -78,7 +49,7 @@ def draw(
     sketch += _arrows(scene, window, scales)
     names = label_shapes(scene, placed(named, sketch, window.width, window.height))
     faint = [ghost(other, window) for other in others]
-    return _finished(scene, window, [*faint, *sketch, *names], notes, scales, checked_size(size))
+    return _finished(scene, window, [*faint, *sketch, *names], notes, scales, checked_size(wishes.size))
 
 
 def _scaled(scene: Scene, window: Window, kinds: Sequence[str]) -> tuple[Window, list[Scale]]:

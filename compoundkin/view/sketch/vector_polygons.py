@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
-from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure import Structure
 from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, Scale, rates_of, scale_of, scale_shapes, wanted
 from compoundkin.view.sketch.label_places import around, placed, text_half
 from compoundkin.view.sketch.link_shapes import outline
 from compoundkin.view.sketch.picture import Picture, checked_size
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Circle, Group, Polygon, Polyline, Shape, Text
-from compoundkin.view.sketch.shown_pose import pose_notes, scene_of
+from compoundkin.view.sketch.shown_pose import Drawable, pose_notes, scene_of
 from compoundkin.view.sketch.sketch_labels import SEPARATOR, below
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, STUD, style_of
 from compoundkin.view.sketch.strokes import arrow, sheet
 from compoundkin.view.sketch.window import Window, fitted
+from compoundkin.view.sketch.wishes import Wishes
 
 # The greatest distance between two ends of vectors, in picture units.
 LENGTH = 420.0
@@ -30,29 +27,19 @@ LENGTH = 420.0
 SAME = 1.0
 
 
-def vector_polygon(
-    what: Motion | Mechanism | Structure,
-    kind: str = "velocity",
-    at: Any = None,
-    *,
-    pose: int | None = None,
-    design: int = 0,
-    size: float | None = None,
-) -> Picture:
-    """The polygon of the velocities (or accelerations) of all points at one pose, with the images of the links.
+def vector_polygon(what: Drawable, wishes: Wishes) -> Picture:
+    """Draw the polygon of the velocities or accelerations of all points at one pose, with the images of the links.
 
     From the pole o an arrow leads to the image of each point, named by its letter in lower case; the images of the
-    points of one link are joined, and are similar to the link. The pose is chosen as in `draw`. Raises InvalidInput
-    where nothing moves. Source: e.g. J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms,
-    chapters 3 and 4 (velocity and acceleration images).
-
-    >>> from compoundkin.model.elements import drive, link
-    >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
-    >>> vector_polygon(crank, "velocity", at=0.5).title
-    'Crank: velocity polygon'
+    points of one link are joined, and are similar to the link. Raises InvalidInput where nothing moves. Source: e.g.
+    J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms, chapters 3 and 4 (velocity and
+    acceleration images).
     """
-    wanted((kind,))
-    scene = scene_of(what, at, pose, design)
+    kinds = wanted(wishes.vectors) or ("velocity",)
+    if len(kinds) > 1:
+        raise InvalidInput(Problem("vectors", "a polygon is one of them", f"one of {', '.join(kinds)}"))
+    kind = kinds[0]
+    scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
     rates = rates_of(scene, kind)
     spread = max((abs(a - b) for a in (0j, *rates.values()) for b in rates.values()), default=0.0)
     longest = max(map(abs, rates.values()), default=0.0)
@@ -69,7 +56,7 @@ def vector_polygon(
     labels = [around(text, place, text_half(text, LETTER), 5.0, place - pole or -1 + 1j) for text, place in names]
     found = placed(labels, shapes, window.width, window.height)
     shapes += [Text(place, text, "letter") for text, place in found.items()]
-    return _framed(scene, window, shapes, scale, size)
+    return _framed(scene, window, shapes, scale, wishes.size)
 
 
 def _images(scene: Scene, ends: Mapping[str, complex], pole: complex) -> list[Shape]:

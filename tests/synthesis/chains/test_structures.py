@@ -17,7 +17,7 @@ from compoundkin.synthesis.chains import (
     symmetric_drivers,
 )
 from compoundkin.synthesis.composer import random_mechanism
-from compoundkin.view.report import rendered, report
+from compoundkin.view.report import report
 
 # Every six-bar and each seventh inversion of eight links, with all places for a driver.
 CASES = [
@@ -65,7 +65,7 @@ def test_a_loop_of_slides_is_not_called_a_truss():
 def test_huge_mechanisms_have_a_modest_name():
     structure = ck.decompose(random_mechanism(300, seed=1, kinds=("RRR",), multiple=0.0))
     assert structure_name(structure).title == "602-link chain"
-    assert "not looked for" in rendered(report(structure), "text")
+    assert "not looked for" in report(structure).text()
 
 
 @pytest.mark.parametrize(("one", "driver"), CASES)

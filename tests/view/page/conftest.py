@@ -12,7 +12,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
-from compoundkin.view.page import page
+from compoundkin.view.report import page
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 # No sandbox where tests run as root in a container; nothing that reaches for the network of its own accord.

@@ -8,7 +8,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.view.page import page
+from compoundkin.view.report import page
 
 PLAYER = "compoundkin.players[0]"
 # How far names reach out of the sketch at some poses, in pixels; two pixels of a letter's box are empty.

@@ -6,6 +6,7 @@ import hashlib
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
@@ -17,11 +18,10 @@ from click.testing import CliRunner
 import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files import shipped_mechanisms
-from compoundkin.view.page import page, page_of
 from compoundkin.view.page.asset_files import ASSETS, asset
 from compoundkin.view.page.link_names import names_of
 from compoundkin.view.page.report_page import Page
-from compoundkin.view.report import Report, rendered, report
+from compoundkin.view.report import Report, page, report
 from compoundkin.view.report.atlas_section import atlas_report
 from compoundkin.view.report.digits import written
 from compoundkin.view.report.report_data import Column, Outcome, Section, Table
@@ -208,7 +208,7 @@ def test_numbers_are_sorted_and_copied_with_every_digit() -> None:
     columns = Column("name"), Column("x", "mm", "each"), Column("v", style="each"), Column("", style="passed")
     rows = ("a", value, (1.25, -2.0 / 3.0), True), ("b", None, (float("nan"),), False), ("c", 1e-20, (0.5,), None)
     section = Section("s", "S", (Table(columns, rows),))
-    html = page_of(Report("R", (section,), Outcome(True, 0, 0, 0, 0, 0, 0))).html
+    html = Report("R", (section,), Outcome(True, 0, 0, 0, 0, 0, 0)).html()
     assert f'data-sort="{value!r}">0.333333<' in html
     assert f'data-copy="1.25, {-2.0 / 3.0!r}">1.25<br>-0.666667<' in html
     assert '<td class="number" data-sort="">-</td>' in html
@@ -218,7 +218,7 @@ def test_numbers_are_sorted_and_copied_with_every_digit() -> None:
 
 def test_rounding_below_the_floor_of_a_column_is_zero_in_copies_too() -> None:
     table = Table((Column("x", style="fixed", floor=1e-9),), ((1e-12,), (2.5,)))
-    html = page_of(Report("R", (Section("s", "S", (table,)),), Outcome(True, 0, 0, 0, 0, 0, 0))).html
+    html = Report("R", (Section("s", "S", (table,)),), Outcome(True, 0, 0, 0, 0, 0, 0)).html()
     assert "1e-12" not in html
     assert re.search(r'<td class="number" data-sort="0">0\.0</td>', html)
 
@@ -248,12 +248,13 @@ def test_nothing_a_user_writes_is_taken_for_markup(hostile: ck.Mechanism) -> Non
         assert f"{word} {HOSTILE}" in reader.text
 
 
-@pytest.mark.parametrize("kind", ["faults", "check", "atlas"])
+@pytest.mark.parametrize("kind", ["faults", "bare", "atlas"])
 def test_reports_without_a_motion_make_pages_too(kind: str) -> None:
     parts = ck.link("frame", A=0, D=4), ck.link("a", A=0, B=1), ck.link("b", B=0, C=3), ck.link("c", D=0, C=3)
     structure = ck.decompose(ck.Mechanism("Undriven", *parts))
-    made = {"faults": report(structure), "check": report(structure), "atlas": atlas_report(6)}[kind]
-    html = page_of(made, structure if kind == "faults" else None).html
+    bare = replace(report(structure), subject=None)
+    made = {"faults": report(structure), "bare": bare, "atlas": atlas_report(6)}[kind]
+    html = made.html()
     reader = Reader(html)
     assert made.title in reader.text
     if kind == "faults":
@@ -323,9 +324,9 @@ def test_every_verb_writes_a_page(run: Verb, tmp_path: Path, verb: tuple[str, ..
     assert run(*verb, "--format", "html").stdout == html
 
 
-def test_the_text_report_does_not_know_of_pages(six_bar: tuple[Report, str]) -> None:
-    with pytest.raises(KeyError):
-        rendered(six_bar[0], "html")
+def test_a_report_is_a_page_of_its_own(six_bar: tuple[Report, str]) -> None:
+    assert six_bar[0].html() == six_bar[1]
+    assert six_bar[0].page().title == six_bar[0].title
 
 
 def test_open_shows_a_page_or_says_where_it_is(run: Verb, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

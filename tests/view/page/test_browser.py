@@ -12,7 +12,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
-from compoundkin.view.page import page, page_of
+from compoundkin.view.report import page
 from compoundkin.view.report.atlas_section import atlas_report
 
 from .conftest import DESK, PHONE
@@ -30,7 +30,7 @@ def others(folder: Path) -> dict[str, Path]:
     """Pages without a moving sketch: faults, and no mechanism at all."""
     parts = ck.link("frame", A=0, D=4), ck.link("a", A=0, B=1), ck.link("b", B=0, C=3), ck.link("c", D=0, C=3)
     structure = ck.decompose(ck.Mechanism("Undriven four-bar", *parts))
-    made = {"faults": page(structure), "atlas": page_of(atlas_report(6))}
+    made = {"faults": page(structure), "atlas": atlas_report(6).page()}
     made["random"] = page(ck.decompose(ck.random_mechanism(groups=19, seed=7)))
     for name, one in made.items():
         one.save(folder / f"{name}.html")

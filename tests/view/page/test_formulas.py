@@ -11,9 +11,9 @@ import compoundkin as ck
 from compoundkin.analysis.equations import latex, loop_equations, text
 from compoundkin.files import shipped_mechanisms
 from compoundkin.kinematics.solvable import solvable
-from compoundkin.view.page import page_of
 from compoundkin.view.page.mathml import Unread, mathml
-from compoundkin.view.report.report_data import Formula, Outcome, Report, Section
+from compoundkin.view.report.report_data import Formula, Outcome, Section
+from compoundkin.view.report.report_forms import Report
 
 # The names of elements that MathML Core has, of those that formulas need.
 KNOWN = {"math", "mrow", "mi", "mn", "mo", "mtext", "msub", "msup", "msubsup"}
@@ -64,5 +64,5 @@ def test_what_it_does_not_know_is_shown_as_text(formula: str) -> None:
     with pytest.raises(Unread):
         mathml(formula)
     section = Section("s", "S", (Formula("a < b", formula),))
-    html = page_of(Report("R", (section,), Outcome(True, 0, 0, 0, 0, 0, 0))).html
+    html = Report("R", (section,), Outcome(True, 0, 0, 0, 0, 0, 0)).html()
     assert '<p class="formula"><code>a &lt; b</code></p>' in html

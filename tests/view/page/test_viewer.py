@@ -9,7 +9,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.view.page import page, player
+from compoundkin.view.page import player
+from compoundkin.view.report import page
 
 PLAYER = "compoundkin.players[0]"
 

@@ -11,13 +11,14 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named, names
-from compoundkin.view.report import FORMATS, rendered, report
+from compoundkin.view.report import Report, report
 from compoundkin.view.report.digits import written
-from compoundkin.view.report.report_data import Column, Outcome, Paragraph, Report, Section, Table
-from compoundkin.view.report.terminal_text import text
+from compoundkin.view.report.report_data import Column, Outcome, Paragraph, Section, Table
 from tests.view.report.support import four_bar
 
 ESCAPE = "\x1b"
+# The forms without pictures; those with them have tests of their own.
+FORMS = (Report.text, Report.markdown, Report.json)
 
 
 def made_of(*blocks: Any) -> Report:
@@ -37,7 +38,7 @@ def all_reports() -> list[Report]:
 def test_lines_fit_and_nothing_is_cut_off_or_blank_at_the_end(broken: ck.Motion, sweep: ck.Motion) -> None:
     """All in one test, for reports take long to make and workers do not share them."""
     for made in [*all_reports(), report(broken), report(sweep, design=1)]:
-        whole = text(made)
+        whole = made.text()
         lines = whole.splitlines()
         assert max(map(len, lines)) <= 80, made.title
         assert "…" not in whole
@@ -46,31 +47,31 @@ def test_lines_fit_and_nothing_is_cut_off_or_blank_at_the_end(broken: ck.Motion,
         links = next(block for block in made.section("links").blocks if isinstance(block, Table))  # type: ignore[union-attr]
         assert all(str(row[0]) in whole for row in links.rows)
     for made in all_reports()[::4]:
-        assert max(len(line) for line in text(made, 100).splitlines()) <= 100, made.title
+        assert max(len(line) for line in made.text(100).splitlines()) <= 100, made.title
 
 
 def test_text_is_plain_unless_colour_is_asked_for(six_bar: ck.Motion) -> None:
     made = report(six_bar)
-    assert ESCAPE not in text(made)
-    coloured = text(made, colour=True)
+    assert ESCAPE not in made.text()
+    coloured = made.text(colour=True)
     assert ESCAPE in coloured
-    assert re.sub(r"\x1b\[[0-9;]*m", "", coloured).split() == text(made).split()
+    assert re.sub(r"\x1b\[[0-9;]*m", "", coloured).split() == made.text().split()
 
 
 def test_text_is_ascii_where_the_mechanism_is(six_bar: ck.Motion) -> None:
-    assert text(report(six_bar)).isascii()
+    assert report(six_bar).text().isascii()
 
 
 def test_the_same_report_is_the_same_text(six_bar: ck.Motion) -> None:
     again = report(ck.solve(load_named("six-bar")))
-    for name in FORMATS:
-        assert rendered(report(six_bar), name) == rendered(again, name)
+    for written_as in FORMS:
+        assert written_as(report(six_bar)) == written_as(again)
 
 
 def test_a_wide_table_is_split_with_its_keys_repeated_and_vectors_together() -> None:
     numbers = [Column(f"quantity-{k}.{part}", "mm", "fixed", follows=part == "y") for k in range(6) for part in "xy"]
     found = Table((Column("crank", "deg", "fixed"), *numbers), ((5.0, *map(float, range(12))),), keys=1)
-    lines = text(made_of(found)).splitlines()
+    lines = made_of(found).text().splitlines()
     heads = [line.split() for line in lines if line.startswith("crank")]
     assert len(heads) > 1
     assert all(head[1:] == ["x", "y"] * ((len(head) - 1) // 2) for head in heads)
@@ -82,7 +83,7 @@ def test_a_wide_table_is_split_with_its_keys_repeated_and_vectors_together() -> 
 def test_names_that_look_like_markup_stay_as_they_are() -> None:
     made = made_of(Paragraph("[bold]x[/bold] :smile: *a*"), Table((Column("[red]h"),), (("[b]",),)))
     for part in ("[bold]x[/bold] :smile: *a*", "[red]h", "[b]"):
-        assert part in text(made)
+        assert part in made.text()
 
 
 # --- numbers --------------------------------------------------------------------------------------------
@@ -115,7 +116,7 @@ def pipes(line: str) -> int:
 
 def test_markdown_tables_are_well_formed(broken: ck.Motion) -> None:
     for made in [*all_reports(), report(broken)]:
-        for block in rendered(made, "markdown").split("\n\n"):
+        for block in made.markdown().split("\n\n"):
             lines = block.splitlines()
             if lines[0].startswith("|"):
                 assert len(lines) >= 2
@@ -125,7 +126,7 @@ def test_markdown_tables_are_well_formed(broken: ck.Motion) -> None:
 
 def test_markdown_escapes_what_is_markup() -> None:
     mechanism = ck.Mechanism("a | b *c* <d> `e`", ck.link("frame", A=0), ck.link("x|y", A=0, B=1), ck.drive("x|y"))
-    found = rendered(report(ck.solve(mechanism)), "markdown")
+    found = report(ck.solve(mechanism)).markdown()
     assert found.startswith(r"# a \| b \*c\* \<d\> \`e\`")
     assert r"x\|y" in found
 
@@ -137,7 +138,7 @@ def parsed(made: Report) -> Any:
     def refuse(name: str) -> Any:
         raise AssertionError(f"{name} is not JSON")
 
-    return json.loads(rendered(made, "json"), parse_constant=refuse)
+    return json.loads(made.json(), parse_constant=refuse)
 
 
 def test_json_holds_the_numbers_of_the_motion(six_bar: ck.Motion) -> None:
@@ -171,6 +172,6 @@ def test_every_report_is_json() -> None:
 
 
 def test_only_parts_of_a_report_are_rendered() -> None:
-    for name in FORMATS:
+    for written_as in FORMS:
         with pytest.raises(TypeError, match="not a part of a report"):
-            rendered(made_of("text"), name)
+            written_as(made_of("text"))

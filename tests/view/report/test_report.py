@@ -387,3 +387,24 @@ def test_a_published_number_of_a_group_that_has_no_pose_fails() -> None:
     found = comparisons(ck.decompose(far))
     assert found
     assert not any(one.passed for one in found)
+
+
+# --- what is reported -----------------------------------------------------------------------------------
+
+
+def test_a_mechanism_is_reported_as_its_motion_or_as_its_structure() -> None:
+    mechanism = load_named("crank-rocker")
+    assert report(mechanism).text() == report(ck.solve(mechanism)).text()
+    undriven = four_bar()
+    assert report(undriven).json() == report(ck.decompose(undriven)).json()
+    press = ck.slide("block", on="frame", through="O", turn=0.0)
+    without_range = ck.Mechanism("Press", ck.link("frame", O=0), ck.link("block", P=0), press, ck.drive("block"))
+    assert report(without_range).section("outputs") is None
+    with pytest.raises(ck.InvalidInput, match="is no motion and no mechanism"):
+        report("six-bar")
+
+
+def test_a_report_is_the_same_whatever_it_is_about_for_its_page() -> None:
+    made = report(ck.solve(load_named("crank-rocker")))
+    assert made == Report(made.title, made.sections, made.outcome)
+    assert repr(made).startswith("Report('")

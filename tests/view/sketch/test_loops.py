@@ -33,7 +33,7 @@ def headings(picture: ck.Picture) -> list[str]:
 @pytest.mark.parametrize("name", NAMES)
 def test_there_is_a_panel_for_each_loop_that_eulers_formula_counts(name: str) -> None:
     structure = decompose(shipped_mechanisms.load_named(name))
-    picture = ck.draw_structure(structure, "loops")
+    picture = ck.draw(structure, kind="loops")
     count = len(structure.pairs) - len(structure.mechanism.links) + 1
     assert headings(picture) == [f"loop {k}" for k in range(1, count + 1)]
     for panel, loop in zip(panels(picture), structure.loops, strict=True):
@@ -44,10 +44,10 @@ def test_there_is_a_panel_for_each_loop_that_eulers_formula_counts(name: str) ->
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_picture_is_well_formed_and_the_same_every_time(name: str) -> None:
-    source = ck.draw_structure(shipped_mechanisms.load_named(name), "loops").svg
+    source = ck.draw(shipped_mechanisms.load_named(name), kind="loops").svg
     ET.fromstring(source)
     assert "nan" not in source
-    assert ck.draw_structure(shipped_mechanisms.load_named(name), "loops").svg == source
+    assert ck.draw(shipped_mechanisms.load_named(name), kind="loops").svg == source
 
 
 @settings(max_examples=20, deadline=None)
@@ -80,7 +80,7 @@ def test_across_a_slide_a_vector_leads_along_its_guide() -> None:
 
 def test_the_arrows_run_around_in_the_colour_of_the_loop() -> None:
     """Each arrow begins where the one before it ends, but for the circles of the pins; and has its loop's colour."""
-    picture = ck.draw_structure(shipped_mechanisms.load_named("stephenson-iii"), "loops")
+    picture = ck.draw(shipped_mechanisms.load_named("stephenson-iii"), kind="loops")
     for k, panel in enumerate(panels(picture), start=1):
         own = [s for s in panel.shapes if isinstance(s, Polyline) and s.style == style_of("bar", k)]
         pins = [s.centre for s in panel.shapes if isinstance(s, Circle)]
@@ -93,7 +93,7 @@ def test_the_arrows_run_around_in_the_colour_of_the_loop() -> None:
 
 def test_vectors_on_one_line_are_drawn_beside_it() -> None:
     """The loops of a planetary train lie on the line of the axes: there and back are two lines that do not touch."""
-    for panel in panels(ck.draw_structure(shipped_mechanisms.load_named("planetary-train"), "loops")):
+    for panel in panels(ck.draw(shipped_mechanisms.load_named("planetary-train"), kind="loops")):
         first, second = [s for s in panel.shapes if isinstance(s, Polyline) and s.style.startswith("bar")]
         e = (first.points[1] - first.points[0]) / abs(first.points[1] - first.points[0])
         assert abs((np.conjugate(e) * (second.points[0] - first.points[0])).imag) == pytest.approx(12.0)
@@ -101,7 +101,7 @@ def test_vectors_on_one_line_are_drawn_beside_it() -> None:
 
 def test_many_links_make_small_panels_and_not_more_of_them_than_anyone_reads() -> None:
     mechanism = ck.random_mechanism(40, seed=3)
-    picture = ck.draw_structure(mechanism, "loops")
+    picture = ck.draw(mechanism, kind="loops")
     count = loop_count(decompose(mechanism))
     assert len(panels(picture)) == min(count, MOST) > 15
     assert picture.width < 1100
@@ -112,7 +112,7 @@ def test_many_links_make_small_panels_and_not_more_of_them_than_anyone_reads() -
 def test_loops_of_what_cannot_be_drawn_are_shown_in_its_graph() -> None:
     links = ck.link("frame", A=0, D=4), ck.link("rod", A=0, B=1), ck.link("arm", B=0, C=3), ck.link("bar", C=0, D=3)
     loose = ck.Mechanism("Loose", *links)
-    picture = ck.draw_structure(loose, "loops")
+    picture = ck.draw(loose, kind="loops")
     assert picture.description == "frame - rod - arm - bar"
     (panel,) = panels(picture)
     assert {s.title for s in panel.shapes if isinstance(s, Group)} == {"frame", "rod", "arm", "bar"}
@@ -122,10 +122,10 @@ def test_loops_of_what_cannot_be_drawn_are_shown_in_its_graph() -> None:
 def test_an_open_chain_has_no_loops() -> None:
     crank = ck.Mechanism("Crank", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank"))
     with pytest.raises(ck.InvalidInput, match="no closed loop"):
-        ck.draw_structure(crank, "loops")
+        ck.draw(crank, kind="loops")
 
 
 def test_the_command_writes_what_python_draws() -> None:
     result = CliRunner().invoke(cli, ["draw", "six-bar", "--structure", "loops"])
     assert result.exit_code == 0
-    assert result.stdout == ck.draw_structure(shipped_mechanisms.load_named("six-bar"), "loops").svg
+    assert result.stdout == ck.draw(shipped_mechanisms.load_named("six-bar"), kind="loops").svg

@@ -97,14 +97,14 @@ def test_a_belt_touches_its_pulleys_and_cuts_neither(seed: int, crossed: bool) -
 @pytest.mark.parametrize("name", ["six-bar", "jansen-leg", "planetary-train", "excavator-arm", "scissor-lift"])
 def test_structure_pictures_are_well_formed_and_the_same_every_time(name: str, view: str) -> None:
     mechanism = shipped_mechanisms.load_named(name)
-    source = ck.draw_structure(mechanism, view).svg
+    source = ck.draw(mechanism, kind=view).svg
     ET.fromstring(source)
-    assert ck.draw_structure(shipped_mechanisms.load_named(name), view).svg == source
+    assert ck.draw(shipped_mechanisms.load_named(name), kind=view).svg == source
 
 
 def test_the_parts_are_the_groups_in_solving_order() -> None:
     mechanism = shipped_mechanisms.load_named("jansen-leg")
-    picture = ck.draw_structure(mechanism)
+    picture = ck.draw(mechanism, kind="groups")
     headings = [
         s.text for s in leaves(picture.shapes) if isinstance(s, Text) and s.style == "heading" and s.text != "+"
     ]
@@ -115,7 +115,7 @@ def test_the_parts_are_the_groups_in_solving_order() -> None:
 
 def test_the_graph_has_a_node_for_each_link_and_a_line_for_each_pair() -> None:
     structure = decompose(shipped_mechanisms.load_named("six-bar"))
-    picture = ck.draw_structure(structure, "graph")
+    picture = ck.draw(structure, kind="graph")
     titles = [shape.title for shape in picture.shapes if isinstance(shape, Group)]
     assert set(structure.mechanism.links) <= set(titles)
     assert sum(title.endswith("pair") for title in titles) == len(structure.pairs)
@@ -125,7 +125,7 @@ def test_the_graph_has_a_node_for_each_link_and_a_line_for_each_pair() -> None:
 
 def test_the_circle_diagram_has_a_chord_for_each_centre() -> None:
     mechanism = shipped_mechanisms.load_named("six-bar")
-    picture = ck.draw_structure(mechanism, "circle")
+    picture = ck.draw(mechanism, kind="circle")
     lines = [shape for shape in leaves(picture.shapes) if isinstance(shape, Polyline)]
     assert len(lines) == 15
     assert sum(line.style == "ink" for line in lines) == 7
@@ -137,20 +137,46 @@ def test_overconstrained_mechanisms_that_move_are_drawn_as_they_are_written() ->
     picture = ck.draw(mechanism, at=20.0)
     blocks = [s for s in leaves(picture.shapes) if isinstance(s, Polygon) and s.style.startswith("pin ")]
     assert len(blocks) == 3
-    ET.fromstring(ck.draw_structure(mechanism).svg)
+    ET.fromstring(ck.draw(mechanism, kind="groups").svg)
 
 
 def test_structure_pictures_tell_what_they_cannot_show() -> None:
     loose = ck.Mechanism("Loose", ck.link("frame", A=0), ck.link("rod", A=0, B=1), ck.link("arm", B=0, C=1))
-    assert "3 links" in ck.draw_structure(loose, "graph").description
+    assert "3 links" in ck.draw(loose, kind="graph").description
     with pytest.raises(ck.NotDetermined):
-        ck.draw_structure(loose, "groups")
-    with pytest.raises(ck.InvalidInput, match="there is no view"):
-        ck.draw_structure(loose, "net")
-    with pytest.raises(ck.InvalidInput, match="is no mechanism"):
-        ck.draw_structure("six-bar")
+        ck.draw(loose, kind="groups")
+    with pytest.raises(ck.InvalidInput, match="there is no picture"):
+        ck.draw(loose, kind="net")
+    with pytest.raises(ck.InvalidInput, match="is no motion and no mechanism"):
+        ck.draw("six-bar", kind="groups")
     motion = ck.solve(shipped_mechanisms.load_named("crank-rocker"))
-    assert ck.draw_structure(motion).svg == ck.draw_structure(motion.mechanism).svg
+    assert ck.draw(motion, kind="groups").svg == ck.draw(motion.mechanism, kind="groups").svg
+
+
+def test_a_picture_is_asked_only_what_belongs_to_its_kind() -> None:
+    motion = ck.solve(shipped_mechanisms.load_named("crank-rocker"))
+    for kind, words in (
+        ("graph", {"at": 0.5}),
+        ("graph", {"at": np.array([0.5])}),
+        ("circle", {"pose": 3}),
+        ("groups", {"ghosts": 2}),
+        ("loops", {"labels": False}),
+        ("polygon", {"centres": True}),
+    ):
+        with pytest.raises(ck.InvalidInput, match=f"does not go with the kind '{kind}'"):
+            ck.draw(motion, kind=kind, **words)
+    with pytest.raises(ck.InvalidInput, match="a polygon is one of them"):
+        ck.draw(motion, kind="polygon", vectors=("velocity", "acceleration"))
+
+
+@pytest.mark.parametrize("kind", ["groups", "loops"])
+def test_groups_and_loops_are_drawn_at_a_pose_that_is_asked_for(kind: str) -> None:
+    motion = ck.solve(shipped_mechanisms.load_named("crank-rocker"))
+    there = ck.draw(motion, kind=kind, pose=20).svg
+    assert there != ck.draw(motion, kind=kind).svg
+    assert there == ck.draw(motion, at=float(motion.drives["crank"].value[20]), kind=kind).svg
+    with pytest.raises(ck.InvalidInput, match="there is no pose"):
+        ck.draw(motion, kind=kind, pose=10_000)
 
 
 # --- saving ----------------------------------------------------------------------------------------------

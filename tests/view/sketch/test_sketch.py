@@ -130,7 +130,7 @@ def test_vectors_have_one_scale_and_the_directions_of_the_solver() -> None:
 
 def test_the_velocity_polygon_has_images_similar_to_the_links() -> None:
     motion = ck.solve(four_bar(), {"crank": [1.0]}, speed=2.0)
-    picture = ck.vector_polygon(motion, "velocity")
+    picture = ck.draw(motion, kind="polygon")
     (image,) = [shape for shape in of(picture, "plate1") if isinstance(shape, Polygon)]
     sides = np.sort([abs(a - b) for a, b in pairwise_around(image)])
     assert sides / sides[-1] == pytest.approx(np.array([abs(1.5 + 1j), abs(1.5 + 1j), 3.0]) / 3.0, rel=1e-9)
@@ -303,7 +303,7 @@ def test_what_is_shown_as_drawn_has_no_rates_and_no_centres() -> None:
     with pytest.raises(ck.InvalidInput, match="there is only 0"):
         ck.draw(ck.solve(four_bar()), design=1)
     with pytest.raises(ck.InvalidInput, match="nothing moves"):
-        ck.vector_polygon(ck.solve(four_bar(), speed=0.0))
+        ck.draw(ck.solve(four_bar(), speed=0.0), kind="polygon")
     assert ck.draw(ck.solve(four_bar(), speed=0.0), vectors="velocity").svg.count("velocity") == 0
 
 

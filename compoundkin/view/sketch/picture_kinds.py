@@ -1,0 +1,134 @@
+"""`draw`: the kinds of pictures of a mechanism, a structure or a motion at one pose."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem, nearest
+from compoundkin.kinematics import Motion
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure import Structure, decompose
+from compoundkin.view.sketch.circle_picture import circle_diagram
+from compoundkin.view.sketch.graph_picture import graph
+from compoundkin.view.sketch.groups_picture import groups_picture
+from compoundkin.view.sketch.loops_picture import loops, loops_in_graph
+from compoundkin.view.sketch.picture import Picture
+from compoundkin.view.sketch.scene import groups_of, numbers_of
+from compoundkin.view.sketch.shown_pose import Drawable, scene_of, solved_over
+from compoundkin.view.sketch.sketches import sketch
+from compoundkin.view.sketch.vector_polygons import vector_polygon
+from compoundkin.view.sketch.wishes import Wishes
+
+
+def draw(
+    what: Motion | Mechanism | Structure,
+    at: Any = None,
+    *,
+    kind: str = "sketch",
+    pose: int | None = None,
+    design: int = 0,
+    ghosts: int = 0,
+    paths: str | Sequence[str] | bool = (),
+    centres: bool = False,
+    vectors: str | Sequence[str] = (),
+    labels: bool | str | Sequence[str] = True,
+    size: float | None = None,
+) -> Picture:
+    """Draw a mechanism at one pose, in the conventions of textbooks.
+
+    `kind` is "sketch", the kinematic sketch; "groups", the mechanism taken apart: frame and driver, then each Assur
+    group in solving order, the pairs by which it is attached in dashed circles; "loops", the independent loops as
+    polygons of vectors; "graph", the kinematic graph of links and pairs; "circle", the circle diagram of the instant
+    centres; or "polygon", the polygon of the velocities of all points (`vectors="acceleration"`: of their
+    accelerations) with the images of the links.
+
+    The pose is that of the drivers' values `at` (radians or lengths: a number, or several by name), or the pose with
+    the index `pose`; else the one nearest to the mechanism's drawing. Graph and circle diagram have none. In a sketch,
+    `ghosts` so many other poses are drawn faintly; `paths` names points whose paths along the motion are drawn (True
+    for all that are on one link only); `centres` adds the instant centres and the lines that give them; `vectors`
+    "velocity", "acceleration" or both. `labels` is True, False, or some of "points", "links". `size` is the longer side
+    in pixels, such that texts are legible if left out.
+
+    A mechanism is solved first; one that cannot be solved is shown as drawn. Raises InvalidInput, UnknownName for
+    what does not fit it or the kind of picture, NotAssembled for a pose that does not close, NotDetermined where a
+    mechanism that the drivers do not determine is asked for its groups or centres.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> draw(crank, at=0.5).title
+    'Crank'
+    >>> draw(crank, kind="graph").description
+    '2 links, 1 pairs'
+    >>> draw(crank, at=0.5, kind="polygon").title
+    'Crank: velocity polygon'
+    """
+    if not isinstance(what, Motion | Mechanism | Structure):
+        raise InvalidInput(Problem("draw", f"{what!r} is no motion and no mechanism", "load() one from a file"))
+    if kind not in KINDS:
+        raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", nearest(str(kind), list(KINDS))))
+    wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size)
+    drawn, known = KINDS[kind]
+    if unfit := wishes.others(known):
+        raise InvalidInput(Problem(unfit[0], f"it does not go with the kind {kind!r}", "leave one of them out"))
+    return drawn(what, wishes)
+
+
+def _groups(what: Drawable, wishes: Wishes) -> Picture:
+    structure = _taken_apart(what)
+    known = what if isinstance(what, Motion) else structure.mechanism
+    return groups_picture(scene_of(known, wishes.at, wishes.pose, wishes.design), wishes.size)
+
+
+def _circle(what: Drawable, wishes: Wishes) -> Picture:
+    structure = _taken_apart(what)
+    return circle_diagram(structure, numbers_of(structure), wishes.size)
+
+
+def _graph(what: Drawable, wishes: Wishes) -> Picture:
+    structure = _without_redundancy(_structure(what))
+    return graph(structure, numbers_of(structure), groups_of(structure), wishes.size)
+
+
+def _loops(what: Drawable, wishes: Wishes) -> Picture:
+    """The loops on the mechanism; in its graph where it cannot be shown at any pose."""
+    try:
+        scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
+    except (InvalidInput, NotAssembled, NotDetermined):
+        if wishes.others(("size",)):
+            raise
+        return loops_in_graph(_structure(what), wishes.size)
+    return loops(scene, wishes.size)
+
+
+def _structure(what: Drawable) -> Structure:
+    if isinstance(what, Motion):
+        return what.structure
+    return what if isinstance(what, Structure) else decompose(what)
+
+
+def _without_redundancy(structure: Structure) -> Structure:
+    """The structure as solving finds it, which may show that some of its pairs are redundant."""
+    motion = solved_over(structure.mechanism) if structure.faults else None
+    return structure if motion is None else motion.structure
+
+
+def _taken_apart(what: Drawable) -> Structure:
+    """The structure; raises NotDetermined where it cannot be taken apart."""
+    structure = _without_redundancy(_structure(what))
+    if structure.faults:
+        problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
+        raise NotDetermined(problems, heading=f"{structure.mechanism.title!r} cannot be taken apart")
+    return structure
+
+
+POSE = ("at", "pose", "design")
+# Each kind of picture: what draws it, and which of the wishes it knows.
+KINDS: Mapping[str, tuple[Callable[[Drawable, Wishes], Picture], Sequence[str]]] = {
+    "sketch": (sketch, (*POSE, "ghosts", "paths", "centres", "vectors", "labels", "size")),
+    "groups": (_groups, (*POSE, "size")),
+    "loops": (_loops, (*POSE, "size")),
+    "graph": (_graph, ("size",)),
+    "circle": (_circle, ("size",)),
+    "polygon": (vector_polygon, (*POSE, "vectors", "size")),
+}
