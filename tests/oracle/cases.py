@@ -132,7 +132,7 @@ atlas --links 7 --trusses
 atlas --links 6 --groups
 atlas --links 4 --format json
 new drawn-up.toml
-new drawn-up.toml
+new ./drawn-up.toml
 report drawn-up.toml
 report six-bar --at 35
 report six-bar --centres 35
@@ -164,7 +164,6 @@ animate six-bar -o moving.svg
 animate six-bar -o moving.txt
 circuits five-bar --driver left --at right=100
 circuits six-bar --from 20 --to 35
-circuits five-bar
 configurations six-bar --at 35
 centres five-bar --at left=60 --at right=100
 check triple-rocker
