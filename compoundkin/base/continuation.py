@@ -12,7 +12,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.linear import solve
-from compoundkin.base.newton import Solved, System, newton
+from compoundkin.base.newton import NewtonResult, System, newton
 
 
 class StepLengths(NamedTuple):
@@ -83,7 +83,7 @@ def runge_kutta(slope: Callable[[Number, Number], Number], x: Number, t: Number,
     return x + step / 6 * (one + 2 * two + 2 * three + four)
 
 
-def corrected_across(system: System, guess: Number, across: Number, converged: float, steps: int) -> Solved:
+def corrected_across(system: System, guess: Number, across: Number, converged: float, steps: int) -> NewtonResult:
     """Solve systems of one equation too few (d - 1 of d) in the hyperplanes across a direction through guesses."""
 
     def closed(y: Number) -> tuple[Number, Number]:

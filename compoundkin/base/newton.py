@@ -14,7 +14,7 @@ from compoundkin.base.linear import solve
 System: TypeAlias = Callable[[Number], tuple[Number, Number]]
 
 
-class Solved(NamedTuple):
+class NewtonResult(NamedTuple):
     """Where Newton's steps led from every start, and how they came to rest.
 
     `x` (..., d) are the unknowns, `last` (...) the sizes of the last steps, `longest` those of the longest ones;
@@ -39,7 +39,7 @@ def newton(
     steps: int,
     size: Callable[[Number, Number], Number] = largest,
     limited: Callable[[Number], Number] | None = None,
-) -> Solved:
+) -> NewtonResult:
     """Solve square systems from many starts at once, until no step is larger than `converged`.
 
     `size` measures a step at the unknowns that it led to; `limited` may shorten it before it is made. A start whose
@@ -60,7 +60,7 @@ def newton(
         longest = np.maximum(longest, last)
         if not np.any(last > converged):
             break
-    return Solved(x, matrix, last, longest)
+    return NewtonResult(x, matrix, last, longest)
 
 
 class Rest(NamedTuple):

@@ -9,7 +9,7 @@ from itertools import combinations
 from math import comb, prod
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.kinematics.assembly.group_geometry import Structure as Connections
+from compoundkin.kinematics.assembly.group_geometry import GroupGraph
 from compoundkin.kinematics.assembly.mode_count import exact_count
 from compoundkin.kinematics.solving_order import Plan
 from compoundkin.model.elements import FRAME, Drive, Item
@@ -325,7 +325,7 @@ def group_count(group: Group) -> int | None:
 _COUNTS: dict[str, int | None] = {}
 
 
-def _connections(group: Group) -> Connections:
+def _connections(group: Group) -> GroupGraph:
     """The group's pins between its bodies; letters tell which pins of a body coincide."""
     body = {link: k for k, one in enumerate(group.bodies) for link in one.links}
     pairs: tuple[Pair, ...] = (*group.inner, *group.outer)
@@ -340,4 +340,4 @@ def _connections(group: Group) -> Connections:
                 letters.append(pair.letters[0])
             sides.append(letters.index(pair.letters[0]))
         pins.append((sides[0], sides[1]))
-    return Connections(len(group.bodies), bodies, (False,) * len(pairs), tuple(pins))
+    return GroupGraph(len(group.bodies), bodies, (False,) * len(pairs), tuple(pins))

@@ -7,19 +7,19 @@ from time import perf_counter
 import numpy as np
 import pytest
 
-from compoundkin.kinematics.assembly import Assembly, Configurations, Connection, all_configurations
+from compoundkin.kinematics.assembly import Configurations, Connection, GroupGeometry, all_configurations
 from tests.kinematics.assembly.cases import triad
 from tests.kinematics.assembly.trusses import baranov_trusses, random_truss
 
 POSES = 361
 
 
-def best(assembly: Assembly, times: int = 3) -> tuple[float, Configurations]:
-    found = all_configurations(assembly)  # what depends on the structure alone is kept
+def best(geometry: GroupGeometry, times: int = 3) -> tuple[float, Configurations]:
+    found = all_configurations(geometry)  # what depends on the structure alone is kept
     taken = []
     for _ in range(times):
         start = perf_counter()
-        found = all_configurations(assembly)
+        found = all_configurations(geometry)
         taken.append(perf_counter() - start)
     return min(taken), found
 
@@ -30,7 +30,7 @@ def test_class_iii_over_a_turn(word: str) -> None:
     first = drawn.connections[0]
     circle = first.points[0] + 0.5 * np.exp(1j * np.linspace(0, 2 * np.pi, POSES))
     moving = Connection(first.bodies, (circle, first.points[1]), first.directions)
-    taken, found = best(Assembly(drawn.n, (moving, *drawn.connections[1:]), drawn.size))
+    taken, found = best(GroupGeometry(drawn.n, (moving, *drawn.connections[1:]), drawn.size))
     assert np.all(found.count == 6)
     assert taken < (0.15 if "P" not in word else 0.5)
 

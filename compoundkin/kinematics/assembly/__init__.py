@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from compoundkin.kinematics.assembly.all_configurations import Configurations, all_configurations
-from compoundkin.kinematics.assembly.conversion import from_group
-from compoundkin.kinematics.assembly.group_geometry import Assembly, Connection
+from compoundkin.kinematics.assembly.group_geometry import Connection, GroupGeometry, from_group
 from compoundkin.kinematics.assembly.mode_count import exact_count
 
-__all__ = ["Assembly", "Configurations", "Connection", "all_configurations", "exact_count", "from_group"]
+__all__ = ["Configurations", "Connection", "GroupGeometry", "all_configurations", "exact_count", "from_group"]

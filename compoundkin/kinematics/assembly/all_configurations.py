@@ -1,4 +1,4 @@
-"""All configurations of an assembly at all its poses: which are real, how many there are, in a stable order."""
+"""All configurations of a group at all its poses: which are real, how many there are, in a stable order."""
 
 from __future__ import annotations
 
@@ -6,16 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.kinematics.assembly import elimination, homotopy, neighbours
-from compoundkin.kinematics.assembly.distinct import distinct
-from compoundkin.kinematics.assembly.group_geometry import Assembly, Structure
-from compoundkin.kinematics.assembly.loop_closure import loops_of
-from compoundkin.kinematics.assembly.loop_newton import conjugates, holds, polished, relative
+from compoundkin.kinematics.assembly.group_geometry import GroupGeometry, GroupGraph
+from compoundkin.kinematics.assembly.loop_closure import rotation_equations_of
 from compoundkin.kinematics.assembly.mode_count import exact_count
-from compoundkin.kinematics.assembly.rotation_equations import Loops
+from compoundkin.kinematics.assembly.neighbours import distinct
+from compoundkin.kinematics.assembly.rotation_equations import RotationEquations, conjugates, holds, polish, relative
 
 # A solution this near to its own mirror image, its conjugate, is tried as a real one. Where it is none, two
 # complex configurations are about to meet in a real one; Newton then leaves the real numbers.
@@ -28,7 +27,7 @@ QUICK_LOOPS = 2
 
 @dataclass(frozen=True)
 class Configurations:
-    """All configurations of an assembly: arrays (..., m) over poses and configurations, NaN where there are fewer.
+    """All configurations of a group: arrays (..., m) over poses and configurations, NaN where there are fewer.
 
     `turns` and `origins` (..., m, n) are the bodies' unit orientations and origins, for a configuration that is
     not `real` complex continuations without a picture. `count` (...) are found; `expected` is their number for
@@ -63,38 +62,38 @@ class Configurations:
         return np.where(shown[..., None], states.reshape(*shown.shape, 3 * u.shape[-1]), np.nan)
 
     def poses(self, number: int) -> list[Pose]:
-        """The bodies' poses (...) in one configuration; NaN at the poses where it is not real."""
+        """Return the bodies' poses (...) in one configuration; NaN at the poses where it is not real."""
         shown = self.real[..., number, None]
         z = np.where(shown, self.origins[..., number, :], np.nan)
         u = np.where(shown, self.turns[..., number, :], np.nan)
         return [Pose.of(z[..., b], u[..., b]) for b in range(z.shape[-1])]
 
 
-def all_configurations(assembly: Assembly) -> Configurations:
-    """All configurations of an assembly, at all its poses at once.
+def all_configurations(geometry: GroupGeometry) -> Configurations:
+    """Find all configurations of a group, at all its poses at once.
 
     Fewer than `expected` are found where, for special dimensions, some coincide or lie at infinity. Raises
-    `InvalidInput` where the structure leaves a body free or holds it twice. Work grows as the cube of C(2 l, l) for l
+    `InvalidInput` where the connections leave a body free or holds it twice. Work grows as the cube of C(2 l, l) for l
     loops.
 
     Source: C. W. Wampler, Solving the kinematics of planar mechanisms by Dixon determinant and a complex-plane
     formulation, J. Mech. Des. 123 (2001) 382; for groups with slides see `homotopy`.
 
     >>> from compoundkin.kinematics.assembly.group_geometry import Connection
-    >>> dyad = Assembly(2, (
+    >>> dyad = GroupGeometry(2, (
     ...     Connection((None, 0), (0, 0)), Connection((0, 1), (3, 0)), Connection((None, 1), (5, 4))), 5.0)
     >>> found = all_configurations(dyad)
     >>> found.turns[:, 0].round(6), found.certified
     (array([0.6-0.8j, 0.6+0.8j]), np.True_)
     """
-    batch_loops = loops_of(assembly)
-    loops, structure = batch_loops.flat, assembly.structure()
-    exact = exact_count(structure)
-    expected = homotopy.generic_count(structure) if exact is None else exact
+    batch_loops = rotation_equations_of(geometry)
+    loops, graph = batch_loops.flat, geometry.graph()
+    exact = exact_count(graph)
+    expected = homotopy.generic_count(graph) if exact is None else exact
     if not expected:
         what = "the bodies are not fixed in finitely many ways where pins or guides coincide as they do here"
         raise InvalidInput(Problem("connections", what, "place the pins of each body apart"))
-    x = _known(loops, structure, expected)
+    x = _known(loops, graph, expected)
     x, real = _real(loops, x)
     order = _order(loops, x, real)
     x, real = np.take_along_axis(x, order[..., None], axis=1), np.take_along_axis(real, order, axis=1)
@@ -103,7 +102,7 @@ def all_configurations(assembly: Assembly) -> Configurations:
     batch = batch_loops.batch
     return Configurations(
         turns.reshape(*batch, *turns.shape[1:]),
-        assembly.size * origins.reshape(*batch, *origins.shape[1:]),
+        geometry.size * origins.reshape(*batch, *origins.shape[1:]),
         real.reshape(*batch, -1),
         there.sum(axis=-1).reshape(batch)[()],
         expected,
@@ -111,34 +110,34 @@ def all_configurations(assembly: Assembly) -> Configurations:
     )
 
 
-def _known(loops: Loops, structure: Structure, expected: int) -> Number:
-    """All solutions at the poses whose dimensions are known, none at the others."""
+def _known(loops: RotationEquations, graph: GroupGraph, expected: int) -> Number:
+    """Find all solutions at the poses whose dimensions are known, none at the others."""
     finite = np.isfinite(loops.constant).all(axis=(1, 2)) & np.isfinite(loops.columns).all(axis=(1, 2, 3))
     known = np.flatnonzero(finite)
     if len(known) == len(loops.constant):
-        return _complex(loops, structure, expected)
-    found = _complex(loops.select(known), structure, expected) if len(known) else np.zeros((0, expected, 1))
+        return _complex(loops, graph, expected)
+    found = _complex(loops.select(known), graph, expected) if len(known) else np.zeros((0, expected, 1))
     out = np.full((len(loops.constant), found.shape[1], loops.columns.shape[-3]), np.nan, dtype=complex)
     out[known] = found
     return out
 
 
-def _complex(loops: Loops, structure: Structure, expected: int) -> Number:
-    """All solutions, by the way that suits the structure."""
-    eliminated = elimination.suits(structure)
+def _complex(loops: RotationEquations, graph: GroupGraph, expected: int) -> Number:
+    """Find all solutions, by the way that suits the connections."""
+    eliminated = elimination.suits(graph)
     if eliminated and loops.count <= QUICK_LOOPS:
-        return elimination.complex_solutions(loops, structure)
+        return elimination.complex_solutions(loops, graph)
 
-    def solved(some: Loops) -> Number:
+    def solved(some: RotationEquations) -> Number:
         if eliminated:
-            return elimination.complex_solutions(some, structure)
-        return distinct(polished(some, homotopy.roots(some, structure)))
+            return elimination.complex_solutions(some, graph)
+        return distinct(polish(some, homotopy.roots(some, graph)))
 
     return neighbours.solutions(loops, expected, solved)
 
 
-def _real(loops: Loops, x: Number) -> tuple[Number, Number]:
-    """Solutions with those that are real made so to the last digit, and which ones these are."""
+def _real(loops: RotationEquations, x: Number) -> tuple[Number, Number]:
+    """Make solutions that are real so to the last digit, and tell which ones these are."""
     with np.errstate(all="ignore"):
         near = relative(x - np.conj(conjugates(loops, x)), x) < NEARLY_REAL
         projected = _projected(loops, x)
@@ -146,8 +145,8 @@ def _real(loops: Loops, x: Number) -> tuple[Number, Number]:
     return np.where(real[..., None], projected, x), real
 
 
-def _projected(loops: Loops, x: Number) -> Number:
-    """Rotations made unit numbers, displacements real ones along their guides."""
+def _projected(loops: RotationEquations, x: Number) -> Number:
+    """Make rotations unit numbers, displacements real ones along their guides."""
     r = loops.rotations
     unit = x[..., :r] / np.abs(x[..., :r])
     guides = [np.ones_like(x[..., 0]) if g is None else unit[..., g] for g in loops.guides]
@@ -155,8 +154,8 @@ def _projected(loops: Loops, x: Number) -> Number:
     return np.concatenate([unit, *[s[..., None] for s in shifts]], axis=-1)
 
 
-def _order(loops: Loops, x: Number, real: Number) -> Number:
-    """The order of the solutions at every pose: the real ones first, then by the angles of the bodies."""
+def _order(loops: RotationEquations, x: Number, real: Number) -> Number:
+    """Order the solutions at every pose: the real ones first, then by the angles of the bodies."""
     turns = loops.bodies(x)[0]
     angles = np.round(np.angle(turns) / SAME_ANGLE) * SAME_ANGLE
     angles = np.where(angles <= -np.pi + SAME_ANGLE, np.pi, angles)

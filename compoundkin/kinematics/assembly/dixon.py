@@ -16,9 +16,9 @@ from itertools import combinations
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.linear import inverted
-from compoundkin.base.series import Number
-from compoundkin.kinematics.assembly.rotation_equations import Loops
+from compoundkin.kinematics.assembly.rotation_equations import RotationEquations
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Sets:
 
 @lru_cache(maxsize=8)
 def sets(loops: int) -> Sets:
-    """The sets for l loops.
+    """Return the sets for l loops.
 
     >>> sets(2).large.tolist(), sets(2).small.tolist()
     ([[0, 1], [0, 2], [1, 2]], [[0], [1], [2]])
@@ -79,8 +79,8 @@ def _sign(power: int) -> int:
     return -1 if power % 2 else 1
 
 
-def pencil(loops: Loops, suppressed: int) -> tuple[Number, Number]:
-    """The matrices P and Q (..., N, N), N = C(2 l, l), rows and columns first of the large, then the small sets."""
+def pencil(loops: RotationEquations, suppressed: int) -> tuple[Number, Number]:
+    """Return the matrices P and Q (..., N, N), N = C(2 l, l), rows and columns first of the large sets."""
     kept = [k for k in range(loops.rotations) if k != suppressed]
     own = sets(loops.count)
     f, g = loops.columns[..., 0][..., kept, :], loops.columns[..., 1][..., kept, :]
@@ -104,14 +104,14 @@ def pencil(loops: Loops, suppressed: int) -> tuple[Number, Number]:
 
 
 def _bordered(first: Number, rows: Number, chosen: Number) -> Number:
-    """Determinants of a first row above chosen ones, for every choice."""
+    """Return the determinants of a first row above chosen ones, for every choice."""
     picked = rows[..., chosen, :]
     head = np.broadcast_to(first[..., None, None, :], (*picked.shape[:-2], 1, picked.shape[-1]))
     return np.linalg.det(np.concatenate([head, picked], axis=-2))
 
 
-def roots(loops: Loops, suppressed: int, kept: Number, shift: complex) -> Number:
-    """Candidates for all solutions, (..., candidates, rotations), NaN where an eigenvalue is at infinity.
+def roots(loops: RotationEquations, suppressed: int, kept: Number, shift: complex) -> Number:
+    """Find candidates for all solutions, (..., candidates, rotations), NaN where an eigenvalue is at infinity.
 
     `kept` are the sets whose rows are not zero; `shift` is a number near which no solution is expected.
     """
@@ -127,7 +127,7 @@ def roots(loops: Loops, suppressed: int, kept: Number, shift: complex) -> Number
 
 
 def _finite(left: Number, right: Number) -> Number:
-    """left^-1 right, zero where the left side is singular: poses of special dimensions, which other ways then solve."""
+    """Return left^-1 right, zero where the left side is singular: at special poses, which other ways then solve."""
     try:
         found = np.linalg.solve(left, right)
     except np.linalg.LinAlgError:
@@ -136,7 +136,7 @@ def _finite(left: Number, right: Number) -> Number:
 
 
 def _read(t: Number, count: int, kept: Number) -> Number:
-    """theta_k = t_S / t_{S + k}, by least squares over all sets, from (..., candidates, kept)."""
+    """Read theta_k = t_S / t_{S + k}, by least squares over all sets, from (..., candidates, kept)."""
     own = sets(count)
     full = np.zeros((*t.shape[:-1], len(own.large) + len(own.small)), dtype=complex)
     full[..., kept] = t

@@ -6,14 +6,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from compoundkin.base.series import Number
-from compoundkin.kinematics.assembly.distinct import distinct, padded
+from compoundkin.base.arrays import Number
 from compoundkin.kinematics.assembly.dixon import pencil, roots
-from compoundkin.kinematics.assembly.group_geometry import Structure
-from compoundkin.kinematics.assembly.loop_closure import random_loops
-from compoundkin.kinematics.assembly.loop_newton import polished
+from compoundkin.kinematics.assembly.group_geometry import GroupGraph
+from compoundkin.kinematics.assembly.loop_closure import random_equations
 from compoundkin.kinematics.assembly.mode_count import exact_count
-from compoundkin.kinematics.assembly.rotation_equations import Loops
+from compoundkin.kinematics.assembly.neighbours import distinct, padded
+from compoundkin.kinematics.assembly.rotation_equations import RotationEquations, polish
 
 # The matrices grow as C(2 l, l); beyond this number of loops the paths of a homotopy are cheaper.
 MOST_LOOPS = 5
@@ -31,50 +30,52 @@ BLOCK = 1 << 20
 
 
 @lru_cache(maxsize=256)
-def suits(structure: Structure) -> bool:
-    """Whether all solutions of a generic instance are found by elimination.
+def suits(graph: GroupGraph) -> bool:
+    """Tell whether all solutions of a generic instance are found by elimination.
 
     Not with slides, nor where multiple pins leave a loop apart from the others: the eigenvectors then lack rotations.
     """
-    exact = exact_count(structure)
-    if exact is None or len(structure.bodies) - structure.n > MOST_LOOPS:
+    exact = exact_count(graph)
+    if exact is None or len(graph.bodies) - graph.n > MOST_LOOPS:
         return False
-    loops = random_loops(structure, np.random.default_rng(6)).flat
-    return bool(_count(complex_solutions(loops, structure))[0] == exact)
+    loops = random_equations(graph, np.random.default_rng(6)).flat
+    return bool(_count(complex_solutions(loops, graph))[0] == exact)
 
 
-def complex_solutions(loops: Loops, structure: Structure) -> Number:
-    """All solutions found, (poses, solutions, unknowns), padded with NaN."""
-    size = len(_ways(structure)[0][1])
+def complex_solutions(loops: RotationEquations, graph: GroupGraph) -> Number:
+    """Find solutions, (poses, solutions, unknowns), padded with NaN."""
+    size = len(_ways(graph)[0][1])
     block = max(1, BLOCK // size**2)
     poses = len(loops.constant)
-    found = [_solved(loops.select(np.arange(k, min(k + block, poses))), structure) for k in range(0, poses, block)]
+    found = [_solved(loops.select(np.arange(k, min(k + block, poses))), graph) for k in range(0, poses, block)]
     most = max(x.shape[1] for x in found)
     return np.concatenate([padded(x, most) for x in found])
 
 
-def _solved(loops: Loops, structure: Structure) -> Number:
-    """The union over suppressed rotations, at each pose as far as needed."""
-    expected = exact_count(structure)
+def _solved(loops: RotationEquations, graph: GroupGraph) -> Number:
+    """Unite the solutions over suppressed rotations, at each pose as far as needed."""
+    expected = exact_count(graph)
     found = np.full((len(loops.constant), 0, loops.rotations), np.nan, dtype=complex)
     for change in CHANGES:
         fruitless = np.zeros(len(found), dtype=int)
-        for suppressed, kept in _ways(structure):
+        for suppressed, kept in _ways(graph):
             here = np.flatnonzero((_count(found) != expected) & (fruitless < FRUITLESS))
             if not len(here):
                 break
-            more = _more(loops.select(here), structure, found[here], suppressed, kept, change)
+            more = _more(loops.select(here), graph, found[here], suppressed, kept, change)
             fruitless[here] = np.where(_count(more) > _count(found[here]), 0, fruitless[here] + 1)
             found = padded(found, max(found.shape[1], more.shape[1]))
             found[here] = padded(more, found.shape[1])
     return found
 
 
-def _more(loops: Loops, structure: Structure, known: Number, suppressed: int, kept: Number, change: float) -> Number:
-    """The known solutions and those that one eigenvalue problem adds."""
-    nearby = loops.changed(random_loops(structure, np.random.default_rng(4)), change) if change else loops
+def _more(
+    loops: RotationEquations, graph: GroupGraph, known: Number, suppressed: int, kept: Number, change: float
+) -> Number:
+    """Add to the known solutions those of one eigenvalue problem."""
+    nearby = loops.changed(random_equations(graph, np.random.default_rng(4)), change) if change else loops
     candidates = roots(nearby, suppressed, kept, SHIFT)
-    return distinct(np.concatenate([known, polished(loops, candidates)], axis=1))
+    return distinct(np.concatenate([known, polish(loops, candidates)], axis=1))
 
 
 def _count(found: Number) -> Number:
@@ -82,9 +83,9 @@ def _count(found: Number) -> Number:
 
 
 @lru_cache(maxsize=256)
-def _ways(structure: Structure) -> tuple[tuple[int, Number], ...]:
-    """The rotations to suppress and the rows that are then not zero, the smallest matrices first."""
-    loops = random_loops(structure, np.random.default_rng(5))
+def _ways(graph: GroupGraph) -> tuple[tuple[int, Number], ...]:
+    """List the rotations to suppress and the rows that are then not zero, the smallest matrices first."""
+    loops = random_equations(graph, np.random.default_rng(5))
     found = []
     for k in range(loops.rotations):
         p, q = pencil(loops, k)

@@ -1,4 +1,4 @@
-"""What a group is for finding all its configurations: bodies joined by pins and slides, as plain numbers."""
+"""A group as its configurations are found: bodies joined by pins and slides, as plain numbers."""
 
 from __future__ import annotations
 
@@ -7,8 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
+from compoundkin.base.poses import End
+from compoundkin.base.series import Series
+from compoundkin.kinematics.block import Block
+from compoundkin.model.pairs import Pair
+from compoundkin.structure.parts import Group
 
 # Two points of a body nearer than this part of the size are one pin: rounding of a few additions.
 SAME = 1e-12
@@ -30,12 +35,12 @@ class Connection:
 
 
 @dataclass(frozen=True)
-class Assembly:
+class GroupGeometry:
     """Bodies 0 to `n` - 1 held by `connections`, exactly as many as fix them all; `size` is a typical length.
 
     Raises `InvalidInput` where the number of connections does not fit.
 
-    >>> dyad = Assembly(2, (
+    >>> dyad = GroupGeometry(2, (
     ...     Connection((None, 0), (0, 0)), Connection((0, 1), (3, 0)), Connection((None, 1), (4, 2))), 4.0)
     >>> dyad.loops
     1
@@ -56,7 +61,7 @@ class Assembly:
         return len(self.connections) - self.n
 
     def pins(self) -> tuple[tuple[int, int], ...]:
-        """For both sides of every connection the number of its point on that body: coinciding points have one."""
+        """Number the points of connections on each body, both sides: coinciding points have one."""
         seen: dict[int | None, list[Number]] = {}
         return tuple(
             (self._pin(seen, c.bodies[0], c.points[0]), self._pin(seen, c.bodies[1], c.points[1]))
@@ -71,15 +76,15 @@ class Assembly:
         known.append(point)
         return len(known) - 1
 
-    def structure(self) -> Structure:
-        """What of it does not depend on dimensions: which bodies are joined, by what, and which pins coincide."""
+    def graph(self) -> GroupGraph:
+        """Return what does not depend on dimensions: which bodies are joined, by what, and which pins coincide."""
         slides = tuple(c.directions is not None for c in self.connections)
-        return Structure(self.n, tuple(c.bodies for c in self.connections), slides, self.pins())
+        return GroupGraph(self.n, tuple(c.bodies for c in self.connections), slides, self.pins())
 
 
 @dataclass(frozen=True)
-class Structure:
-    """An assembly without its dimensions; it can be hashed, so that what depends on it alone is found once."""
+class GroupGraph:
+    """A group without its dimensions; it can be hashed, so that what depends on it alone is found once."""
 
     n: int
     bodies: tuple[tuple[int | None, int | None], ...]
@@ -87,7 +92,7 @@ class Structure:
     pins: tuple[tuple[int, int], ...]
 
     def tree(self) -> tuple[tuple[tuple[int, int], ...], tuple[int, ...]]:
-        """A spanning tree outward from what is known: (connection, new body) in order, and the other connections.
+        """Build a spanning tree outward from what is known: (connection, new body) in order, and the other connections.
 
         Breadth first, so that loops are short.
         """
@@ -111,7 +116,7 @@ class Structure:
                 yield k, a
 
     def random(self, rng: np.random.Generator) -> tuple[Number, Number]:
-        """Random dimensions with the same coinciding pins: points and directions (connections, 2 sides, 2).
+        """Draw random dimensions with the same coinciding pins: points and directions (connections, 2 sides, 2).
 
         In isotropic coordinates, the two of a point independent, as a generic complex instance needs.
         """
@@ -126,3 +131,37 @@ class Structure:
                 points[k, side] = seen[key]
         direction = np.exp(2j * np.pi * rng.random((m, 2)) + 0.3 * rng.standard_normal((m, 2)))
         return points, np.stack([direction, 1 / direction], axis=-1)
+
+
+def from_group(group: Group, block: Block, size: float) -> GroupGeometry:
+    """Return the group as it is attached in a block, at all its poses; body k is the group's body k.
+
+    A composite body is taken in the frame of its base link, `links[0]`, with its shape at each pose. Raises
+    `InvalidInput` where the group holds higher pairs, whose configurations are not finitely many rotations.
+    """
+    where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
+    connections = tuple(_connection(pair, where, block) for pair in (*group.inner, *group.outer))
+    return GroupGeometry(len(group.bodies), connections, size)
+
+
+def _connection(pair: Pair, where: dict[str, int], block: Block) -> Connection:
+    if pair.held != 2 or len(pair.members) != 2:
+        what = f"all configurations are known for groups of lower pairs only, not with a {pair.title}"
+        raise InvalidInput(Problem(pair.name, what))
+    first, second = (
+        _in_body(link, end, where, block) for link, end in zip(pair.members, block.ends[pair.name], strict=True)
+    )
+    bodies = where.get(pair.members[0]), where.get(pair.members[1])
+    points = _leading(first.point), _leading(second.point)
+    directions = None if pair.free_is_angle else (_leading(first.direction), _leading(second.direction))
+    return Connection(bodies, points, directions)
+
+
+def _in_body(link: str, end: End, where: dict[str, int], block: Block) -> End:
+    """Return a link's side of a pair in its composite body, or in the world where it is known."""
+    frame = block.local.get(link) if link in where else block.world[link]
+    return end if frame is None else frame.carry(end)
+
+
+def _leading(value: Series | Number) -> Number:
+    return value.c[0] if isinstance(value, Series) else value

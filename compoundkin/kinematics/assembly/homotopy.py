@@ -2,7 +2,7 @@
 
 The loop equations say that X = (1, Theta, S) and its conjugate Y are in two linear spaces of dimension l + 1; the
 other conditions Theta Theta* = 1 and S Theta* = S* Theta are 2 l equations linear in X and in Y. They have at
-most C(2 l, l) solutions. A generic complex instance is solved once for a structure, from products of linear
+most C(2 l, l) solutions. A generic complex instance is solved once for a graph, from products of linear
 equations, by as many paths; its finite solutions then lead to all those of any dimensions.
 
 Sources: A. P. Morgan and A. J. Sommese, A homotopy for solving general polynomial systems that respects
@@ -12,71 +12,93 @@ continuation, Appl. Math. Comput. 29 (1989) 123.
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, partial
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.series import Number
-from compoundkin.kinematics.assembly.distinct import distinct
-from compoundkin.kinematics.assembly.group_geometry import Structure
-from compoundkin.kinematics.assembly.loop_closure import random_loops
-from compoundkin.kinematics.assembly.loop_newton import jacobian, polished, residual
-from compoundkin.kinematics.assembly.path_tracking import Moving, followed
-from compoundkin.kinematics.assembly.rotation_equations import Loops
+from compoundkin.base.arrays import Number
+from compoundkin.base.continuation import StepLengths, Taken, follow, runge_kutta
+from compoundkin.base.linear import solve
+from compoundkin.base.newton import newton
+from compoundkin.kinematics.assembly.group_geometry import GroupGraph
+from compoundkin.kinematics.assembly.loop_closure import random_equations
+from compoundkin.kinematics.assembly.neighbours import distinct
+from compoundkin.kinematics.assembly.rotation_equations import RotationEquations, jacobian, polish, relative, residual
 
 # The paths of the generic instance are followed this often, with other random numbers, to find any that was lost.
 RUNS = 2
+# The corrector must end below ACCURATE (of each unknown) within CORRECTIONS steps, its first step below NEAR: then
+# the path it returns to is the one it left. A step is halved when that fails, doubled after some successes.
+ACCURATE = 1e-8
+NEAR = 1e-3
+CORRECTIONS = 3
+LENGTHS = StepLengths(first=0.02, longest=0.1, shortest=1e-9, easy=3, most=2000)
+
+
+class MovingSystem(NamedTuple):
+    """A system H(x, t) = 0 of paths: residuals (paths, d), its derivatives by x (paths, d, d) and by t (paths, d).
+
+    Each is called with the indices of some paths, their x (paths, d) and t (paths,).
+    """
+
+    value: Callable[[Number, Number, Number], Number]
+    by_x: Callable[[Number, Number, Number], Number]
+    by_t: Callable[[Number, Number, Number], Number]
 
 
 @lru_cache(maxsize=64)
-def generic(structure: Structure) -> tuple[Loops, Number]:
-    """A generic complex instance and all its solutions (solutions, unknowns)."""
-    loops = random_loops(structure, np.random.default_rng(2)).flat
+def generic(graph: GroupGraph) -> tuple[RotationEquations, Number]:
+    """Solve a generic complex instance: it and all its solutions (solutions, unknowns)."""
+    loops = random_equations(graph, np.random.default_rng(2)).flat
     found = [_all_paths(loops, np.random.default_rng(3 + run)) for run in range(RUNS)]
-    x = distinct(polished(loops, np.concatenate(found)[None]))[0]
+    x = distinct(polish(loops, np.concatenate(found)[None]))[0]
     return loops, x
 
 
-def generic_count(structure: Structure) -> int:
-    """The number of complex configurations of a generic instance, as found by continuation."""
-    return len(generic(structure)[1])
+def generic_count(graph: GroupGraph) -> int:
+    """Count the complex configurations of a generic instance, by continuation."""
+    return len(generic(graph)[1])
 
 
-def roots(loops: Loops, structure: Structure) -> Number:
-    """Candidates for all solutions (poses, candidates, unknowns), NaN for paths that go to infinity."""
-    start, x = generic(structure)
+def roots(loops: RotationEquations, graph: GroupGraph) -> Number:
+    """Find candidates for all solutions (poses, candidates, unknowns), NaN for paths that go to infinity."""
+    start, x = generic(graph)
     poses = len(loops.constant)
-    ends = followed(_between(start, loops, len(x)), np.tile(x, (poses, 1)))
+    ends = follow_paths(_between(start, loops, len(x)), np.tile(x, (poses, 1)))
     return ends.reshape(poses, len(x), -1)
 
 
-def _between(start: Loops, target: Loops, each: int) -> Moving:
-    """The loop equations with dimensions that go from one instance to those of every pose."""
+def _between(start: RotationEquations, target: RotationEquations, each: int) -> MovingSystem:
+    """Move the dimensions of the loop equations from one instance to those of every pose."""
     constant, columns = target.constant - start.constant, target.columns - start.columns
 
-    def at(i: Number, t: Number) -> Loops:
+    def at(i: Number, t: Number) -> RotationEquations:
         s, pose = t[:, None, None], i // each
-        return Loops(
+        return RotationEquations(
             start.constant + s * constant[pose],
             start.columns + s[..., None] * columns[pose],
             target.guides,
-            target.turning,
+            target.body_rotations,
             target.origins,
         )
 
-    def moved(i: Number) -> Loops:
-        return Loops(constant[i // each], columns[i // each], target.guides, target.turning, target.origins)
+    def moved(i: Number) -> RotationEquations:
+        return RotationEquations(
+            constant[i // each], columns[i // each], target.guides, target.body_rotations, target.origins
+        )
 
-    return Moving(
+    return MovingSystem(
         lambda i, x, t: residual(at(i, t), x[:, None])[:, 0],
         lambda i, x, t: jacobian(at(i, t), x[:, None])[:, 0],
         lambda i, x, t: residual(moved(i), x[:, None])[:, 0],
     )
 
 
-def _all_paths(loops: Loops, rng: np.random.Generator) -> Number:
-    """The unknowns (paths, unknowns) at the ends of all C(2 l, l) paths."""
+def _all_paths(loops: RotationEquations, rng: np.random.Generator) -> Number:
+    """Return the unknowns (paths, unknowns) at the ends of all C(2 l, l) paths."""
     size = loops.count + 1
     bases = [_kernel(loops, side, rng) for side in range(2)]
     target = _forms(loops, *bases)
@@ -85,21 +107,21 @@ def _all_paths(loops: Loops, rng: np.random.Generator) -> Number:
     twist = np.exp(2j * np.pi * rng.random())
     first = np.stack([_start(start, patches, kept) for kept in combinations(range(2 * loops.count), loops.count)])
     forms = twist * start[0][:, :, None] * start[1][:, None, :]
-    ends = followed(_bilinear(forms, target - forms, patches), first)
+    ends = follow_paths(_bilinear(forms, target - forms, patches), first)
     full = ends[:, :size] @ bases[0].T
     with np.errstate(all="ignore"):
         return full[:, 1:] / full[:, :1]
 
 
-def _kernel(loops: Loops, side: int, rng: np.random.Generator) -> Number:
-    """A random orthonormal basis (1 + unknowns, l + 1) of all (1, X) that satisfy the loop equations."""
+def _kernel(loops: RotationEquations, side: int, rng: np.random.Generator) -> Number:
+    """Draw a random orthonormal basis (1 + unknowns, l + 1) of all (1, X) that satisfy the loop equations."""
     equations = np.concatenate([loops.constant[0, None, :, side], loops.columns[0, ..., side]])
     basis = np.linalg.qr(equations, mode="complete")[0][:, loops.count :].conj()
     return basis @ np.linalg.qr(_random(rng, loops.count + 1, loops.count + 1))[0]
 
 
-def _forms(loops: Loops, x: Number, y: Number) -> Number:
-    """The 2 l equations between X and Y as matrices (2 l, l + 1, l + 1)."""
+def _forms(loops: RotationEquations, x: Number, y: Number) -> Number:
+    """Write the 2 l equations between X and Y as matrices (2 l, l + 1, l + 1)."""
 
     def product(i: int, j: int) -> Number:
         return np.outer(x[i], y[j])
@@ -113,7 +135,7 @@ def _forms(loops: Loops, x: Number, y: Number) -> Number:
 
 
 def _start(start: list[Number], patches: list[Number], kept: tuple[int, ...]) -> Number:
-    """The solution where the first factors of the equations `kept` and the second ones of the others are zero."""
+    """Return where the first factors of the equations `kept` and the second ones of the others are zero."""
     others = [k for k in range(len(start[0])) if k not in kept]
     right = np.zeros(len(kept) + 1)
     right[-1] = 1
@@ -124,8 +146,8 @@ def _start(start: list[Number], patches: list[Number], kept: tuple[int, ...]) ->
     return np.concatenate(halves)
 
 
-def _bilinear(start: Number, change: Number, patches: list[Number]) -> Moving:
-    """x' (start + t change) y = 0 with both vectors on their patches."""
+def _bilinear(start: Number, change: Number, patches: list[Number]) -> MovingSystem:
+    """Write x' (start + t change) y = 0 with both vectors on their patches."""
     size = len(patches[0])
 
     def forms(t: Number) -> Number:
@@ -148,8 +170,34 @@ def _bilinear(start: Number, change: Number, patches: list[Number]) -> Moving:
         x, y = z[:, :size], z[:, size:]
         return np.concatenate([np.einsum("kij,ni,nj->nk", change, x, y), np.zeros((len(z), 2))], axis=-1)
 
-    return Moving(value, by_z, by_t)
+    return MovingSystem(value, by_z, by_t)
 
 
 def _random(rng: np.random.Generator, *shape: int) -> Number:
     return rng.standard_normal(shape) + 1j * rng.standard_normal(shape)
+
+
+def follow_paths(moving: MovingSystem, start: Number) -> Number:
+    """Follow paths from `start` (paths, d) at t = 0 to t = 1; those that do not arrive there are NaN."""
+    x, t = np.array(start, dtype=complex), np.zeros(len(start))
+
+    def step(i: Number, longest: Number) -> Taken:
+        h = np.minimum(longest, 1 - t[i])
+        ahead = np.where(h == 1 - t[i], 1.0, t[i] + h)
+        slope = partial(_slope, moving, i)
+        guess = runge_kutta(slope, x[i], t[i], h)
+        found = newton(
+            lambda x: (moving.value(i, x, ahead), moving.by_x(i, x, ahead)), guess, 0.0, CORRECTIONS, relative
+        )
+        good = (found.longest < NEAR) & (found.last < ACCURATE)
+        x[i[good]], t[i[good]] = found.x[good], ahead[good]
+        return Taken(h, good, t[i] >= 1)
+
+    with np.errstate(all="ignore"):
+        arrived = follow(step, np.ones(len(start), dtype=bool), LENGTHS)
+    return np.where(arrived[:, None], x, np.nan)
+
+
+def _slope(moving: MovingSystem, i: Number, x: Number, t: Number) -> Number:
+    """Return dx/dt = -H_x^-1 H_t along paths."""
+    return -solve(moving.by_x(i, x, t), moving.by_t(i, x, t))

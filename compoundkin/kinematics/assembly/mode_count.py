@@ -19,9 +19,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from compoundkin.base.series import Number
-from compoundkin.kinematics.assembly.group_geometry import Structure
-from compoundkin.kinematics.assembly.loop_closure import random_loops
+from compoundkin.base.arrays import Number
+from compoundkin.kinematics.assembly.group_geometry import GroupGraph
+from compoundkin.kinematics.assembly.loop_closure import random_equations
 
 # Singular values of random matrices of a few columns are far above this, those that are zero far below.
 RANK = 1e-9
@@ -31,23 +31,23 @@ Rank: TypeAlias = Callable[[int], int]
 
 
 @lru_cache(maxsize=256)
-def exact_count(structure: Structure) -> int | None:
-    """The number of configurations over the complex numbers for generic dimensions; None where slides are held.
+def exact_count(graph: GroupGraph) -> int | None:
+    """Count the configurations over the complex numbers for generic dimensions; None where slides are held.
 
-    >>> from compoundkin.kinematics.assembly.group_geometry import Structure
-    >>> exact_count(Structure(2, ((None, 0), (0, 1), (None, 1)), (False,) * 3, ((0, 0), (1, 0), (1, 1))))
+    >>> from compoundkin.kinematics.assembly.group_geometry import GroupGraph
+    >>> exact_count(GroupGraph(2, ((None, 0), (0, 1), (None, 1)), (False,) * 3, ((0, 0), (1, 0), (1, 1))))
     2
     """
-    if any(structure.slides):
+    if any(graph.slides):
         return None
-    loops = random_loops(structure, np.random.default_rng(1))
+    loops = random_equations(graph, np.random.default_rng(1))
     columns = np.concatenate([loops.constant[None], loops.columns])[..., 0]
     rank = _coordinate_rank(columns)
     return intersections(len(columns), rank, rank)
 
 
 def laman_number(edges: Iterable[tuple[int, int]]) -> int:
-    """The number of realizations of a minimally rigid graph in the plane, over the complex numbers.
+    """Count the realizations of a minimally rigid graph in the plane, over the complex numbers.
 
     Up to direct motions; mirror images are counted apart. Zero where the graph is not minimally rigid.
 
@@ -59,14 +59,14 @@ def laman_number(edges: Iterable[tuple[int, int]]) -> int:
 
 
 def intersections(n: int, first: Rank, second: Rank) -> int:
-    """How often a generic linear space meets the inverse of another, from the ranks of their coordinates.
+    """Count how often a generic linear space meets the inverse of another, from the ranks of their coordinates.
 
     `n` coordinates; the ranks of all of them must add up to n + 1, else the count is zero.
     """
-    return _Pair(n, first, second).number((1 << n) - 1, 0, 0)
+    return _Matroids(n, first, second).number((1 << n) - 1, 0, 0)
 
 
-class _Pair:
+class _Matroids:
     """The recursion: each state is what is left of both matroids after restriction and contraction."""
 
     def __init__(self, n: int, first: Rank, second: Rank) -> None:
@@ -75,7 +75,7 @@ class _Pair:
         self.known: dict[tuple[int, int, int], int] = {}
 
     def number(self, left: int, one: int, two: int) -> int:
-        """The count on the elements `left`, `one` contracted in the first matroid and `two` in the second."""
+        """Return the count on the elements `left`, `one` contracted in the first matroid and `two` in the second."""
         if not left:
             return 1
         key = (left, self.closed[0](one), self.closed[1](two))
@@ -100,7 +100,7 @@ class _Pair:
             part = (part - 1) & rest
 
     def _product(self, part: int, others: int, chosen: int, one: int, two: int) -> int:
-        """The chosen element with `part` is contracted in the first matroid, with `others` in the second."""
+        """Count with the chosen element and `part` contracted in the first matroid, with `others` in the second."""
         found = self.number(others, one | part | chosen, two)
         return found and found * self.number(part, one, two | others | chosen)
 
@@ -111,13 +111,13 @@ class _Pair:
 
 
 def _closure(n: int, rank: Rank, elements: int) -> int:
-    """All elements that do not raise the rank of some."""
+    """Return all elements that do not raise the rank of some."""
     own = rank(elements)
     return sum(1 << k for k in range(n) if rank(elements | 1 << k) == own)
 
 
 def _coordinate_rank(columns: Number) -> Rank:
-    """Ranks of the coordinates of the vectors x with sum_k x_k columns[k] = 0, by the ranks of the columns."""
+    """Return the ranks of the coordinates of the vectors x with sum_k x_k columns[k] = 0, by those of the columns."""
     n: int = len(columns)
     held: int = columns.shape[1]
 
@@ -130,7 +130,7 @@ def _coordinate_rank(columns: Number) -> Rank:
 
 
 def _graph_rank(edges: tuple[tuple[int, int], ...]) -> Rank:
-    """Ranks of the edges of a graph: nodes less components."""
+    """Return the ranks of the edges of a graph: nodes less components."""
 
     def rank(elements: int) -> int:
         root = {node: node for edge in edges for node in edge}

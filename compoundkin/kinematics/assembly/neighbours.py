@@ -1,4 +1,4 @@
-"""All solutions at many poses, most of them by Newton from the solutions at neighbouring poses.
+"""Lists of solutions at many poses: each once, and most by Newton from those of neighbouring poses.
 
 Where as many different solutions are found as there are, none is missing; only other poses are solved anew.
 """
@@ -9,11 +9,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from compoundkin.base.series import Number
-from compoundkin.kinematics.assembly.distinct import distinct, padded
-from compoundkin.kinematics.assembly.loop_newton import polished
-from compoundkin.kinematics.assembly.rotation_equations import Loops
+from compoundkin.base.arrays import Number
+from compoundkin.kinematics.assembly.rotation_equations import RotationEquations, polish
 
+# Two solutions are one where every unknown differs by less than this part of itself: a double solution is known to
+# the square root of rounding, others are known far better.
+SAME = 1e-6
+# A displacement near zero is compared with the size.
+SMALL = 1e-2
 # Every so many poses are solved anew at first, then those halfway between, and so on.
 STRIDE = 16
 # Newton from a neighbour arrives in so many steps or is not worth more of them.
@@ -22,8 +25,38 @@ STEPS = 6
 BLOCK = 1 << 21
 
 
-def solutions(loops: Loops, expected: int, solved: Callable[[Loops], Number]) -> Number:
-    """All solutions (poses, solutions, unknowns), padded with NaN; `solved` finds those of some poses anew."""
+def distinct(x: Number) -> Number:
+    """Keep every solution once, from (poses, found, unknowns); NaN rows are none, and pad the poses that have fewer.
+
+    >>> distinct(np.array([[[1.0], [np.nan], [2.0], [1.0]]])).ravel().tolist()
+    [1.0, 2.0]
+    """
+    there = np.isfinite(x).all(axis=-1)
+    same = np.ones((*x.shape[:2], x.shape[1]), dtype=bool)
+    for k in range(x.shape[-1]):
+        own = x[..., k]
+        size = np.maximum(np.maximum(np.abs(own)[..., :, None], np.abs(own)[..., None, :]), SMALL)
+        with np.errstate(invalid="ignore"):
+            same &= np.abs(own[..., :, None] - own[..., None, :]) <= SAME * size
+    repeated = np.any(np.tril(same, -1) & there[:, None, :], axis=-1)
+    return packed(x, there & ~repeated)
+
+
+def packed(x: Number, kept: Number) -> Number:
+    """Put the kept rows of every pose first, in their order, cut to the most that any pose has."""
+    order = np.argsort(~kept, axis=-1, kind="stable")
+    most = int(kept.sum(axis=-1).max(initial=0))
+    out = np.take_along_axis(np.where(kept[..., None], x, np.nan), order[..., None], axis=1)
+    return out[:, :most]
+
+
+def padded(x: Number, width: int) -> Number:
+    """Lengthen lists of solutions (poses, solutions, unknowns) to `width` by NaN."""
+    return np.pad(x, [(0, 0), (0, width - x.shape[1]), (0, 0)], constant_values=np.nan)
+
+
+def solutions(loops: RotationEquations, expected: int, solved: Callable[[RotationEquations], Number]) -> Number:
+    """Find all solutions (poses, solutions, unknowns), padded with NaN; `solved` finds those of some poses anew."""
     poses = len(loops.constant)
     found = np.full((poses, expected, loops.columns.shape[-3]), np.nan, dtype=complex)
     first = np.unique([*range(0, poses, STRIDE), poses - 1])
@@ -38,12 +71,17 @@ def solutions(loops: Loops, expected: int, solved: Callable[[Loops], Number]) ->
 
 
 def _from_neighbours(
-    loops: Loops, found: Number, here: Number, stride: int, expected: int, solved: Callable[[Loops], Number]
+    loops: RotationEquations,
+    found: Number,
+    here: Number,
+    stride: int,
+    expected: int,
+    solved: Callable[[RotationEquations], Number],
 ) -> Number:
-    """With the solutions at the poses `here` added, from those a stride before and behind."""
+    """Add the solutions at the poses `here`, from those a stride before and behind."""
     behind = np.minimum(here + stride, len(found) - 1)
     starts = np.concatenate([found[here - stride], found[behind]], axis=1)
-    more = distinct(polished(loops.select(here), starts, STEPS))
+    more = distinct(polish(loops.select(here), starts, STEPS))
     lacking = np.flatnonzero(np.isfinite(more).all(axis=-1).sum(axis=-1) != expected)
     found = _put(found, here, more)
     return _put(found, here[lacking], solved(loops.select(here[lacking]))) if len(lacking) else found

@@ -1,4 +1,4 @@
-"""The loop equations of an assembly, linear in unit rotations: the form in which they are solved.
+"""The loop equations of a group, linear in unit rotations: their residual, Jacobian, and Newton's method on them.
 
 In isotropic coordinates a vector z is the pair (z, z*), z* its conjugate where it is real geometry. Every
 loop is an equation f = c + sum_k C_k X_k = 0 with its conjugate f* = c* + sum_k C*_k X*_k = 0. The unknowns X
@@ -7,6 +7,8 @@ s / Theta. Bodies joined by a slide have one rotation up to a known angle.
 
 Source: C. W. Wampler, Solving the kinematics of planar mechanisms by Dixon determinant and a complex-plane
 formulation, J. Mech. Des. 123 (2001) 382, section 2.
+
+Unknowns of many starts at many poses are arrays (poses, starts, unknowns).
 """
 
 from __future__ import annotations
@@ -16,11 +18,24 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import Number
+from compoundkin.base.newton import newton
+
+# Newton doubles its digits with every step: from the four that elimination leaves, rounding is reached in three;
+# the others are for poses near a double solution, where it halves the distance.
+STEPS = 10
+# A start has converged when its last correction, relative to each unknown, is below this.
+CONVERGED = 1e-9
+# The equations hold when their residual is below this part of the sum of their terms' absolute values.
+HOLDS = 1e-11
+# A rotation beyond this, or below its inverse, is a solution at infinity: the other terms are lost to rounding.
+FARTHEST = 1e8
+# Below this an unknown displacement is not compared with itself but with the size (which is 1).
+SMALL = 1e-2
 
 
 @dataclass(frozen=True)
-class Turning:
+class BodyRotations:
     """Which rotation each body has: `rotation[b]` an index or None for a known one, and the bodies' factors.
 
     `factors` (..., n, 2) are the isotropic unit numbers by which a body is turned from its rotation.
@@ -31,7 +46,7 @@ class Turning:
 
 
 @dataclass(frozen=True)
-class Loops:
+class RotationEquations:
     """Loop equations: `constant` (..., l, 2), `columns` (..., unknowns, l, 2), the last axis f and f*.
 
     The first `rotations` unknowns are rotations; unknown `rotations` + i is the displacement of a slide whose
@@ -42,7 +57,7 @@ class Loops:
     constant: Number
     columns: Number
     guides: tuple[int | None, ...]
-    turning: Turning
+    body_rotations: BodyRotations
     origins: Number
 
     @property
@@ -61,38 +76,104 @@ class Loops:
         return np.broadcast_shapes(self.constant.shape[:-2], self.columns.shape[:-3])
 
     @cached_property
-    def flat(self) -> Loops:
-        """With all poses on one axis."""
+    def flat(self) -> RotationEquations:
+        """The same with all poses on one axis."""
         return self.select(np.arange(int(np.prod(self.batch))))
 
-    def select(self, which: Number) -> Loops:
-        """Some of the poses, counted over all axes of the batch."""
+    def select(self, which: Number) -> RotationEquations:
+        """Take some of the poses, counted over all axes of the batch."""
 
         def taken(array: Number, own: int) -> Number:
             wide = np.broadcast_to(array, (*self.batch, *array.shape[-own:])).reshape(-1, *array.shape[-own:])
             return wide[which]
 
-        turning = Turning(self.turning.rotation, taken(self.turning.factors, 2))
-        return Loops(taken(self.constant, 2), taken(self.columns, 3), self.guides, turning, taken(self.origins, 3))
+        body_rotations = BodyRotations(self.body_rotations.rotation, taken(self.body_rotations.factors, 2))
+        return RotationEquations(
+            taken(self.constant, 2), taken(self.columns, 3), self.guides, body_rotations, taken(self.origins, 3)
+        )
 
-    def changed(self, other: Loops, part: float) -> Loops:
-        """The same bodies with dimensions moved by a part of those of another instance of the structure."""
+    def changed(self, other: RotationEquations, part: float) -> RotationEquations:
+        """Move the dimensions by a part of those of another instance of the same graph."""
         return replace(
             self, constant=self.constant + part * other.constant, columns=self.columns + part * other.columns
         )
 
     def bodies(self, x: Number) -> tuple[Number, Number]:
-        """The orientations and origins (poses, solutions, n) of all bodies, from unknowns (poses, solutions, ...)."""
+        """Return orientations and origins (poses, solutions, n) of the bodies from unknowns (poses, solutions, ...)."""
         full = np.concatenate([np.where(np.isfinite(x[..., :1]), 1.0, np.nan), x], axis=-1)
-        rows = [0 if k is None else 1 + k for k in self.turning.rotation]
-        return full[..., rows] * self.turning.factors[:, None, :, 0], full @ np.swapaxes(self.origins[..., 0], -1, -2)
+        rows = [0 if k is None else 1 + k for k in self.body_rotations.rotation]
+        return full[..., rows] * self.body_rotations.factors[:, None, :, 0], full @ np.swapaxes(
+            self.origins[..., 0], -1, -2
+        )
 
 
 def isotropic(z: Number) -> Number:
-    """A complex array with its conjugate on a new last axis.
+    """Return a complex array with its conjugate on a new last axis.
 
     >>> isotropic(1 + 2j)
     array([1.+2.j, 1.-2.j])
     """
     z = np.asarray(z, dtype=complex)
     return np.stack([z, np.conj(z)], axis=-1)
+
+
+def conjugates(loops: RotationEquations, x: Number) -> Number:
+    """Return the conjugate unknowns: 1 / Theta, and S / Theta^2 for a displacement on a guide that turns by Theta."""
+    r = loops.rotations
+    inverse = 1 / x[..., :r]
+    shifts = [x[..., r + i] * (1.0 if g is None else inverse[..., g] ** 2) for i, g in enumerate(loops.guides)]
+    return np.concatenate([inverse, *[s[..., None] for s in shifts]], axis=-1)
+
+
+def residual(loops: RotationEquations, x: Number) -> Number:
+    """Return the residuals (poses, starts, 2 l): f, then f*."""
+    f = loops.constant[:, None, :, 0] + x @ loops.columns[..., 0]
+    g = loops.constant[:, None, :, 1] + conjugates(loops, x) @ loops.columns[..., 1]
+    return np.concatenate([f, g], axis=-1)
+
+
+def terms(loops: RotationEquations, x: Number) -> Number:
+    """Return the sums of the absolute values of the equations' terms, with which a residual is compared."""
+    a, c = np.abs(loops.columns), np.abs(loops.constant)
+    f = c[:, None, :, 0] + np.abs(x) @ a[..., 0]
+    g = c[:, None, :, 1] + np.abs(conjugates(loops, x)) @ a[..., 1]
+    return np.concatenate([f, g], axis=-1)
+
+
+def jacobian(loops: RotationEquations, x: Number) -> Number:
+    """Return the derivatives of the equations by the unknowns, (poses, starts, 2 l, 2 l)."""
+    r = loops.rotations
+    rows = np.swapaxes(loops.columns, -3, -2)
+    f = np.broadcast_to(rows[:, None, ..., 0], (*x.shape[:2], *rows.shape[-3:-1]))
+    inverse = 1 / x[..., :r]
+    own = [-(inverse**2), *[_shift_slope(inverse, g)[..., None] for g in loops.guides]]
+    g = rows[:, None, ..., 1] * np.concatenate(own, axis=-1)[..., None, :]
+    for i, guide in enumerate(loops.guides):
+        if guide is not None:
+            by_rotation = -2 * x[..., r + i] * inverse[..., guide] ** 3
+            g[..., guide] += rows[:, None, :, r + i, 1] * by_rotation[..., None]
+    return np.concatenate([f, g], axis=-2)
+
+
+def _shift_slope(inverse: Number, guide: int | None) -> Number:
+    return np.ones(inverse.shape[:-1], dtype=complex) if guide is None else inverse[..., guide] ** 2
+
+
+def relative(step: Number, x: Number) -> Number:
+    """Return the largest part of any unknown by which a step changes it."""
+    return (np.abs(step) / np.maximum(np.abs(x), SMALL)).max(axis=-1)
+
+
+def polish(loops: RotationEquations, x: Number, steps: int = STEPS) -> Number:
+    """Find the solutions that starts lead to by Newton's method, NaN for starts that lead to none."""
+    with np.errstate(all="ignore"):
+        found = newton(lambda x: (residual(loops, x), jacobian(loops, x)), x, CONVERGED, steps, relative)
+        good = (found.last <= CONVERGED) & holds(loops, found.x)
+    return np.where(good[..., None], found.x, np.nan)
+
+
+def holds(loops: RotationEquations, x: Number) -> Number:
+    """Tell where the loop equations hold, (poses, starts), at rotations that are finite and not zero."""
+    size = np.abs(x[..., : loops.rotations])
+    finite = np.all((size < FARTHEST) & (size > 1 / FARTHEST), axis=-1)
+    return finite & np.all(np.abs(residual(loops, x)) <= HOLDS * terms(loops, x), axis=-1)

@@ -7,7 +7,7 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from compoundkin.kinematics.assembly import Assembly, Connection, all_configurations, exact_count
+from compoundkin.kinematics.assembly import Connection, GroupGeometry, all_configurations, exact_count
 from compoundkin.kinematics.assembly.mode_count import laman_number
 from tests.kinematics.assembly.trusses import baranov_trusses, random_truss
 from tests.support import reference
@@ -20,7 +20,7 @@ def triangulated(links: list[list[int]]) -> tuple[list[tuple[int, int]], int]:
     return edges, 2 ** sum(len(joints) - 2 for joints in links)
 
 
-def merged(graph: nx.Graph, link: int, one: int, other: int) -> tuple[Assembly, list[list[int]]]:
+def merged(graph: nx.Graph, link: int, one: int, other: int) -> tuple[GroupGeometry, list[list[int]]]:
     """A truss in which two pins of a link are one, a multiple pin; and the joints of every link."""
     rng = np.random.default_rng(0)
     joints = {edge: k for k, edge in enumerate(sorted(tuple(sorted(e)) for e in graph.edges))}
@@ -30,7 +30,7 @@ def merged(graph: nx.Graph, link: int, one: int, other: int) -> tuple[Assembly, 
     held = next(v for v in graph if v not in (link, one, other) and len(links[v]) > 2)
     index = {v: k for k, v in enumerate(v for v in graph if v != held)}
     connections = [Connection((index.get(a), index.get(b)), (at[k], at[k])) for (a, b), k in joints.items()]
-    return Assembly(len(index), tuple(connections), 1.0), links
+    return GroupGeometry(len(index), tuple(connections), 1.0), links
 
 
 @pytest.mark.parametrize("links", [5, 7])
@@ -38,19 +38,19 @@ def test_multiple_pins(links):
     graph = baranov_trusses(links)[0]
     link = max(graph, key=graph.degree)
     one, other = sorted(graph[link])[:2]
-    assembly, joints = merged(graph, link, one, other)
+    geometry, joints = merged(graph, link, one, other)
     edges, folds = triangulated(joints)
     number = laman_number(edges)
     assert number > 0
-    assert exact_count(assembly.structure()) == number // folds
-    assert all_configurations(assembly).count == number // folds
+    assert exact_count(geometry.graph()) == number // folds
+    assert all_configurations(geometry).count == number // folds
 
 
 def test_a_truss_by_its_triangulated_graph():
     [graph] = baranov_trusses(5)
     numbers = {tuple(sorted(edge)): k for k, edge in enumerate(graph.edges)}
     edges, folds = triangulated([[k for edge, k in numbers.items() if v in edge] for v in graph])
-    assert laman_number(edges) == folds * exact_count(random_truss(graph, np.random.default_rng(0)).structure())
+    assert laman_number(edges) == folds * exact_count(random_truss(graph, np.random.default_rng(0)).graph())
 
 
 def test_graphs_that_are_not_rigid_have_none():

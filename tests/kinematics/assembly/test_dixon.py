@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compoundkin.kinematics.assembly.dixon import pencil, sets
-from compoundkin.kinematics.assembly.loop_closure import random_loops
+from compoundkin.kinematics.assembly.loop_closure import random_equations
 from tests.kinematics.assembly.cases import dyad
 from tests.kinematics.assembly.trusses import baranov_trusses, random_truss
 
@@ -12,7 +12,7 @@ from tests.kinematics.assembly.trusses import baranov_trusses, random_truss
 def loops_of_truss(links):
     rng = np.random.default_rng(links)
     drawn = dyad("RRR", rng) if links == 3 else random_truss(baranov_trusses(links)[0], rng)
-    return random_loops(drawn.structure(), rng)
+    return random_equations(drawn.graph(), rng)
 
 
 def determinant(loops, x, theta, alpha):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from compoundkin.kinematics.assembly import all_configurations, exact_count
-from compoundkin.kinematics.assembly.group_geometry import Structure
+from compoundkin.kinematics.assembly.group_geometry import GroupGraph
 from compoundkin.kinematics.assembly.mode_count import laman_number
 from tests.kinematics.assembly.cases import as_drawn, seven_bar, three_legs, triad
 from tests.kinematics.assembly.trusses import from_graph6, random_truss
@@ -61,7 +61,7 @@ def test_numbers_of_trusses(graph6):
     graph = from_graph6(graph6)
     for held in graph:
         truss = random_truss(graph, np.random.default_rng(held), held)
-        assert exact_count(truss.structure()) == modes
+        assert exact_count(truss.graph()) == modes
 
 
 def test_numbers_of_triads_with_slides():
@@ -87,4 +87,4 @@ def test_numbers_of_small_graphs():
 
 
 def test_a_structure_with_slides_has_no_exact_number():
-    assert exact_count(Structure(2, ((None, 0), (0, 1), (None, 1)), (False, True, False), ((0, 0),) * 3)) is None
+    assert exact_count(GroupGraph(2, ((None, 0), (0, 1), (None, 1)), (False, True, False), ((0, 0),) * 3)) is None

@@ -8,7 +8,7 @@ from itertools import combinations, combinations_with_replacement, product
 import networkx as nx
 import numpy as np
 
-from compoundkin.kinematics.assembly import Assembly, Connection
+from compoundkin.kinematics.assembly import Connection, GroupGeometry
 
 
 def baranov_trusses(links: int) -> list[nx.Graph]:
@@ -83,15 +83,15 @@ def _is_truss(graph: nx.Graph) -> bool:
     )
 
 
-def truss_assembly(joints: dict[tuple[int, int], complex], held: int) -> Assembly:
+def truss_assembly(joints: dict[tuple[int, int], complex], held: int) -> GroupGeometry:
     """A truss as drawn: the world is the frame of every link, `held` is the known one."""
     links = sorted({link for joint in joints for link in joint} - {held})
     index = {link: k for k, link in enumerate(links)}
     connections = [Connection((index.get(a), index.get(b)), (p, p)) for (a, b), p in joints.items()]
-    return Assembly(len(links), tuple(connections), 4.0)
+    return GroupGeometry(len(links), tuple(connections), 4.0)
 
 
-def random_truss(graph: nx.Graph, rng: np.random.Generator, held: int | None = None) -> Assembly:
+def random_truss(graph: nx.Graph, rng: np.random.Generator, held: int | None = None) -> GroupGeometry:
     """A truss with random pins, drawn in one of its configurations."""
     held = max(graph, key=graph.degree) if held is None else held
     return truss_assembly({(a, b): complex(*rng.uniform(-4, 4, 2)) for a, b in sorted(graph.edges)}, held)
