@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -21,6 +22,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
 from tests.figures import FIGURES, FOLDER
+from tests.view.test_notebooks import NOTEBOOKS, assert_it_ran
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -85,18 +87,25 @@ class Site:
 
 
 def build(folder: Path) -> Site:
-    """Build it, from a copy, so that nothing is written beside the sources."""
+    """Build it, from a copy, so that nothing is written beside the sources; notebooks with results are kept."""
     ignored = shutil.ignore_patterns("gallery", "__pycache__", ".ipynb_checkpoints")
     shutil.copytree(DOCS, folder / "docs", ignore=ignored)
     shutil.copytree(ROOT / "catalog", folder / "catalog")
-    words = ("-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", "-d", "doctrees", "docs", "site")
-    ran = subprocess.run([sys.executable, *words], cwd=folder, capture_output=True, text=True)
+    words = ("-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", "-d", "doctrees")
+    keeping = ("-D", "nb_execution_mode=cache", "-D", f"nb_execution_cache_path={folder / 'ran'}")
+    # nobody's settings of Jupyter or IPython are read or changed
+    names = ("JUPYTER_DATA_DIR", "JUPYTER_CONFIG_DIR", "JUPYTER_RUNTIME_DIR", "IPYTHONDIR")
+    own = {**os.environ, **{name: str(folder / name.lower()) for name in names}}
+    command = [sys.executable, *words, *keeping, "docs", "site"]
+    ran = subprocess.run(command, cwd=folder, env=own, capture_output=True, text=True)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     return Site(folder / "site")
 
 
 def test_the_site(tmp_path: Path) -> None:
     """One build, and all that is asked of it: building twice would cost a minute more."""
+    # lists the fonts, which the first notebook that draws would tell otherwise
+    import_module("matplotlib.font_manager")
     site = build(tmp_path)
     every_page_is_there(site)
     every_public_name_is_described(site)
@@ -104,6 +113,16 @@ def test_the_site(tmp_path: Path) -> None:
     nothing_is_fetched_from_elsewhere(site)
     every_link_leads_somewhere(site)
     it_can_be_searched(site)
+    every_notebook_ran(tmp_path)
+
+
+def every_notebook_ran(folder: Path) -> None:
+    ran = sorted((folder / "ran").rglob("*.ipynb"))
+    assert len(ran) == len(NOTEBOOKS)
+    for path in ran:
+        assert_it_ran(path)
+    left = {path.name for path in (folder / "docs" / "notebooks").iterdir()}
+    assert left == {path.name for path in NOTEBOOKS}
 
 
 def every_page_is_there(site: Site) -> None:

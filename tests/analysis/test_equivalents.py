@@ -8,6 +8,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.analysis.equivalents import equivalent_linkage, replaced
 from compoundkin.model.pairs import Pair
+from tests import catalog
 
 # the geared five-bars do not close all round
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.UnassembledPoses")
@@ -127,9 +128,8 @@ def test_a_pose_that_is_not_assembled_is_refused() -> None:
 
 
 def test_without_higher_pairs_nothing_is_replaced() -> None:
-    from compoundkin.files.shipped_mechanisms import load_named
 
-    motion = ck.solve(load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     assert replaced(motion)[1] == ()
     linkage = ck.solve(equivalent_linkage(motion, 5))
     assert abs(complex(linkage.points["G"].velocity) - complex(motion.points["G"].velocity[5])) < 1e-11

@@ -14,6 +14,7 @@ from click.testing import CliRunner, Result
 import compoundkin as ck
 from compoundkin.cli import cli, progress
 from compoundkin.files.shipped_mechanisms import load_named
+from tests import catalog
 
 PAGE = (Path(__file__).parents[2] / "docs" / "animation.md").read_text("utf-8")
 
@@ -28,7 +29,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
 
 def test_stdout_has_what_python_makes(run: Run) -> None:
     found = run("six-bar", "--path", "G", "--vectors", "velocity", "--seconds", "3")
-    motion = ck.solve(load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     assert (found.exit_code, found.stderr) == (0, "")
     assert found.stdout == motion.animate(paths="G", vectors="velocity", seconds=3).svg
 
@@ -115,4 +116,4 @@ def test_the_python_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_a_short_range_of_its_own_is_shown_finely(run: Run) -> None:
     assert run("five-bar").stdout == ck.animate(load_named("five-bar")).svg
     coarse = run("five-bar", "--drive", "left=60:120:3", "--drive", "right=75:105:1.5")
-    assert coarse.stdout == ck.solve(load_named("five-bar")).animate().svg
+    assert coarse.stdout == catalog.motion("five-bar").animate().svg

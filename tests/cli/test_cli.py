@@ -16,6 +16,7 @@ from compoundkin.base.errors import Problem
 from compoundkin.cli import VERBS, cli, shell
 from compoundkin.files import load, shipped_mechanisms
 from compoundkin.files.shipped_mechanisms import path
+from tests import catalog
 
 FOUR_BAR = """
 format = 1
@@ -202,7 +203,7 @@ def test_report_of_a_design(run: Run, tmp_path: Path) -> None:
 def test_solve_prints_the_motion_as_csv(run: Run) -> None:
     result = run("solve", "six-bar")
     found = rows(result.stdout)
-    motion = ck.solve(shipped_mechanisms.load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     assert (result.exit_code, result.stderr, len(found)) == (0, "", 73)
     np.testing.assert_allclose(numbers(found, "bar.angle [deg]"), np.rad2deg(motion.links["bar"].angle), rtol=1e-15)
     np.testing.assert_array_equal(numbers(found, "G.velocity.x [mm/s]"), motion.points["G"].velocity.real)
@@ -287,7 +288,7 @@ def test_tables_in_every_format_say_the_same(run: Run, tmp_path: Path) -> None:
         result = run("solve", "six-bar", "--output", "G.velocity,bar", "-o", f"out.{suffix}")
         assert (result.exit_code, result.stdout) == (0, "")
         assert result.stderr == f"Wrote 73 rows of 5 columns to out.{suffix}.\n"
-    motion = ck.solve(shipped_mechanisms.load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     angle = motion.links["bar"].angle
     shown = rows((tmp_path / "out.csv").read_text())
     np.testing.assert_allclose(np.deg2rad(numbers(shown, "bar [deg]")), angle, rtol=1e-15)

@@ -7,6 +7,8 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -56,13 +58,24 @@ def test_long_output_arrives_whole(unbuffered: str) -> None:
     assert len(done.stdout.splitlines()) == 1802
 
 
+@contextmanager
+def interrupts_heard() -> Iterator[None]:
+    """Processes started now hear Ctrl-C, also where the tests run in the background of a shell that ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.skipif(os.name != "posix", reason="no signals")
 def test_ctrl_c_is_no_traceback() -> None:
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    job = subprocess.Popen(
-        [*COMMAND, "solve", "six-bar", "--step", "0.001", "--order", "3"],
-        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment,
-    )  # fmt: skip
+    with interrupts_heard():
+        job = subprocess.Popen(
+            [*COMMAND, "solve", "six-bar", "--step", "0.001", "--order", "3"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment,
+        )  # fmt: skip
     # long after the start, long before the end
     time.sleep(4.0)
     job.send_signal(signal.SIGINT)

@@ -7,14 +7,15 @@ from itertools import combinations
 import networkx as nx
 import pytest
 
-from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.files.shipped_mechanisms import names
 from compoundkin.structure import decompose, independent_loops, loop_count, simple_loops
 from compoundkin.synthesis.composer import random_mechanism
+from tests import catalog
 
 
 @pytest.mark.parametrize("name", names())
 def test_euler(name):
-    structure = decompose(load_named(name))
+    structure = catalog.structure(name)
     pieces = nx.number_connected_components(nx.Graph(structure.graph))
     links, pairs = len(structure.mechanism.links), len(structure.pairs)
     assert loop_count(structure) == len(independent_loops(structure)) == pairs - links + pieces
@@ -44,7 +45,7 @@ def by_sums(structure) -> set[frozenset[str]]:
 
 @pytest.mark.parametrize("name", ["six-bar", "watt-ii", "peaucellier", "geared-five-bar", "3-rrr", "toggle-press"])
 def test_simple_loops_are_the_closed_sums_of_independent_ones(name):
-    structure = decompose(load_named(name))
+    structure = catalog.structure(name)
     found = list(simple_loops(structure))
     assert {frozenset(pair.name for pair in loop.pairs) for loop in found} == by_sums(structure)
     assert len(found) == len({str(loop) for loop in found})

@@ -14,6 +14,7 @@ from compoundkin.synthesis.alternatives import alternatives, group_count
 from compoundkin.synthesis.chains import chains, mechanism_from, structure_name
 from compoundkin.synthesis.inversion import with_driver, with_frame
 from compoundkin.view.report.alternatives_section import alternatives_section
+from tests import catalog
 
 
 def test_a_four_bar_has_one_frame_and_two_places_for_a_driver():
@@ -47,14 +48,14 @@ def test_every_choice_is_the_inverted_mechanism_taken_apart(name):
 
 def test_what_makes_a_stephenson_chain_dyadic_is_said():
     # driven at its dyad's link a Stephenson III needs a class III group, driven in its four-bar loop it does not
-    section = alternatives_section(ck.decompose(load_named("stephenson-iii-driven-at-dyad")))
+    section = alternatives_section(catalog.structure("stephenson-iii-driven-at-dyad"))
     assert any("Drive AB on frame (A)" in getattr(block, "text", "") for block in section.blocks)
-    section = alternatives_section(ck.decompose(load_named("stephenson-iii")))
+    section = alternatives_section(catalog.structure("stephenson-iii"))
     assert any(getattr(block, "text", "") == "The mechanism is dyadic as it is." for block in section.blocks)
 
 
 def test_configurations_of_a_triad_are_six_as_by_its_laman_graph():
-    (group,) = ck.decompose(load_named("class-iii-six-bar")).groups
+    (group,) = catalog.structure("class-iii-six-bar").groups
     # base and platform triangles joined by three bars (the Desargues framework): 24 realizations, up to a reflection
     # of each of the two triangles, which are links here
     prism = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)]

@@ -17,6 +17,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.files import shipped_mechanisms
 from compoundkin.model.elements import FRAME
+from tests import catalog
 
 EXACT = 1e-9
 each = pytest.mark.parametrize("name", shipped_mechanisms.names())
@@ -27,7 +28,7 @@ CHANGE_POINTS = {"parallelogram", "parallelogram-third-crank", "antiparallelogra
 @cache
 def centres_of(name: str) -> Centres:
     with warnings.catch_warnings(action="ignore", category=ck.UnassembledPoses):
-        return instant_centres(ck.solve(shipped_mechanisms.load_named(name)))
+        return instant_centres(catalog.motion(name))
 
 
 @each

@@ -12,6 +12,7 @@ import compoundkin as ck
 from compoundkin.analysis.centres import Status, instant_centres
 from compoundkin.analysis.centres.twists import disagreement, loop_twists, solved_twists
 from compoundkin.files import shipped_mechanisms
+from tests import catalog
 from tests.analysis.centres.chains import chains, mechanism
 
 EXACT = 1e-9
@@ -94,7 +95,7 @@ def test_rates_are_inversely_as_the_distances_of_the_centres() -> None:
 
 
 def test_pin_and_infinity() -> None:
-    motion = ck.solve(shipped_mechanisms.load_named("scotch-yoke"))
+    motion = catalog.motion("scotch-yoke")
     centres = instant_centres(motion)
     slides = [centres[c] for c in centres if centres[c].how.startswith("prismatic pair")]
     assert len(slides) == 2

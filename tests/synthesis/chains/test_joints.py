@@ -7,19 +7,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compoundkin.files.shipped_mechanisms import load_named, names
-from compoundkin.structure import decompose
+from compoundkin.files.shipped_mechanisms import names
 from compoundkin.synthesis.chains import Joint, Joints
 from compoundkin.synthesis.chains.joints import trees
+from tests import catalog
 
 
 def joints_of(name: str) -> Joints:
-    return Joints.of(decompose(load_named(name)).graph)
+    return Joints.of(catalog.structure(name).graph)
 
 
 @pytest.mark.parametrize("name", names())
 def test_the_count_of_freedoms_is_that_of_the_structure(name):
-    structure = decompose(load_named(name))
+    structure = catalog.structure(name)
     joints = Joints.of(structure.graph)
     assert joints.mobility == structure.mobility.freedoms + structure.mobility.passive
     assert dict(zip(joints.links, joints.degrees, strict=True)) == dict(structure.graph.nodes(data="pairs"))

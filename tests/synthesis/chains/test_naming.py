@@ -24,6 +24,7 @@ from compoundkin.synthesis.chains import (
     trusses,
 )
 from compoundkin.synthesis.chains.slide_names import loop_letters, slider_name
+from tests import catalog
 
 TITLES = {
     "watt-i": "Watt I",
@@ -257,7 +258,7 @@ def test_equivalent_links_and_pairs_of_watts_chain():
 
 def test_an_unknown_frame_is_refused():
     with pytest.raises(UnknownName, match="did you mean 'frame'"):
-        name_of(decompose(load_named("watt-i")).graph, "frme")
+        name_of(catalog.structure("watt-i").graph, "frme")
 
 
 def test_a_mechanism_of_very_many_links_is_named_without_comparing_them():

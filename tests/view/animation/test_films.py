@@ -19,6 +19,7 @@ from compoundkin.view.animation.film_palette import APART, indices, nearest_tabl
 from compoundkin.view.animation.pixels import pixel_size, pixels
 from compoundkin.view.sketch.shapes import Circle, Text, leaves
 from compoundkin.view.sketch.sketch_style import NUMBER
+from tests import catalog
 
 pytest.importorskip("cairosvg")
 Image = pytest.importorskip("PIL.Image")
@@ -51,7 +52,7 @@ def gif_of(path: Path) -> tuple[list[np.ndarray], list[int], int]:
 
 @pytest.mark.parametrize("name", ["six-bar", "jansen-leg", "geneva-wheel", "hydraulic-digger"])
 def test_in_every_frame_pins_are_where_the_points_are(name: str) -> None:
-    motion = ck.solve(load_named(name))
+    motion = catalog.motion(name)
     animation = motion.animate(paths=True, vectors="velocity", seconds=1)
     poses = animation.sketch.scene.known[animation.course.poses[animation.course.frames]]
     for k, pose in enumerate(poses):

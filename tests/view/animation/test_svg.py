@@ -18,6 +18,7 @@ from compoundkin.view.animation.timeline import Course
 from compoundkin.view.sketch.shapes import Arc, Circle, Polygon, Polyline, Shape, Strokes
 from compoundkin.view.sketch.shapes import leaves as shapes_in
 from compoundkin.view.sketch.sketch_centres import TOGETHER
+from tests import catalog
 
 # What moves is where it should be within this, picture units; its shapes are rounded to tenths as in all pictures.
 NEAR, ROUNDED = 0.2, 0.08
@@ -121,7 +122,7 @@ CASES = {
     "there and back": lambda: solved("six-bar", ck.deg(np.arange(20.0, 200.0, 3.0))),
     "gaps": lambda: solved("double-rocker", ck.deg(np.arange(0.0, 361.0))),
     "across the seam": lambda: solved("triple-rocker", ck.deg(np.arange(0.0, 361.0, 2.0))),
-    "planets": lambda: ck.solve(load_named("planetary-train")),
+    "planets": lambda: catalog.motion("planetary-train"),
     "far apart": lambda: solved("six-bar", ck.deg(np.arange(0.0, 361.0, 40.0))),
 }
 
@@ -249,7 +250,7 @@ def test_a_long_motion_makes_no_larger_file_than_a_short_one() -> None:
 
 @pytest.mark.parametrize("name", shipped_mechanisms.names())
 def test_every_mechanism_moves(name: str) -> None:
-    animation = ck.animate(load_named(name))
+    animation = ck.animate(catalog.motion(name))
     root = ET.fromstring(animation.svg)
     assert root.iter(f"{SVG}animateTransform")
     assert len(animation.svg) < 400_000

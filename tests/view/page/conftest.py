@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 import compoundkin as ck
-from compoundkin.files import shipped_mechanisms
 from compoundkin.view.report import page
+from tests import catalog
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 # No sandbox where tests run as root in a container; nothing that reaches for the network of its own accord.
@@ -61,7 +61,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     def of(name: str) -> Path:
         if name not in known:
             known[name] = folder / f"{name}.html"
-            page(ck.solve(shipped_mechanisms.load_named(name))).save(known[name])
+            page(catalog.motion(name)).save(known[name])
         return known[name]
 
     return of

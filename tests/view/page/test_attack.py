@@ -9,6 +9,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.report import page
+from tests import catalog
 
 PLAYER = "compoundkin.players[0]"
 # How far names reach out of the sketch at some poses, in pixels; two pixels of a letter's box are empty.
@@ -95,7 +96,7 @@ def test_one_pose_has_no_plots(opened: Any, tmp_path: Path) -> None:
 
 
 def test_vectors_stay_in_the_sketch_at_all_poses(opened: Any, tmp_path: Path) -> None:
-    motion = ck.solve(load_named("crank-rocker"))
+    motion = catalog.motion("crank-rocker")
     page(motion).save(tmp_path / "vectors.html")
     view = opened(tmp_path / "vectors.html")
     whole = view.get_attribute(".sketch", "viewBox")

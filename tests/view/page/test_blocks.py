@@ -25,6 +25,7 @@ from compoundkin.view.report import Report, page, report
 from compoundkin.view.report.atlas_section import atlas_report
 from compoundkin.view.report.digits import written
 from compoundkin.view.report.report_data import Column, Outcome, Section, Table
+from tests import catalog
 
 from .conftest import HOSTILE
 
@@ -94,7 +95,7 @@ class Reader(HTMLParser):
 
 @pytest.fixture(scope="module")
 def six_bar() -> tuple[Report, str]:
-    motion = ck.solve(shipped_mechanisms.load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     return report(motion), page(motion).html
 
 
@@ -106,7 +107,7 @@ def made_of(name: str) -> tuple[Report, str]:
     if name == "random":
         structure = random_structure()
         return report(structure), page(structure).html
-    motion = ck.solve(shipped_mechanisms.load_named(name))
+    motion = catalog.motion(name)
     return report(motion), page(motion).html
 
 
@@ -224,7 +225,7 @@ def test_rounding_below_the_floor_of_a_column_is_zero_in_copies_too() -> None:
 
 
 def test_names_tell_the_links_they_are_about() -> None:
-    names = names_of(ck.decompose(shipped_mechanisms.load_named("six-bar")))
+    names = names_of(catalog.structure("six-bar"))
     assert names.about("bar") == ("bar",)
     assert names.about("slot") == names.about("slot.value") == ("block", "bar") or names.about("slot") == (
         "bar",
@@ -240,7 +241,7 @@ def test_names_tell_the_links_they_are_about() -> None:
 
 def test_nothing_a_user_writes_is_taken_for_markup(hostile: ck.Mechanism) -> None:
     html = page(ck.solve(hostile)).html
-    reader, plain = Reader(html), Reader(page(ck.solve(shipped_mechanisms.load_named("crank-rocker"))).html)
+    reader, plain = Reader(html), Reader(page(catalog.motion("crank-rocker")).html)
     assert reader.scripts == plain.scripts
     assert "<script>hacked" not in html
     assert "<img" not in html

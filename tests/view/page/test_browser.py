@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 import compoundkin as ck
-from compoundkin.files import shipped_mechanisms
 from compoundkin.view.report import page
 from compoundkin.view.report.atlas_section import atlas_report
+from tests import catalog
 
 from .conftest import DESK, PHONE
 
@@ -135,7 +135,7 @@ def test_a_table_is_copied_with_every_digit(made: Made, opened: Open, script: st
     rows = [line.split("\t") for line in text.splitlines()]
     assert rows[0][:3] == ["crank [deg]", "G.position.x [mm]", "G.position.y [mm]"]
     assert len(rows) == 26
-    motion = ck.solve(shipped_mechanisms.load_named(SIX_BAR))
+    motion = catalog.motion(SIX_BAR)
     places = motion.points["G"].position
     for row in rows[1:]:
         pose = round(float(row[0]) / 5.0)

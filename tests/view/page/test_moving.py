@@ -15,6 +15,7 @@ from compoundkin.view.page.packed_numbers import brief, exact
 from compoundkin.view.page.player import framed, player
 from compoundkin.view.page.viewer import viewer, viewer_of
 from compoundkin.view.report.shown_poses import Sample
+from tests import catalog
 
 
 def unpacked(packed: Any, count: int) -> np.ndarray:
@@ -162,7 +163,7 @@ def test_a_frame_is_small_and_asks_for_nothing() -> None:
 def test_the_whole_catalog_can_be_viewed() -> None:
     for name in names():
         try:
-            motion = ck.solve(load_named(name))
+            motion = catalog.motion(name)
         except CompoundkinError:
             continue
         made = viewer_of(motion)

@@ -11,6 +11,7 @@ import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.page import player
 from compoundkin.view.report import page
+from tests import catalog
 
 PLAYER = "compoundkin.players[0]"
 
@@ -33,7 +34,7 @@ def until(view: Any, script: str) -> None:
 
 @pytest.mark.parametrize("name", ["six-bar", "jansen-leg", "planetary-train", "class-iii-six-bar"])
 def test_the_slider_takes_every_point_where_the_solver_has_it(name: str, made: Any, opened: Any) -> None:
-    motion = ck.solve(load_named(name))
+    motion = catalog.motion(name)
     view = opened(made(name))
     letters = view.value(f"Object.keys({PLAYER}.points)")
     assert letters
@@ -115,7 +116,7 @@ def test_a_motion_that_does_not_close_goes_there_and_back(opened: Any, tmp_path:
 
 
 def test_velocities_and_accelerations_are_those_of_the_solver(made: Any, opened: Any) -> None:
-    motion = ck.solve(load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     view = opened(made("six-bar"))
     set_slider(view, 17)
     for order, kind in ((1, "velocity"), (2, "acceleration")):
@@ -146,7 +147,7 @@ def test_switches_show_and_hide(made: Any, opened: Any) -> None:
 
 
 def test_centres_are_drawn_where_they_are(made: Any, opened: Any) -> None:
-    motion = ck.solve(load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     view = opened(made("six-bar"))
     set_slider(view, 7)
     view.check("[data-show=centres]")
@@ -162,7 +163,7 @@ def test_centres_are_drawn_where_they_are(made: Any, opened: Any) -> None:
 
 
 def test_the_path_of_a_point_is_its_coupler_curve(made: Any, opened: Any) -> None:
-    motion = ck.solve(load_named("jansen-leg"))
+    motion = catalog.motion("jansen-leg")
     view = opened(made("jansen-leg"))
     view.value("() => document.querySelector('.switches details').open = true")
     view.check("[data-show='path foot']")
@@ -196,7 +197,7 @@ def test_plots_have_a_cursor_that_follows_and_leads(made: Any, opened: Any) -> N
 
 
 def test_plots_show_the_outputs(made: Any, opened: Any) -> None:
-    motion = ck.solve(load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     view = opened(made("six-bar"))
     data = view.value("compoundkin.plots.panels.map((panel) => panel.plot.data)")
     velocity = np.asarray(motion.points["G"].velocity)
@@ -207,7 +208,7 @@ def test_plots_show_the_outputs(made: Any, opened: Any) -> None:
 
 
 def test_any_other_quantity_can_be_plotted(made: Any, opened: Any) -> None:
-    motion = ck.solve(load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     view = opened(made("six-bar"))
     before = view.locator(".plot").count()
     view.select_option(".quantity", "rocker.angular_acceleration")
@@ -274,7 +275,7 @@ def test_a_driver_that_goes_back_and_forth_is_plotted_over_poses(opened: Callabl
 
 
 def test_the_player_of_a_notebook_plays(opened: Callable[..., Any], tmp_path: Path) -> None:
-    motion = ck.solve(load_named("six-bar"))
+    motion = catalog.motion("six-bar")
     (tmp_path / "alone.html").write_text(player(motion), encoding="utf-8")
     view = opened(tmp_path / "alone.html")
     set_slider(view, 30)

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.files.shipped_mechanisms import load_named
+from tests import catalog
 from tests.view.report.support import four_bar
 
 
 @pytest.fixture(scope="session")
 def six_bar() -> ck.Motion:
-    return ck.solve(load_named("six-bar"))
+    return catalog.motion("six-bar")
 
 
 @pytest.fixture(scope="session")

@@ -12,13 +12,14 @@ from compoundkin.view.sketch.moving_sketch import moving_sketch
 from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.shapes import Circle, Polyline, Shape, corners, leaves
 from compoundkin.view.sketch.sketch_layers import layered
+from tests import catalog
 
 SOLVABLE = ("six-bar", "jansen-leg", "planetary-train", "geneva-wheel", "disc-cam-roller-program",
             "rack-and-pinion-steering", "class-iii-six-bar", "elliptic-trammel")  # fmt: skip
 
 
 def solved(name: str) -> ck.Motion:
-    return ck.solve(load_named(name))
+    return catalog.motion(name)
 
 
 @pytest.mark.parametrize("name", SOLVABLE)

@@ -18,6 +18,7 @@ from compoundkin.view.sketch.loops_picture import MOST, polygon
 from compoundkin.view.sketch.shapes import Circle, Group, Polyline, Text, leaves
 from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import style_of
+from tests import catalog
 
 NAMES = ["six-bar", "stephenson-iii", "class-iii-six-bar", "jansen-leg", "planetary-train", "crank-shaper"]
 
@@ -84,7 +85,7 @@ def test_the_arrows_run_around_in_the_colour_of_the_loop() -> None:
     for k, panel in enumerate(panels(picture), start=1):
         own = [s for s in panel.shapes if isinstance(s, Polyline) and s.style == style_of("bar", k)]
         pins = [s.centre for s in panel.shapes if isinstance(s, Circle)]
-        assert len(own) == len(pins) == len(decompose(shipped_mechanisms.load_named("stephenson-iii")).loops[k - 1])
+        assert len(own) == len(pins) == len(catalog.structure("stephenson-iii").loops[k - 1])
         for arrow, start, stop in zip(own, pins, [*pins[1:], pins[0]], strict=True):
             way = (stop - start) / abs(stop - start)
             assert np.angle((arrow.points[1] - arrow.points[0]) / way) == pytest.approx(0.0, abs=1e-9)

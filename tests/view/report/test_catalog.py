@@ -1,0 +1,49 @@
+"""What holds for the report of every shipped mechanism; all asked of a report at once, for it takes long to make."""
+
+from __future__ import annotations
+
+import pytest
+
+from compoundkin.synthesis.chains import structure_name
+from compoundkin.view.report import Report
+from compoundkin.view.report.report_data import Step
+from tests import catalog
+from tests.view.report.support import assert_fits, assert_well_formed, parsed
+
+
+@pytest.mark.parametrize("name", catalog.NAMES)
+def test_the_report_of_a_motion(name: str) -> None:
+    made = catalog.report_of(name)
+    assert made.outcome.passed
+    assert made.outcome.assembled == made.outcome.poses
+    assert made.outcome.checks > 0
+    assert_is_rendered(made)
+    if name in catalog.NAMES[::4]:
+        assert max(len(line) for line in made.text(100).splitlines()) <= 100
+
+
+@pytest.mark.parametrize("name", catalog.NAMES)
+def test_the_report_of_a_structure(name: str) -> None:
+    made = catalog.structure_report(name)
+    assert_is_rendered(made)
+    if name in catalog.NAMES[3::4]:
+        assert max(len(line) for line in made.text(100).splitlines()) <= 100
+    assert sorted(points_yielded(made)) == sorted(catalog.mechanism(name).carriers)
+    step = made.section("chain").blocks[0]  # type: ignore[union-attr]
+    assert step.title == structure_name(catalog.structure(name)).title
+    assert all(drive.link in dict(step.facts)["driven at"] for drive in catalog.mechanism(name).drives)
+
+
+def assert_is_rendered(made: Report) -> None:
+    """As text, as Markdown and as JSON."""
+    assert_fits(made)
+    assert_well_formed(made)
+    assert list(parsed(made)["sections"]) == [section.key for section in made.sections]
+
+
+def points_yielded(made: Report) -> list[str]:
+    """The points that its groups yield, one after another."""
+    section = made.section("groups")
+    assert section is not None
+    facts = [dict(block.facts)["yields"] for block in section.blocks if isinstance(block, Step)]
+    return [p for fact in facts if ";" in fact for p in fact.partition("; ")[2].split(" ", 1)[1].split(", ")]
