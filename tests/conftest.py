@@ -1,4 +1,4 @@
-"""Settings of the whole test run: the same examples every time, and `tests.support` importable."""
+"""Settings of the whole test run: the same examples every time, slow files first, and `tests.support` importable."""
 
 from __future__ import annotations
 
@@ -6,11 +6,62 @@ import os
 import sys
 from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
+TESTS = Path(__file__).parent
 # Several workers share the machine and matrices are small: one thread each, said before NumPy is imported.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-sys.path.insert(0, str(Path(__file__).parents[1]))
+# Many tests start processes, and each would compile the package anew where nothing compiled is kept.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
+sys.path.insert(0, str(TESTS.parent))
 
 settings.register_profile("compoundkin", derandomize=True, deadline=None, max_examples=25, database=None)
 settings.load_profile("compoundkin")
+
+# Files that take longest, in seconds on one core: each worker begins with some of them, so that none is left over
+# for the end, and what is made once for a whole file is made once. A file that is not listed takes a few seconds.
+SLOW = {
+    "view/page/test_browser.py": 30,
+    "test_site.py": 30,
+    "view/report/test_catalog.py": 20,
+    "test_style.py": 18,
+    "view/page/test_viewer.py": 12,
+    "view/page/test_attack.py": 12,
+    "configurations/test_random.py": 10,
+    "view/animation/test_svg.py": 10,
+    "kinematics/groups/test_contract.py": 9,
+    "view/report/test_report.py": 9,
+    "cli/test_process.py": 9,
+    "analysis/test_curvature.py": 8,
+    "model/test_profiles.py": 8,
+    "test_adding_page.py": 6,
+    "view/page/test_moving.py": 6,
+}
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Deal slow files out to the workers; xdist gives each an equal part of the list, and the rest can be stolen."""
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    files: dict[str, list[pytest.Item]] = {name: [] for name in SLOW}
+    rest = []
+    for item in items:
+        name = item.path.relative_to(TESTS).as_posix() if item.path.is_relative_to(TESTS) else ""
+        files.get(name, rest).append(item)
+    parts: list[list[pytest.Item]] = [[] for _ in range(workers)]
+    loads = [0] * workers
+    for name, found in files.items():
+        least = loads.index(min(loads))
+        parts[least] += found
+        loads[least] += SLOW[name]
+    items[:] = [item for part in filled(parts, rest) for item in part]
+
+
+def filled(parts: list[list[pytest.Item]], rest: list[pytest.Item]) -> list[list[pytest.Item]]:
+    """Parts with as many tests each, as nearly as can be."""
+    size = (sum(map(len, parts)) + len(rest)) // len(parts)
+    left = iter(rest)
+    full = [[*part, *(item for _, item in zip(range(size - len(part)), left, strict=False))] for part in parts]
+    full[-1].extend(left)
+    return full

@@ -50,7 +50,7 @@ def apply(root: Path, change: str) -> None:
 
 def run(root: Path, *words: str) -> str:
     """What Python says in the copy; it must succeed."""
-    environment = {**os.environ, "PYTHONPATH": str(root)}
+    environment = {**os.environ, "PYTHONPATH": str(root), "PYTEST_ADDOPTS": ""}
     ran = subprocess.run([sys.executable, *words], cwd=root, env=environment, capture_output=True, text=True)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     return ran.stdout
