@@ -15,7 +15,7 @@ from compoundkin.model.elements import FRAME
 
 
 @dataclass(frozen=True)
-class Turning:
+class TorquePort:
     """A torque on `link` that acts against `on`; its rate is their relative angular velocity, rad/s."""
 
     link: str
@@ -23,7 +23,7 @@ class Turning:
 
 
 @dataclass(frozen=True, eq=False)
-class Along:
+class ForcePort:
     """A force at a point of `link` in a direction (radians, or an array of them, in the frame of `on`), against `on`.
 
     `point` is a letter, or coordinates in the link's frame; the rate is the component of its velocity, length/s.
@@ -35,7 +35,7 @@ class Along:
     on: str = FRAME
 
 
-Port: TypeAlias = str | Turning | Along
+Port: TypeAlias = str | TorquePort | ForcePort
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +60,8 @@ def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage
     """How many times the force or torque at `input` is available at `output`, at every pose, without friction.
 
     Each of the two is a link (its torque against the frame), a pair or a driver by name (the force or torque along its
-    free coordinate), `Turning(link, on)` for a torque between any two links, or `Along(link, point, angle)` for a force
-    at a point. Positive where both rates have one sign. It does not depend on the driver's speed.
+    free coordinate), `TorquePort(link, on)` for a torque between any two links, or `ForcePort(link, point, angle)`
+    for a force at a point. Positive where both rates have one sign. It does not depend on the driver's speed.
 
     Raises UnknownName for a name that is not there; InvalidInput below order 1, for a driver at rest, and where several
     drivers move at one pose, for the balance then depends on what the others do.
@@ -99,11 +99,11 @@ def _rate(motion: Motion, port: Port, where: str) -> tuple[Number, Number]:
     scale, size = _scale(motion), motion.size
     if isinstance(port, str):
         return _named(motion, port, where, scale)
-    if isinstance(port, Turning):
+    if isinstance(port, TorquePort):
         return np.asarray(relative_link(motion, port.link, port.on).angular_velocity), scale
-    if not isinstance(port, Along):
+    if not isinstance(port, ForcePort):
         text = f"{port!r} is no place for a force or torque"
-        raise InvalidInput(Problem(where, text, "a link, pair or driver by name, Turning(...) or Along(...)"))
+        raise InvalidInput(Problem(where, text, "a link, pair or driver by name, TorquePort(...) or ForcePort(...)"))
     velocity = np.asarray(relative_point(motion, port.link, port.point, port.on).velocity)
     return dot(np.exp(1j * _angle(motion, port.angle, where)), velocity), scale * size
 

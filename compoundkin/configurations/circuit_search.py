@@ -31,7 +31,7 @@ from compoundkin.kinematics.inputs import Inputs, inputs
 from compoundkin.kinematics.solution import plan_of
 from compoundkin.kinematics.solving_order import Plan
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure.structure import Structure
+from compoundkin.structure.kinematic_structure import Structure
 
 # The configurations are counted anew at so many driver values, spread by the golden ratio.
 FRESH = 48

@@ -23,7 +23,7 @@ from compoundkin.kinematics.results import Vectors
 from compoundkin.kinematics.solution import plan_of
 from compoundkin.kinematics.solving_order import Plan
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure.structure import Structure
+from compoundkin.structure.kinematic_structure import Structure
 
 # Where nothing can be assembled, so many values of each driver are tried, and the nearest that can is refined.
 TRIED = 721

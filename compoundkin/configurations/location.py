@@ -22,7 +22,7 @@ from compoundkin.kinematics.solution import signs_of
 from compoundkin.kinematics.solving_order import Plan
 from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.elements import Drive
-from compoundkin.structure.structure import Structure
+from compoundkin.structure.kinematic_structure import Structure
 
 # A configuration lies on a strand within this: it may be at a limit position, where poses are known to the square
 # root of rounding, or read off a drawing that was drawn exactly.

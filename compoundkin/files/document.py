@@ -14,7 +14,7 @@ FORMATS = (1,)
 
 
 @dataclass(frozen=True)
-class Table:
+class TableForm:
     """Tables of one sort in a mechanism file: ``[name.X]`` if named, ``[[name]]`` if an array of tables."""
 
     name: str
@@ -60,11 +60,11 @@ EXPECTED = (
 
 # In the order in which a file is written; the drawing comes after the drives.
 TABLES = (
-    Table("links", "named", LINK, "The links by name; the one called frame is fixed.", required=True),
-    *(Table(name, "array", kind.keys, f"Each is a {kind.title}.") for name, kind in WRITTEN.items()),
-    Table("drives", "array", Drive.keys, "The drivers."),
-    Table("modes", "array", MODE, "Assembly modes chosen by sign instead of by a drawing."),
-    Table("expected", "array", EXPECTED, "Published numbers to hold the solution against."),
+    TableForm("links", "named", LINK, "The links by name; the one called frame is fixed.", required=True),
+    *(TableForm(name, "array", kind.keys, f"Each is a {kind.title}.") for name, kind in WRITTEN.items()),
+    TableForm("drives", "array", Drive.keys, "The drivers."),
+    TableForm("modes", "array", MODE, "Assembly modes chosen by sign instead of by a drawing."),
+    TableForm("expected", "array", EXPECTED, "Published numbers to hold the solution against."),
 )
 
 # The pins are not written: they follow from shared letters.

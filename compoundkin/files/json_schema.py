@@ -60,7 +60,7 @@ def publish(path: str | os.PathLike[str]) -> None:
     write_atomically(path, lambda file: file.write(text.encode("utf-8")))
 
 
-def _tables(table: doc.Table) -> dict[str, Any]:
+def _tables(table: doc.TableForm) -> dict[str, Any]:
     one = _table(table.keys)
     if table.form == "array":
         return {"type": "array", "items": one, "description": table.doc}

@@ -11,7 +11,7 @@ from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.groups.steps import Step
 from compoundkin.kinematics.solving_order import Plan
-from compoundkin.structure.structure import Structure
+from compoundkin.structure.kinematic_structure import Structure
 
 BETWEEN = " / "
 # The configuration of a mechanism of which every group has one.

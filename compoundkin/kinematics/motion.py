@@ -21,7 +21,7 @@ from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure.structure import Structure
+from compoundkin.structure.kinematic_structure import Structure
 
 
 @dataclass(frozen=True)

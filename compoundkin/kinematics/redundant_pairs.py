@@ -11,9 +11,9 @@ from compoundkin.base.errors import NotAssembled, NotDetermined, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.pairs import Pair
+from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.redundancy import mobility_analysis
 from compoundkin.structure.redundancy.constraint_equations import ROUNDED
-from compoundkin.structure.structure import Structure
 
 
 def because(structure: Structure) -> str:

@@ -23,7 +23,7 @@ from compoundkin.kinematics.tracking import Tracker, read_hint
 from compoundkin.model.attributes import HIGHEST_ORDER
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
-from compoundkin.structure.structure import Structure
+from compoundkin.structure.kinematic_structure import Structure
 
 # Up to so many poses are solved at once: gathering blocks would copy more than the caches save.
 WHOLE = 65536

@@ -14,8 +14,8 @@ from compoundkin.kinematics.groups.steps import AffineStep, DyadStep, FollowerSt
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends, Equivalent
 from compoundkin.structure.assur_groups import named_group
+from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import Body, DrivenPair, Group
-from compoundkin.structure.structure import Structure
 
 
 class Plan:

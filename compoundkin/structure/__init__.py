@@ -14,9 +14,9 @@ from compoundkin.structure.graph import (
     pair_counts,
     simple_loops,
 )
+from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.mobility import Mobility, PairCount
 from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Passive
-from compoundkin.structure.structure import Structure
 
 __all__ = [
     "Body",

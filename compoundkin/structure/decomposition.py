@@ -21,12 +21,12 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.assur_groups import Binder, all_pairs
 from compoundkin.structure.composites import composites
 from compoundkin.structure.faults import closed_drives, counted_faults, rank_faults
+from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.matching import Matching, maximum_matching, overdetermined, underdetermined
 from compoundkin.structure.mobility import mobility_of
 from compoundkin.structure.order import solving_order, strong_components
 from compoundkin.structure.parts import Fault, Group, Relaxation
-from compoundkin.structure.rank import Part, RankTest
-from compoundkin.structure.structure import Structure
+from compoundkin.structure.rank import RankTest, Subsystem
 from compoundkin.structure.system import System, system_of
 
 
@@ -112,7 +112,7 @@ def _locate_overdetermined(system: System, binder: Binder, over: list[bool]) -> 
         binder.locate(unknowns, held)
 
 
-def _parts_in_order(system: System, matching: Matching, coarse: _Coarse) -> list[Part]:
+def _parts_in_order(system: System, matching: Matching, coarse: _Coarse) -> list[Subsystem]:
     determined = [not (o or u) for o, u in zip(coarse.over, coarse.under, strict=True)]
     successors = [_depends_on(matching, u, determined) if yes else [] for u, yes in enumerate(determined)]
     components = [c for c in strong_components(successors) if determined[c[0]]]
@@ -127,6 +127,6 @@ def _depends_on(matching: Matching, unknown: int, determined: Sequence[bool]) ->
     return [v for v in dict.fromkeys(members) if v != unknown]
 
 
-def _part(system: System, matching: Matching, unknowns: Sequence[int]) -> Part:
+def _part(system: System, matching: Matching, unknowns: Sequence[int]) -> Subsystem:
     numbers = sorted({system.constraint_of[row] for u in unknowns for row in matching.owned[u]})
-    return Part(tuple(unknowns), tuple([system.constraints[k] for k in numbers]))
+    return Subsystem(tuple(unknowns), tuple([system.constraints[k] for k in numbers]))

@@ -9,7 +9,7 @@ from compoundkin.model.pairs import Pair
 from compoundkin.structure.composites import GROUND, find, spanned
 from compoundkin.structure.matching import Matching
 from compoundkin.structure.parts import Body, DrivenPair, Fault
-from compoundkin.structure.rank import Deficiency, Part, RankTest
+from compoundkin.structure.rank import Deficiency, RankTest, Subsystem
 from compoundkin.structure.system import POINT_FREEDOMS, Constraint, System, held_pairs
 
 # How many alternatives a remedy lists.
@@ -90,7 +90,7 @@ def counted_faults(system: System, matching: Matching, over: list[bool], under: 
     for marked in (over, under):
         for unknowns in _connected(marked, touching):
             constraints = {id(c): c for u in unknowns for c in touching[u]}
-            yield from _part_faults(system, Part(tuple(unknowns), tuple(constraints.values())))
+            yield from _part_faults(system, Subsystem(tuple(unknowns), tuple(constraints.values())))
 
 
 def _connected(marked: list[bool], touching: list[list[Constraint]]) -> Iterator[list[int]]:
@@ -106,11 +106,11 @@ def _connected(marked: list[bool], touching: list[list[Constraint]]) -> Iterator
         yield sorted(part)
 
 
-def _part_faults(system: System, part: Part) -> Iterator[Fault]:
+def _part_faults(system: System, part: Subsystem) -> Iterator[Fault]:
     yield from rank_faults(system, part, RankTest(system).analysed(part))
 
 
-def rank_faults(system: System, part: Part, found: Deficiency) -> Iterator[Fault]:
+def rank_faults(system: System, part: Subsystem, found: Deficiency) -> Iterator[Fault]:
     """What is redundant and what is free in a part; both where its pairs hold less than they count."""
     if found.redundant:
         yield _over(system, found)
@@ -144,7 +144,7 @@ def _over_remedy(amount: int, drives: Sequence[DrivenPair], pairs: Sequence[str]
     return f"remove {_of(amount, names, 'driver')} or {free}" if names else f"{free} or take out a link"
 
 
-def _under(system: System, part: Part, found: Deficiency) -> Fault:
+def _under(system: System, part: Subsystem, found: Deficiency) -> Fault:
     bodies = [system.bodies.moving[u] for u in found.loose if system.is_body(u)]
     links = _in_input_order(system, [name for body in bodies for name in body.links])
     text = f"{_listed(links)} {_are(links)} left with {_number(found.free, 'freedom')}"

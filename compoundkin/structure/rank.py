@@ -26,7 +26,7 @@ Matrix = np.ndarray[Any, np.dtype[np.float64]]
 
 
 @dataclass(frozen=True)
-class Part:
+class Subsystem:
     """Some unknowns and the constraints that are to determine them, given all unknowns outside."""
 
     unknowns: tuple[int, ...]
@@ -57,14 +57,14 @@ class RankTest:
     known: dict[tuple[Any, ...], bool] = field(default_factory=dict)
     kinds: dict[Hashable, int] = field(default_factory=dict)
 
-    def deficiency(self, part: Part) -> Deficiency | None:
+    def deficiency(self, part: Subsystem) -> Deficiency | None:
         """What is wrong with a part that counts as determined, or None if it is."""
         rank_key = self._rank_key(part)
         if rank_key not in self.known:
             self.known[rank_key] = self._is_regular(part)
         return None if self.known[rank_key] else self.analysed(part)
 
-    def analysed(self, part: Part) -> Deficiency:
+    def analysed(self, part: Subsystem) -> Deficiency:
         """The redundancy and freedom of any part; by count alone, and for all of it, where it is large."""
         rows, columns = self._shape(part)
         if max(rows, columns) > DENSE_UP_TO:
@@ -86,13 +86,13 @@ class RankTest:
         turning = rows > rank and not np.any(np.delete(dependent, angles, axis=1))
         return Deficiency(rows - rank, columns - rank, tight, loose, moving, turning)
 
-    def _is_regular(self, part: Part) -> bool:
+    def _is_regular(self, part: Subsystem) -> bool:
         if self._shape(part)[1] > DENSE_UP_TO:
             return self._is_regular_sparse(part)
         values = np.linalg.svd(self._dense(part), compute_uv=False)
         return bool(values[-1] > RANK_TOLERANCE * values[0])
 
-    def _is_regular_sparse(self, part: Part) -> bool:
+    def _is_regular_sparse(self, part: Subsystem) -> bool:
         from scipy.sparse import csc_array
         from scipy.sparse.linalg import splu
 
@@ -109,7 +109,7 @@ class RankTest:
             return False
         return bool(np.min(pivots) > RANK_TOLERANCE * np.max(pivots))
 
-    def _rank_key(self, part: Part) -> tuple[Any, ...]:
+    def _rank_key(self, part: Subsystem) -> tuple[Any, ...]:
         """All that the rank depends on: not the order of constraints, nor which body on a pin is named first."""
         place = {unknown: k for k, unknown in enumerate(part.unknowns)}
         times = Counter(c.letter for c in part.constraints)
@@ -122,16 +122,16 @@ class RankTest:
             made.append((kind, number.get(c.letter, -1), *(sorted(places) if c.letter else places)))
         return tuple([self.system.freedoms[u] for u in part.unknowns]), tuple(sorted(made))
 
-    def _shape(self, part: Part) -> tuple[int, int]:
+    def _shape(self, part: Subsystem) -> tuple[int, int]:
         return sum(c.pair.held for c in part.constraints), sum(self.system.freedoms[u] for u in part.unknowns)
 
-    def _dense(self, part: Part) -> Matrix:
+    def _dense(self, part: Subsystem) -> Matrix:
         matrix = np.zeros(self._shape(part))
         for row, column, block in self._blocks(part):
             matrix[row : row + block.shape[0], column : column + block.shape[1]] += block
         return matrix
 
-    def _blocks(self, part: Part) -> Iterator[tuple[int, int, Matrix]]:
+    def _blocks(self, part: Subsystem) -> Iterator[tuple[int, int, Matrix]]:
         """The blocks of the Jacobian: the held rows of each constraint; x, y and of a body theta."""
         start = self._start(part)
         row = 0
@@ -143,12 +143,12 @@ class RankTest:
                     yield row, start[side], held[:, first : first + self.system.freedoms[side]]
             row += len(held)
 
-    def _start(self, part: Part) -> dict[int, int]:
+    def _start(self, part: Subsystem) -> dict[int, int]:
         """The first column of each unknown."""
         sizes = [self.system.freedoms[unknown] for unknown in part.unknowns]
         return dict(zip(part.unknowns, accumulate(sizes, initial=0), strict=False))
 
-    def _moving(self, part: Part, motions: Matrix) -> tuple[Constraint, ...]:
+    def _moving(self, part: Subsystem, motions: Matrix) -> tuple[Constraint, ...]:
         """The constraints whose pairs move where the unknowns have the given motions."""
         start = self._start(part)
         found = []
@@ -171,7 +171,7 @@ class RankTest:
         return self.system.neighbour(constraint.letter, others[0]), *others
 
 
-def _rows(part: Part) -> Iterator[tuple[Constraint, Matrix]]:
+def _rows(part: Subsystem) -> Iterator[tuple[Constraint, Matrix]]:
     """Each pair's rows in the world at a generic pose; all links on a pin share its one place."""
     rng = np.random.default_rng(_SEED)
     pins: dict[str, Ends] = {}

@@ -37,7 +37,7 @@ FEW = 4
 
 
 @dataclass(frozen=True)
-class Place:
+class DriverPlace:
     """Where a driver is: the link that it drives, on which one, and the pin or pair between them."""
 
     link: str
@@ -60,7 +60,7 @@ class Alternative:
     """
 
     frame: str
-    drivers: tuple[Place, ...]
+    drivers: tuple[DriverPlace, ...]
     title: str
     groups: tuple[tuple[str, int, int], ...]
     class_: int
@@ -211,7 +211,7 @@ class _Choices:
             frame, drivers, self._title(frame, drivers), groups, class_, number, closed, faults, alike, present
         )
 
-    def _title(self, frame: str, drivers: Sequence[Place]) -> str:
+    def _title(self, frame: str, drivers: Sequence[DriverPlace]) -> str:
         """The inversion's name; only of four links it depends on the driver."""
         links = self.joints.links
         spun = {spin.link: spin.on for spin in self.structure.passive}
@@ -246,30 +246,30 @@ def _names(frame: str) -> dict[str, str]:
     return {} if frame == FRAME else {frame: FRAME, FRAME: _OTHER}
 
 
-def _pin_places(mechanism: Mechanism) -> Iterator[Place]:
+def _pin_places(mechanism: Mechanism) -> Iterator[DriverPlace]:
     for letter, links in mechanism.pins.items():
-        yield from (Place(second, first, letter) for first, second in combinations(links, 2))
+        yield from (DriverPlace(second, first, letter) for first, second in combinations(links, 2))
 
 
-def _pair_places(mechanism: Mechanism) -> Iterator[Place]:
+def _pair_places(mechanism: Mechanism) -> Iterator[DriverPlace]:
     for pair in mechanism.written_pairs:
         if pair.is_drivable and len(pair.members) == 2:
-            yield Place(pair.members[1], pair.members[0], pair.name)
+            yield DriverPlace(pair.members[1], pair.members[0], pair.name)
 
 
-def _means(item: Drive, place: Place) -> bool:
+def _means(item: Drive, place: DriverPlace) -> bool:
     return {item.link, item.on} == {place.link, place.on} and item.pair in ("", place.pair)
 
 
-def _drive(frame: str, names: Mapping[str, str], place: Place) -> Drive:
+def _drive(frame: str, names: Mapping[str, str], place: DriverPlace) -> Drive:
     link, on = (names.get(name, name) for name in (place.link, place.on))
     return Drive(str(place), link, on, place.pair)
 
 
-def _outward(place: Place, frame: str, joints: Joints) -> Place:
+def _outward(place: DriverPlace, frame: str, joints: Joints) -> DriverPlace:
     """The place with the link that is nearer to the frame as the one that is not driven."""
     if place.link == frame or (place.on != frame and _near(joints, place.link, frame) < _near(joints, place.on, frame)):
-        return Place(place.on, place.link, place.pair)
+        return DriverPlace(place.on, place.link, place.pair)
     return place
 
 

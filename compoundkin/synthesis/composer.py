@@ -28,7 +28,7 @@ _ON, _TOWARD = " on ", " toward "
 DYAD_NAMES = tuple(DYADS)
 
 
-class Place(NamedTuple):
+class Attachment(NamedTuple):
     """Where something is attached: a link, there a point, and of a guide a second one; "" for new points."""
 
     link: str
@@ -37,7 +37,7 @@ class Place(NamedTuple):
 
 
 @dataclass
-class _Pair:
+class _GroupPair:
     """A pair of a group to be written: its letter, the two links (the first carries the guide), its points."""
 
     code: str
@@ -101,7 +101,7 @@ class Composer:
         self._new((name,), 1, "drive")
         if pair not in (REVOLUTE, SLIDE):
             raise InvalidInput(Problem("pair", f"{pair!r} is no pair to drive", f"known: {REVOLUTE}, {SLIDE}"))
-        letter = self._write(_Pair(pair, place.link, name, place.point, place.toward))
+        letter = self._write(_GroupPair(pair, place.link, name, place.point, place.toward))
         self._drives.append({"link": name, "on": place.link, "pair": letter, **words})
         return self
 
@@ -133,10 +133,10 @@ class Composer:
         for code, first, second in pairs:
             if first is None:
                 place = next(told)
-                written.append(_Pair(code, place.link, links[second], place.point, place.toward))
+                written.append(_GroupPair(code, place.link, links[second], place.point, place.toward))
             else:
                 point, _, toward = next(named).partition(_TOWARD)
-                written.append(_Pair(code, links[first], links[second], point, toward))
+                written.append(_GroupPair(code, links[first], links[second], point, toward))
         # pins first: a slide then runs at the pin of its block
         for pair in sorted(written, key=lambda pair: pair.code != REVOLUTE):
             self._write(pair)
@@ -171,15 +171,15 @@ class Composer:
         inner = [(REVOLUTE, left.index(a), left.index(b)) for a, b in group.truss.pairs if group.removed not in (a, b)]
         return [*outer, *inner], len(outer), len(left)
 
-    def _place(self, text: str) -> Place:
+    def _place(self, text: str) -> Attachment:
         """A link, or points on it: "B on crank", "E toward F on frame"."""
         if text in self.links:
-            return Place(text)
+            return Attachment(text)
         points, on, name = text.partition(_ON)
         if not on:
             points, name = "", text
         point, _, toward = points.partition(_TOWARD)
-        return Place(self._link(name), point.strip(), toward.strip())
+        return Attachment(self._link(name), point.strip(), toward.strip())
 
     def _link(self, name: str) -> str:
         if name not in self.links:
@@ -217,7 +217,7 @@ class Composer:
         alone = (k for k in self.links[name] if len(self._carriers[k]) == 1 and k not in self._guiding)
         return next(alone, "")
 
-    def _write(self, pair: _Pair) -> str:
+    def _write(self, pair: _GroupPair) -> str:
         """Write a pair: its letter, or the name of the slide."""
         if pair.code == REVOLUTE:
             return self._share(pair.second, self._carry(pair.first, pair.point or self._free(pair.first)))

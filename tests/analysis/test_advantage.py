@@ -7,7 +7,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis import coupler
-from compoundkin.analysis.mechanical_advantage import Along, Turning, mechanical_advantage
+from compoundkin.analysis.mechanical_advantage import ForcePort, TorquePort, mechanical_advantage
 from compoundkin.files.shipped_mechanisms import load_named
 from tests.analysis.relative_motions import catalog, random_mechanism
 from tests.support import differences, home
@@ -70,7 +70,7 @@ def test_ratios_against_differences_of_the_positions(seed: int) -> None:
         ratio = mechanical_advantage(motion, link, driver).velocity_ratio
         assert ratio[4] == pytest.approx(differences(motion.links[link].angle, step)[0], rel=1e-5, abs=1e-6)
         for letter in mechanism.geometry.points[link]:
-            at = Along(link, letter, angle=0.7)
+            at = ForcePort(link, letter, angle=0.7)
             path = (np.asarray(motion.points[letter].position) * np.exp(-0.7j)).real
             ratio = mechanical_advantage(motion, at, driver).velocity_ratio
             assert ratio[4] == pytest.approx(differences(path, step)[0], rel=1e-5, abs=1e-5)
@@ -92,14 +92,14 @@ def test_scissor_lift_by_its_formula() -> None:
     """Height 2 sqrt(L^2 - x^2) with L = 2: force up / force in = -sqrt(L^2 - x^2) / (2 x)."""
     motion = catalog("scissor-lift")
     x = motion.points["B"].x
-    found = mechanical_advantage(motion, Along("platform", "T", np.pi / 2), "foot")
+    found = mechanical_advantage(motion, ForcePort("platform", "T", np.pi / 2), "foot")
     assert found.advantage == pytest.approx(-np.sqrt(4.0 - x**2) / (2.0 * x), rel=1e-9)
 
 
 def test_torque_between_two_moving_links_and_a_pair_by_name() -> None:
     motion = catalog("crank-rocker")
     expected = motion.links["coupler"].angular_velocity - motion.links["crank"].angular_velocity
-    found = mechanical_advantage(motion, Turning("coupler", on="crank"), "crank")
+    found = mechanical_advantage(motion, TorquePort("coupler", on="crank"), "crank")
     assert found.velocity_ratio == pytest.approx(expected)
     pin = mechanical_advantage(motion, "B", "crank")
     assert np.abs(pin.velocity_ratio) == pytest.approx(np.abs(expected))
@@ -111,7 +111,7 @@ def test_advantage_does_not_depend_on_speed_and_acceleration(speed: float) -> No
     values = {mechanism.drives[0].name: np.linspace(0.4, 2.0, 5)}
     driver, output = mechanism.drives[0].name, list(mechanism.links)[-1]
     one, two = (ck.solve(mechanism, values, speed=s, acceleration=s) for s in (1.0, speed))
-    for port in (output, Along(output, next(iter(mechanism.geometry.points[output])), 0.0)):
+    for port in (output, ForcePort(output, next(iter(mechanism.geometry.points[output])), 0.0)):
         a, b = (mechanical_advantage(motion, port, driver) for motion in (one, two))
         assert a.velocity_ratio == pytest.approx(b.velocity_ratio, rel=1e-9)
         assert a.output_rests.tolist() == b.output_rests.tolist()
@@ -139,11 +139,11 @@ def test_bad_input_says_what_is_wrong() -> None:
     with pytest.raises(ck.UnknownName, match="input: there is no moving link"):
         mechanical_advantage(motion, "rocker", "frame")
     with pytest.raises(ck.UnknownName, match="no such point"):
-        mechanical_advantage(motion, Along("coupler", "Q", 0.0), "crank")
+        mechanical_advantage(motion, ForcePort("coupler", "Q", 0.0), "crank")
     with pytest.raises(ck.InvalidInput, match="output: 3 is no place"):
         mechanical_advantage(motion, 3, "crank")  # type: ignore[arg-type]
     with pytest.raises(ck.InvalidInput, match=r"output.angle: 'up' is not an angle"):
-        mechanical_advantage(motion, Along("coupler", "C", "up"), "crank")
+        mechanical_advantage(motion, ForcePort("coupler", "C", "up"), "crank")
     with pytest.raises(ck.InvalidInput, match="no driver moves"):
         mechanical_advantage(ck.solve(load_named("crank-rocker"), speed=0.0), "rocker", "crank")
     with pytest.raises(ck.InvalidInput, match="solved to order 0"):

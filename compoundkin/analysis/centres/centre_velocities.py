@@ -10,9 +10,9 @@ import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation import Derivation
-from compoundkin.analysis.centres.driver_rates import Rates
+from compoundkin.analysis.centres.driver_rates import DriverRates
 from compoundkin.analysis.centres.homogeneous import cross, dot
-from compoundkin.analysis.centres.primary_centres import Places, Scale
+from compoundkin.analysis.centres.primary_centres import OwnCoordinates, PrimaryCentres
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
@@ -32,8 +32,8 @@ class CentreVectors:
 
     motion: Motion
     plan: Derivation
-    scale: Scale
-    places: Places
+    scale: OwnCoordinates
+    places: PrimaryCentres
     units: dict[Couple, Number]
     spread: dict[Couple, Number]
     lines: dict[Couple, tuple[Number, Number, Number]]
@@ -94,7 +94,7 @@ class VelocityCheck:
 def velocities_of(centres: CentreVectors) -> Velocities:
     """The velocities that follow from the drivers' rates by centres alone."""
     with np.errstate(all="ignore"):
-        rates = Rates(centres.plan, centres.units, centres.spread)
+        rates = DriverRates(centres.plan, centres.units, centres.spread)
         rates.run(centres.places.units, centres.places.rates)
         factor = centres.places.rates[0] if len(centres.places.rates) == 1 else np.ones(1)
         body = centres.plan.body

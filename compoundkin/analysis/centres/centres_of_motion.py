@@ -6,11 +6,11 @@ import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple, diagram_of
 from compoundkin.analysis.centres.derivation import Derivation, derive
-from compoundkin.analysis.centres.derivation_steps import Solved
+from compoundkin.analysis.centres.derivation_steps import SolvedCentre
 from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.instant_centres import Centres
-from compoundkin.analysis.centres.primary_centres import Places, places_of, scale_of
-from compoundkin.analysis.centres.recomputation import improve
+from compoundkin.analysis.centres.primary_centres import PrimaryCentres, places_of, scale_of
+from compoundkin.analysis.centres.recomputation import recompute
 from compoundkin.analysis.centres.twists import solved_twists
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
@@ -42,7 +42,7 @@ def instant_centres(motion: Motion) -> Centres:
         derivation = derive(diagram_of(motion.structure))
         scale = scale_of(motion)
         places = places_of(motion, derivation.diagram, scale)
-        needed = motion.order > 0 and any(isinstance(rule, Solved) for rule in derivation.rules)
+        needed = motion.order > 0 and any(isinstance(rule, SolvedCentre) for rule in derivation.rules)
         solved = solved_twists(motion, scale) if needed else None
         units, spread, lines = _gathered(motion, derivation, places, solved)
     return Centres(motion, derivation, scale, places, units, spread, lines)
@@ -51,7 +51,7 @@ def instant_centres(motion: Motion) -> Centres:
 _Gathered = tuple[dict[Couple, Number], dict[Couple, Number], dict[Couple, tuple[Number, Number, Number]]]
 
 
-def _gathered(motion: Motion, derivation: Derivation, places: Places, solved: Number | None) -> _Gathered:
+def _gathered(motion: Motion, derivation: Derivation, places: PrimaryCentres, solved: Number | None) -> _Gathered:
     """All blocks in one."""
     count = motion.inputs.designs * motion.inputs.poses
     blocks = [slice(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK)]
@@ -66,12 +66,12 @@ def _gathered(motion: Motion, derivation: Derivation, places: Places, solved: Nu
     return points, spread, _lines(parts, blocks)
 
 
-def _block(derivation: Derivation, places: Places, solved: Number | None, block: slice) -> Evaluation:
+def _block(derivation: Derivation, places: PrimaryCentres, solved: Number | None, block: slice) -> Evaluation:
     units = [_cut(unit, block) for unit in places.units]
     rates = [_cut(rate, block) for rate in places.rates]
     part = Evaluation(derivation, units, rates)
     part.run(None if solved is None else solved[..., block])
-    improve(part)
+    recompute(part)
     return part
 
 

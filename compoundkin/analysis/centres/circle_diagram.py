@@ -13,8 +13,8 @@ from compoundkin.base.poses import FIXED
 from compoundkin.base.series import Number
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Line
+from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import DrivenPair
-from compoundkin.structure.structure import Structure
 
 Couple = tuple[int, int]
 
@@ -35,7 +35,7 @@ class Primary:
 
 
 @dataclass(frozen=True)
-class Driven:
+class DrivenCentre:
     """A driven pair: `primary` moves link `second` relative to link `first` at the driver's rate times `sign`."""
 
     driver: str
@@ -51,7 +51,7 @@ class Diagram:
 
     links: tuple[str, ...]
     primaries: tuple[Primary, ...]
-    drives: tuple[Driven, ...]
+    drives: tuple[DrivenCentre, ...]
 
     @property
     def couples(self) -> tuple[Couple, ...]:
@@ -164,10 +164,10 @@ def _kind(pair: Pair) -> str:
     return "ideal" if np.all(centre.w == 0.0) else "point"
 
 
-def _driven(driven: DrivenPair, primaries: tuple[Primary, ...], number: dict[str, int]) -> Driven:
+def _driven(driven: DrivenPair, primaries: tuple[Primary, ...], number: dict[str, int]) -> DrivenCentre:
     first, second = (number[name] for name in driven.pair.members[:2])
     at = next(k for k, p in enumerate(primaries) if _places(p, driven.pair) and {first, second} <= set(p.links))
-    return Driven(driven.drive.name, first, second, at, driven.pair.driven_by(driven.drive.link))
+    return DrivenCentre(driven.drive.name, first, second, at, driven.pair.driven_by(driven.drive.link))
 
 
 def _places(primary: Primary, pair: Pair) -> bool:

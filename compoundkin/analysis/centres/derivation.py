@@ -11,10 +11,18 @@ from functools import lru_cache
 from itertools import combinations
 
 from compoundkin.analysis.centres.circle_diagram import Couple, Diagram, couple
-from compoundkin.analysis.centres.derivation_steps import Crossing, Given, Move, Rule, Solved, Step, steps_of
-from compoundkin.analysis.centres.known_centres import Knowledge
-from compoundkin.analysis.centres.rate_sets import drivers_growth
-from compoundkin.analysis.centres.trial_position import find_trial
+from compoundkin.analysis.centres.derivation_steps import (
+    DerivationStep,
+    Given,
+    LineCrossing,
+    Move,
+    Rule,
+    SolvedCentre,
+    steps_of,
+)
+from compoundkin.analysis.centres.known_centres import KnownCentres
+from compoundkin.analysis.centres.rate_sets import driver_rate_sets
+from compoundkin.analysis.centres.trial_position import trial_position
 
 # Diagrams kept; each holds a few kilobytes.
 KEPT = 256
@@ -34,7 +42,7 @@ class Derivation:
     moves: tuple[Move, ...]
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[DerivationStep, ...]:
         """The rules in words, in order."""
         return tuple(step for rule in self.rules for step in steps_of(self.diagram, rule))
 
@@ -55,51 +63,51 @@ def derive(diagram: Diagram) -> Derivation:
 
     Raises NotDetermined where the diagram's motion is not given by its drivers.
     """
-    knowledge = Knowledge(diagram)
-    rules: list[Rule] = list(_primary(knowledge))
-    while knowledge.unknown:
-        found = _round(knowledge) or _stalled(knowledge)
+    centres = KnownCentres(diagram)
+    rules: list[Rule] = list(_primary(centres))
+    while centres.unknown:
+        found = _round(centres) or _stalled(centres)
         rules += found
-    return Derivation(diagram, knowledge.body, tuple(rules), drivers_growth(knowledge, bridges=False).moves)
+    return Derivation(diagram, centres.body, tuple(rules), driver_rate_sets(centres, bridges=False).moves)
 
 
-def _primary(knowledge: Knowledge) -> list[Given]:
+def _primary(centres: KnownCentres) -> list[Given]:
     found = []
-    for k, primary in enumerate(knowledge.diagram.primaries):
+    for k, primary in enumerate(centres.diagram.primaries):
         for link, other in combinations(primary.links, 2):
-            i, j = couple(knowledge.body[link], knowledge.body[other])
-            if i == j or knowledge.knows(i, j):
+            i, j = couple(centres.body[link], centres.body[other])
+            if i == j or centres.knows(i, j):
                 continue
             if primary.kind == "line":
-                knowledge.own_lines.setdefault((i, j), []).append(k)
+                centres.own_lines.setdefault((i, j), []).append(k)
             else:
-                knowledge.rounds[i, j] = 0
+                centres.rounds[i, j] = 0
                 found.append(Given((i, j), k))
     return found
 
 
-def _round(knowledge: Knowledge) -> list[Rule]:
+def _round(centres: KnownCentres) -> list[Rule]:
     """Every centre on which two lines are known by now."""
     found: list[Rule] = []
-    for i, j in knowledge.unknown:
-        lines = knowledge.crossing(i, j)
+    for i, j in centres.unknown:
+        lines = centres.crossing(i, j)
         if lines is not None:
-            found.append(Crossing((i, j), lines))
-    _note(knowledge, [rule.found for rule in found if isinstance(rule, Crossing)])
+            found.append(LineCrossing((i, j), lines))
+    _note(centres, [rule.found for rule in found if isinstance(rule, LineCrossing)])
     return found
 
 
-def _stalled(knowledge: Knowledge) -> list[Rule]:
+def _stalled(centres: KnownCentres) -> list[Rule]:
     """The next centres by rates or trial; what even that does not give comes from the solved velocities."""
-    trial = find_trial(knowledge)
+    trial = trial_position(centres)
     if trial is not None:
-        _note(knowledge, list(trial.found))
+        _note(centres, list(trial.found))
         return [trial]
-    solved: list[Rule] = [Solved(c) for c in knowledge.unknown]
-    _note(knowledge, knowledge.unknown)
+    solved: list[Rule] = [SolvedCentre(c) for c in centres.unknown]
+    _note(centres, centres.unknown)
     return solved
 
 
-def _note(knowledge: Knowledge, found: list[Couple]) -> None:
-    now = 1 + max(knowledge.rounds.values(), default=0)
-    knowledge.rounds.update(dict.fromkeys(found, now))
+def _note(centres: KnownCentres, found: list[Couple]) -> None:
+    now = 1 + max(centres.rounds.values(), default=0)
+    centres.rounds.update(dict.fromkeys(found, now))

@@ -20,7 +20,7 @@ class Given:
 
 
 @dataclass(frozen=True)
-class Crossing:
+class LineCrossing:
     """Aronhold-Kennedy twice: the centre is where two lines cross.
 
     Each line is given by the third link k, the line (i k)(k j); or by -1 - p where it is primary p's own line.
@@ -97,17 +97,17 @@ class Trial:
 
 
 @dataclass(frozen=True)
-class Solved:
+class SolvedCentre:
     """What geometry did not give: the centre is taken from the solved velocities."""
 
     found: Couple
 
 
-Rule: TypeAlias = Given | Crossing | Trial | Solved
+Rule: TypeAlias = Given | LineCrossing | Trial | SolvedCentre
 
 
 @dataclass(frozen=True)
-class Step:
+class DerivationStep:
     """One line of a derivation: the centre, how it is found, and the lines that give it.
 
     `kind` is "primary", "crossing", "rates", "trial", "velocities". Each of `lines` names the centres it runs
@@ -123,17 +123,17 @@ class Step:
         return f"({self.centre[0]} {self.centre[1]}): {self.text}"
 
 
-def steps_of(diagram: Diagram, rule: Rule) -> tuple[Step, ...]:
+def steps_of(diagram: Diagram, rule: Rule) -> tuple[DerivationStep, ...]:
     """A rule in words, one step for each centre it gives."""
     if isinstance(rule, Trial):
         return tuple(_trial_step(diagram, rule, found) for found in rule.found)
     names = (diagram.links[rule.found[0]], diagram.links[rule.found[1]])
     if isinstance(rule, Given):
-        return (Step(names, "primary", (), diagram.primaries[rule.primary].text),)
-    if isinstance(rule, Crossing):
+        return (DerivationStep(names, "primary", (), diagram.primaries[rule.primary].text),)
+    if isinstance(rule, LineCrossing):
         lines = tuple(line_names(diagram, rule.found, via) for via in rule.lines)
-        return (Step(names, "crossing", lines, crossing_text(diagram, rule.found, rule.lines)),)
-    return (Step(names, "velocities", (), "solved velocities"),)
+        return (DerivationStep(names, "crossing", lines, crossing_text(diagram, rule.found, rule.lines)),)
+    return (DerivationStep(names, "velocities", (), "solved velocities"),)
 
 
 def crossing_text(diagram: Diagram, found: Couple, lines: tuple[int, int]) -> str:
@@ -155,20 +155,20 @@ def centre_name(diagram: Diagram, i: int, j: int) -> str:
     return f"({diagram.links[i]} {diagram.links[j]})"
 
 
-def _trial_step(diagram: Diagram, trial: Trial, found: Couple) -> Step:
+def _trial_step(diagram: Diagram, trial: Trial, found: Couple) -> DerivationStep:
     names = (diagram.links[found[0]], diagram.links[found[1]])
     carried = ", ".join(_move_text(diagram, move) for move in trial.moves)
     if not trial.values:
         turns = [move for move in trial.moves if isinstance(move, Turn) and move.driver >= 0]
         drivers = ", ".join(diagram.drives[turn.driver].driver for turn in turns)
         origin = f"rates of the drivers {drivers}" if drivers else "ratios of rates"
-        return Step(names, "rates", (), f"{origin}; {carried}")
+        return DerivationStep(names, "rates", (), f"{origin}; {carried}")
     lines = tuple(line_names(diagram, (m.i, m.j), m.k) for m in trial.meetings)
     ends = " and ".join(
         f"the locus of {centre_name(diagram, *couple(m.i, m.j))} meets line {''.join(line)}"
         for m, line in zip(trial.meetings, lines, strict=True)
     )
-    return Step(names, "trial", lines, f"{trial.values + 1} trial positions; {carried}; {ends}")
+    return DerivationStep(names, "trial", lines, f"{trial.values + 1} trial positions; {carried}; {ends}")
 
 
 def _move_text(diagram: Diagram, move: Move) -> str:

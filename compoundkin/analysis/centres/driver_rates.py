@@ -15,7 +15,7 @@ from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.homogeneous import cross, norm
 from compoundkin.analysis.centres.rate_sets import pair_amplitudes
-from compoundkin.analysis.centres.rate_transport import carry, measured
+from compoundkin.analysis.centres.rate_transport import measured, transport
 from compoundkin.base.series import Number
 
 # Where the error of a twist is magnified more than this, other links are taken to carry it through.
@@ -24,7 +24,7 @@ FAIR = 1e5
 BETTER = 2.0
 
 
-class Rates:
+class DriverRates:
     """Twists of the bodies relative to each other, {body: (3, poses)}, and their errors in units of rounding.
 
     With one driver the driven pair turns at rate 1; the actual rate multiplies all.
@@ -42,7 +42,7 @@ class Rates:
     def run(self, units: Sequence[Number], rates: Sequence[Number]) -> None:
         """Along the derivation's moves; then, where those are poor, through whichever links are best."""
         given = [np.ones(1)] if len(rates) == 1 else list(rates)
-        carried = carry(self.derivation.moves, self.derivation, self.points, self.spread, units, given)
+        carried = transport(self.derivation.moves, self.derivation, self.points, self.spread, units, given)
         poses = np.broadcast_shapes(*[unit.shape[1:] for unit in units])
         alone = {b: sum(1 for o in carried.member.values() if o == m) == 1 for b, m in carried.member.items()}
         self.twists = {b: np.array(np.broadcast_to(t[:, 0, 0], (3, *poses))) for b, t in carried.twists.items()}

@@ -12,9 +12,9 @@ import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation import Derivation
-from compoundkin.analysis.centres.derivation_steps import Crossing, Given, Solved, Trial
+from compoundkin.analysis.centres.derivation_steps import Given, LineCrossing, SolvedCentre, Trial
 from compoundkin.analysis.centres.homogeneous import apart, cross, dot, norm
-from compoundkin.analysis.centres.rate_transport import Carried, carry, measured
+from compoundkin.analysis.centres.rate_transport import TransportedRates, measured, transport
 from compoundkin.base.series import Number
 
 
@@ -44,12 +44,12 @@ class Evaluation:
         for rule in self.derivation.rules:
             if isinstance(rule, Given):
                 self.keep(rule.found, self.units[rule.primary], np.ones(1))
-            elif isinstance(rule, Crossing):
+            elif isinstance(rule, LineCrossing):
                 (p, dp), (q, dq) = (self.line(*rule.found, via) for via in rule.lines)
                 self.keep(rule.found, *crossing(p, dp, q, dq))
             elif isinstance(rule, Trial):
                 self._try(rule)
-            elif isinstance(rule, Solved) and solved is not None:
+            elif isinstance(rule, SolvedCentre) and solved is not None:
                 self._from(rule.found, solved[rule.found[1]] - solved[rule.found[0]], np.ones(1))
             else:
                 self.keep(rule.found, np.full((3, 1), np.nan), np.full(1, np.inf))
@@ -74,7 +74,7 @@ class Evaluation:
         self.keep(found, twist / length, error / length)
 
     def _try(self, trial: Trial) -> None:
-        carried = carry(trial.moves, self.derivation, self.points, self.spread, self.units, self.rates)
+        carried = transport(trial.moves, self.derivation, self.points, self.spread, self.units, self.rates)
         values = self._values(trial, carried)
         for i, j in trial.found:
             twists = (carried.relative(i, j) * values).sum(axis=1)
@@ -82,7 +82,7 @@ class Evaluation:
             moved = np.max(apart(exact[:, None], twists[:, 1:]), axis=0)
             self.keep((i, j), exact, np.hypot(1.0, measured(moved)))
 
-    def _values(self, trial: Trial, carried: Carried) -> Number:
+    def _values(self, trial: Trial, carried: TransportedRates) -> Number:
         """The trial values that bring each locus onto its line, a unit vector (values + 1, samples, poses)."""
         if not trial.meetings:
             return np.ones((1, 1, 1))

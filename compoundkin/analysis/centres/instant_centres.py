@@ -19,7 +19,7 @@ from compoundkin.analysis.centres.centre_velocities import (
     velocity_check,
 )
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
-from compoundkin.analysis.centres.derivation_steps import Step, crossing_text
+from compoundkin.analysis.centres.derivation_steps import DerivationStep, crossing_text
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
@@ -103,7 +103,7 @@ class Centre:
 class Centres(CentreVectors, Shows):
     """All n (n - 1) / 2 instant centres of a motion: ``centres["crank", "bar"]``, either link first."""
 
-    def derivation(self) -> tuple[Step, ...]:
+    def derivation(self) -> tuple[DerivationStep, ...]:
         """The steps in order: primary centres first, then each secondary one with the lines that give it.
 
         Links that never move relative to each other have no centre and no step.

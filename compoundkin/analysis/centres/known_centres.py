@@ -16,7 +16,7 @@ GENERIC = 1e-7
 Vector = tuple[float, float, float]
 
 
-class Knowledge:
+class KnownCentres:
     """The centres found so far, each with the round in which it was found.
 
     Whether two lines coincide for the graph's own reasons (three links on one pin, loops of slides) is asked at

@@ -16,7 +16,7 @@ from compoundkin.model.pairs.contract import Line
 
 
 @dataclass(frozen=True)
-class Scale:
+class OwnCoordinates:
     """Own coordinates: a place p of the world is at ``(p - origin) / size``.
 
     Homogeneous vectors of order one then have errors of rounding size, wherever and however large the mechanism.
@@ -54,7 +54,7 @@ class Scale:
 
 
 @dataclass(frozen=True)
-class Places:
+class PrimaryCentres:
     """The primary centres of a motion: unit vectors (3, poses or 1), and the lengths they had before.
 
     A driver's rate times the length is the amplitude of its twist on the unit vector; `rates` holds these.
@@ -64,14 +64,14 @@ class Places:
     rates: tuple[Number, ...]
 
 
-def scale_of(motion: Motion) -> Scale:
+def scale_of(motion: Motion) -> OwnCoordinates:
     """Own coordinates around the middle of the frame's points."""
     points = list(motion.mechanism.geometry.points[FRAME].values())
     middle = np.mean([np.mean(p) for p in points]) if points else 0.0
-    return Scale(complex(middle), motion.size)
+    return OwnCoordinates(complex(middle), motion.size)
 
 
-def places_of(motion: Motion, diagram: Diagram, scale: Scale) -> Places:
+def places_of(motion: Motion, diagram: Diagram, scale: OwnCoordinates) -> PrimaryCentres:
     """The primary centres at every pose, poses and designs in one axis."""
     units, lengths = [], []
     for primary in diagram.primaries:
@@ -87,7 +87,7 @@ def places_of(motion: Motion, diagram: Diagram, scale: Scale) -> Places:
         _flat(motion, np.asarray(motion.inputs.drives[d.driver][1], dtype=float)[None])[0] * lengths[d.primary] * d.sign
         for d in diagram.drives
     )
-    return Places(tuple(units), rates)
+    return PrimaryCentres(tuple(units), rates)
 
 
 def _still(pose: Pose) -> Pose:

@@ -11,18 +11,18 @@ import numpy as np
 from compoundkin.analysis.centres.circle_diagram import Couple
 from compoundkin.analysis.centres.derivation_steps import Bridge, Join, Meeting, Move, Turn
 from compoundkin.analysis.centres.homogeneous import cross, dot
-from compoundkin.analysis.centres.known_centres import GENERIC, Knowledge, sine
+from compoundkin.analysis.centres.known_centres import GENERIC, KnownCentres, sine
 from compoundkin.base.series import Number
 
 
 @dataclass
-class Growth:
-    """Where a growth stands: which set each body is in, and its twist in that set, (3, parameters).
+class RateSets:
+    """How far the sets have grown: which set each body is in, and its twist in that set, (3, parameters).
 
     `rows` are the independent conditions on the parameters, `meetings` what they mean.
     """
 
-    knowledge: Knowledge
+    centres: KnownCentres
     member: dict[int, int]
     twists: dict[int, Number]
     moves: tuple[Move, ...] = ()
@@ -30,9 +30,9 @@ class Growth:
     rows: list[Number] = field(default_factory=list)
 
     @classmethod
-    def of(cls, knowledge: Knowledge) -> Growth:
+    def of(cls, centres: KnownCentres) -> RateSets:
         """Every body by itself; parameter 0 only."""
-        return cls(knowledge, {b: b for b in knowledge.bodies}, {b: np.zeros((3, 1)) for b in knowledge.bodies})
+        return cls(centres, {b: b for b in centres.bodies}, {b: np.zeros((3, 1)) for b in centres.bodies})
 
     @property
     def parameters(self) -> int:
@@ -48,11 +48,11 @@ class Growth:
         """Every two bodies of one set."""
         return ((i, j) for i, j in combinations(self.member, 2) if self.member[i] == self.member[j])
 
-    def turned(self, turn: Turn, amplitude: Number) -> Growth:
+    def turned(self, turn: Turn, amplitude: Number) -> RateSets:
         """A copy in which the set of `turn.k` moves relative to that of `turn.i`; a new parameter if it is one."""
         wide = max(self.parameters, turn.parameter + 1)
         twists = {b: np.pad(t, ((0, 0), (0, wide - t.shape[1]))) for b, t in self.twists.items()}
-        grown = Growth(self.knowledge, dict(self.member), twists, (*self.moves, turn), self.meetings)
+        grown = RateSets(self.centres, dict(self.member), twists, (*self.moves, turn), self.meetings)
         grown.rows = [np.pad(row, (0, wide - len(row))) for row in self.rows]
         relative = np.zeros((3, wide))
         relative[:, turn.parameter] = amplitude
@@ -68,16 +68,16 @@ class Growth:
                 self._bridge(move)
             self.moves = (*self.moves, move)
         for i, j in self.together():
-            for k in self.knowledge.bodies:
+            for k in self.centres.bodies:
                 if self.solved:
                     return
-                if k not in (i, j) and self.knowledge.knows(i, k) and self.knowledge.knows(k, j):
+                if k not in (i, j) and self.centres.knows(i, k) and self.centres.knows(k, j):
                     self._collect(Meeting(i, j, k))
 
     def _between(self) -> dict[Couple, list[Couple]]:
         """The known centres between every two sets, as (body of the first set, body of the second)."""
         found: dict[Couple, list[Couple]] = {}
-        for i, j in self.knowledge.rounds:
+        for i, j in self.centres.rounds:
             a, b = self.member[i], self.member[j]
             if a != b:
                 found.setdefault((a, b), []).append((i, j))
@@ -85,7 +85,7 @@ class Growth:
         return found
 
     def _next_join(self) -> Join | None:
-        place = self.knowledge.place
+        place = self.centres.place
         for known in self._between().values():
             for (i, k), (j, m) in combinations(known, 2):
                 if sine(place(i, k), place(j, m)) > GENERIC:
@@ -93,7 +93,7 @@ class Growth:
         return None
 
     def _next_bridge(self) -> Bridge | None:
-        place, between = self.knowledge.place, self._between()
+        place, between = self.centres.place, self._between()
         for a, b, c in combinations(dict.fromkeys(self.member.values()), 3):
             rings = product(between.get((a, b), ()), between.get((b, c), ()), between.get((c, a), ()))
             for (i, k), (l, m), (n, j) in rings:  # noqa: E741
@@ -116,10 +116,10 @@ class Growth:
         attach(self.twists, self.member, j, n, -q * b)
 
     def _place(self, i: int, j: int) -> Number:
-        return np.array(self.knowledge.place(i, j))[:, None]
+        return np.array(self.centres.place(i, j))[:, None]
 
     def _collect(self, meeting: Meeting) -> None:
-        line = self.knowledge.line(meeting.i, meeting.j, meeting.k)
+        line = self.centres.line(meeting.i, meeting.j, meeting.k)
         relative = self.twists[meeting.j] - self.twists[meeting.i]
         scale = float(np.linalg.norm(relative))
         if line is None or scale < GENERIC:
@@ -155,16 +155,16 @@ def ring_amplitudes(p: Number, r: Number, q: Number, gap: Number) -> tuple[Numbe
     return dot(gap, rq) / volume, dot(gap, qp) / volume, dot(gap, pr) / volume
 
 
-def drivers_growth(knowledge: Knowledge, bridges: bool = True) -> Growth:
+def driver_rate_sets(centres: KnownCentres, bridges: bool = True) -> RateSets:
     """The drivers' rates, carried as far as the known centres allow; to three links at a time with `bridges`."""
-    growth = Growth.of(knowledge)
-    for k, drive in enumerate(knowledge.diagram.drives):
-        i, j = knowledge.body[drive.first], knowledge.body[drive.second]
-        if growth.member[i] != growth.member[j]:
-            place = np.array(knowledge.generic[drive.primary])
-            growth = growth.turned(Turn(i, j, 0, k), knowledge.rates[k] * place)
-    growth.grow(bridges)
-    return growth
+    sets = RateSets.of(centres)
+    for k, drive in enumerate(centres.diagram.drives):
+        i, j = centres.body[drive.first], centres.body[drive.second]
+        if sets.member[i] != sets.member[j]:
+            place = np.array(centres.generic[drive.primary])
+            sets = sets.turned(Turn(i, j, 0, k), centres.rates[k] * place)
+    sets.grow(bridges)
+    return sets
 
 
 def attach(twists: dict[int, Number], member: dict[int, int], i: int, k: int, relative: Number) -> None:

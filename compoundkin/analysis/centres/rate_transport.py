@@ -24,7 +24,7 @@ MOVED = 1e-9
 LINEAR = 0.1
 
 
-class Carried:
+class TransportedRates:
     """Twists of bodies, (3, values + 1, 1 + SAMPLES, poses), each in the set of bodies it is known with."""
 
     def __init__(
@@ -77,17 +77,17 @@ class Carried:
         return self.sampled(self.points[couple(i, j)], self.spread[couple(i, j)])[:, None]
 
 
-def carry(
+def transport(
     moves: Sequence[Move],
     derivation: Derivation,
     points: Mapping[Couple, Number],
     spread: Mapping[Couple, Number],
     units: Sequence[Number],
     rates: Sequence[Number],
-) -> Carried:
+) -> TransportedRates:
     """The moves in order, over a block of poses; `units` are the primary centres, `rates` the drivers' amplitudes."""
     values = max((move.parameter for move in moves if isinstance(move, Turn)), default=0)
-    carried = Carried(tuple(dict.fromkeys(derivation.body)), values, points, spread)
+    carried = TransportedRates(tuple(dict.fromkeys(derivation.body)), values, points, spread)
     for move in moves:
         if isinstance(move, Join):
             carried.join(move)

@@ -6,7 +6,7 @@ import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple
 from compoundkin.analysis.centres.derivation_steps import BY_RATES, Given
-from compoundkin.analysis.centres.driver_rates import Rates, known, pick
+from compoundkin.analysis.centres.driver_rates import DriverRates, known, pick
 from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.homogeneous import cross, norm
 from compoundkin.base.series import Number
@@ -19,7 +19,7 @@ POOR = 1e6
 BETTER = 2.0
 
 
-def improve(evaluation: Evaluation) -> None:
+def recompute(evaluation: Evaluation) -> None:
     """Repeat, at poses with a poor centre, the best crossing of all its lines, until none gets better.
 
     Magnification grows along every chain of crossings, so that no centre comes to rest on itself.
@@ -37,10 +37,10 @@ def improve(evaluation: Evaluation) -> None:
     at = np.flatnonzero(poor)
     if at.size:
         with np.errstate(all="ignore"):
-            _Poor(evaluation, at, poses).run(crossed)
+            _PoorPoses(evaluation, at, poses).run(crossed)
 
 
-class _Poor:
+class _PoorPoses:
     """All lines of all centres, at the poses where a centre is poor."""
 
     def __init__(self, whole: Evaluation, at: Number, poses: tuple[int, ...]) -> None:
@@ -69,7 +69,7 @@ class _Poor:
 
     def _by_rates(self, crossed: list[Couple]) -> None:
         """Where all lines of a centre are nearly one: the drivers' rates, carried by the other centres."""
-        rates = Rates(self.whole.derivation, self.part.points, self.part.spread)
+        rates = DriverRates(self.whole.derivation, self.part.points, self.part.spread)
         rates.run(self.part.units, self.part.rates)
         none = np.full(len(self.at), BY_RATES, dtype=np.int32)
         for c in crossed:

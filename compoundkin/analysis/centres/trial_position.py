@@ -19,18 +19,18 @@ import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation_steps import Trial, Turn
-from compoundkin.analysis.centres.known_centres import Knowledge
-from compoundkin.analysis.centres.rate_sets import Growth, drivers_growth
+from compoundkin.analysis.centres.known_centres import KnownCentres
+from compoundkin.analysis.centres.rate_sets import RateSets, driver_rate_sets
 
 # Each value adds one to the trial positions; the search grows by a factor of some ten with each.
 MOST_VALUES = 3
 
 
-def find_trial(knowledge: Knowledge) -> Trial | None:
+def trial_position(centres: KnownCentres) -> Trial | None:
     """The next centres by the drivers' rates, or else one by as few trial values as will do; None if none will."""
-    starts = list(_starts(knowledge))
-    for start in [drivers_growth(knowledge, bridges=False), *starts]:
-        inside = [c for c in start.together() if not knowledge.knows(*c)]
+    starts = list(_starts(centres))
+    for start in [driver_rate_sets(centres, bridges=False), *starts]:
+        inside = [c for c in start.together() if not centres.knows(*c)]
         if inside and start.parameters == 1:
             return Trial(tuple(inside), start.moves, ())
     for values in range(1, MOST_VALUES + 1):
@@ -41,20 +41,20 @@ def find_trial(knowledge: Knowledge) -> Trial | None:
     return None
 
 
-def _starts(knowledge: Knowledge) -> Iterator[Growth]:
+def _starts(centres: KnownCentres) -> Iterator[RateSets]:
     """The rates of several drivers; with one, a rate about any known centre, for all are in proportion."""
-    if len(knowledge.diagram.drives) > 1:
-        yield drivers_growth(knowledge)
+    if len(centres.diagram.drives) > 1:
+        yield driver_rate_sets(centres)
         return
-    for i, j in knowledge.rounds:
-        growth = Growth.of(knowledge).turned(Turn(i, j, 0), np.array(knowledge.place(i, j)))
-        growth.grow()
-        yield growth
+    for i, j in centres.rounds:
+        sets = RateSets.of(centres).turned(Turn(i, j, 0), np.array(centres.place(i, j)))
+        sets.grow()
+        yield sets
 
 
-def _search(growth: Growth, values: int) -> Trial | None:
-    for turn in _turns(growth):
-        grown = growth.turned(turn, np.array(growth.knowledge.place(turn.i, turn.k)))
+def _search(sets: RateSets, values: int) -> Trial | None:
+    for turn in _turns(sets):
+        grown = sets.turned(turn, np.array(sets.centres.place(turn.i, turn.k)))
         grown.grow()
         if grown.solved:
             return Trial((_on_trial(grown),), grown.moves, grown.meetings)
@@ -64,20 +64,20 @@ def _search(growth: Growth, values: int) -> Trial | None:
     return None
 
 
-def _turns(growth: Growth) -> Iterator[Turn]:
+def _turns(sets: RateSets) -> Iterator[Turn]:
     """The trial values that may come next: about a known centre between a moving set and what is outside."""
     sizes: dict[int, int] = {}
-    for owner in growth.member.values():
+    for owner in sets.member.values():
         sizes[owner] = sizes.get(owner, 0) + 1
-    for c in growth.knowledge.rounds:
+    for c in sets.centres.rounds:
         for i, k in (c, c[::-1]):
-            if growth.member[i] != growth.member[k] and sizes[growth.member[i]] > 1:
-                yield Turn(i, k, growth.parameters)
+            if sets.member[i] != sets.member[k] and sizes[sets.member[i]] > 1:
+                yield Turn(i, k, sets.parameters)
 
 
-def _on_trial(growth: Growth) -> Couple:
+def _on_trial(sets: RateSets) -> Couple:
     """The unknown centre whose place was tried: on the line of the first trial value's centre and one of its set."""
-    unknown = [c for c in growth.together() if not growth.knowledge.knows(*c)]
-    first = next(move for move in growth.moves if isinstance(move, Turn) and move.parameter == 1)
-    tried = [couple(j, first.k) for j in growth.member if j != first.i and growth.knowledge.knows(first.i, j)]
+    unknown = [c for c in sets.together() if not sets.centres.knows(*c)]
+    first = next(move for move in sets.moves if isinstance(move, Turn) and move.parameter == 1)
+    tried = [couple(j, first.k) for j in sets.member if j != first.i and sets.centres.knows(first.i, j)]
     return next((c for c in tried if c in unknown), unknown[0])

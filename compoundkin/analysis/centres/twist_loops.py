@@ -20,7 +20,7 @@ Path = dict[int, int]  # edge of the diagram -> +1 or -1 as it is run through
 
 
 @dataclass(frozen=True)
-class Loops:
+class TwistLoops:
     """Independent loops and, for every link, the way to it from the first link of its part, as signed edges."""
 
     loops: tuple[Path, ...]
@@ -28,7 +28,7 @@ class Loops:
     connected: bool
 
 
-def loops_of(diagram: Diagram) -> Loops:
+def loops_of(diagram: Diagram) -> TwistLoops:
     """The fundamental loops of a breadth-first tree."""
     paths: dict[int, Path] = {0: {}}
     tree: set[int] = set()
@@ -41,7 +41,9 @@ def loops_of(diagram: Diagram) -> Loops:
                     queue.append(there)
     reached = [(e, a, b) for e, (a, b, _) in enumerate(diagram.edges) if e not in tree and a in paths and b in paths]
     loops = tuple(_sum({**paths[a]}, {e: 1}, paths[b]) for e, a, b in reached)
-    return Loops(loops, tuple(paths.get(k, {}) for k in range(len(diagram.links))), len(paths) == len(diagram.links))
+    return TwistLoops(
+        loops, tuple(paths.get(k, {}) for k in range(len(diagram.links))), len(paths) == len(diagram.links)
+    )
 
 
 def _sum(there: Path, across: Path, back: Path) -> Path:
@@ -126,7 +128,7 @@ def _null_vector(matrix: Number) -> tuple[Number, Number]:
     return np.where(good[..., None], vh[..., -1, :], np.nan), gap
 
 
-def _along(loops: Loops, bases: list[list[Number]], starts: Number, omega: Number) -> Number:
+def _along(loops: TwistLoops, bases: list[list[Number]], starts: Number, omega: Number) -> Number:
     twists = np.zeros((len(loops.paths), 3, *omega.shape[:-1]))
     for link, path in enumerate(loops.paths):
         for e, sign in path.items():

@@ -7,14 +7,14 @@ import numpy as np
 from compoundkin.analysis.centres.circle_diagram import couple
 from compoundkin.analysis.centres.homogeneous import cross, norm
 from compoundkin.analysis.centres.instant_centres import Centres
-from compoundkin.analysis.centres.primary_centres import Scale
+from compoundkin.analysis.centres.primary_centres import OwnCoordinates
 from compoundkin.analysis.centres.twist_loops import null_twists
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 
 
-def solved_twists(motion: Motion, scale: Scale) -> Number:
+def solved_twists(motion: Motion, scale: OwnCoordinates) -> Number:
     """Every link's twist as solved, (links, 3, poses), in own coordinates.
 
     Raises InvalidInput for a motion of order 0.

@@ -1,8 +1,8 @@
 """Relative motion of any two links as geometry: pole, centrodes, inflection circle, curvature of paths."""
 
 from compoundkin.analysis.coupler.bresse_circles import (
+    BresseCircle,
     CanonicalFrame,
-    Circle,
     acceleration_pole,
     canonical_frame,
     inflection_circle,
@@ -14,9 +14,9 @@ from compoundkin.analysis.coupler.relative_motion import relative_link, relative
 from compoundkin.analysis.coupler.stationary_curvature import StationaryCurvature, stationary_curvature
 
 __all__ = [
+    "BresseCircle",
     "CanonicalFrame",
     "Centrodes",
-    "Circle",
     "PathCurvature",
     "Pole",
     "StationaryCurvature",

@@ -39,7 +39,7 @@ class CanonicalFrame:
 
 
 @dataclass(frozen=True, eq=False)
-class Circle:
+class BresseCircle:
     """A circle, or a line, by a point it runs through; arrays of the motion's shape.
 
     `through` is the pole, or a point of the line where the pole is at infinity; `direction` the unit vector from there
@@ -75,7 +75,7 @@ class Circle:
     def offset(self, points: Number) -> Number:
         """How far points are outside (positive) the circle, or beside the line away from its normal.
 
-        >>> Circle(np.array([0j]), np.array([1j]), np.array([2.0]), np.array([True])).offset(2 + 1j).tolist()
+        >>> BresseCircle(np.array([0j]), np.array([1j]), np.array([2.0]), np.array([True])).offset(2 + 1j).tolist()
         [1.0]
         """
         arm = points - self.through
@@ -104,7 +104,7 @@ def canonical_frame(motion: Motion, link: str, on: str = FRAME) -> CanonicalFram
 
 
 @np.errstate(all="ignore")
-def inflection_circle(motion: Motion, link: str, on: str = FRAME) -> Circle:
+def inflection_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircle:
     """The points of `link` whose paths on `on` have no curvature at the moment, in the frame of `on`.
 
     Lengths in the user's unit; independent of the driver's speed. At a pose of pure translation the pole is at
@@ -125,7 +125,7 @@ def inflection_circle(motion: Motion, link: str, on: str = FRAME) -> Circle:
 
 
 @np.errstate(all="ignore")
-def tangential_circle(motion: Motion, link: str, on: str = FRAME) -> Circle:
+def tangential_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircle:
     """The points of `link` that neither speed up nor slow down as seen from `on`, in the frame of `on`.
 
     The second circle of Bresse; it runs through the pole, at right angles to the inflection circle, and depends on the
@@ -186,11 +186,11 @@ def _translation(seen: Relative) -> tuple[Number, Number, Number]:
     return seen.z.derivative(1), seen.z.derivative(2), np.where(np.abs(alpha) > SMALL * seen.scale(2), alpha, 0.0)
 
 
-def _circle(seen: Relative, towards: Number, diameter: Number, beside: Number, normal: Number) -> Circle:
+def _circle(seen: Relative, towards: Number, diameter: Number, beside: Number, normal: Number) -> BresseCircle:
     """A circle at the pole; at a pole at infinity the line through the origin's neighbour `beside`."""
     line = seen.regular & ~seen.turning & ~seen.resting & np.isfinite(beside)
     defined = line | seen.turning & ~np.isnan(diameter)
-    return Circle(
+    return BresseCircle(
         seen.masked(np.where(line, seen.z.c[0] + beside, seen.pole.c[0]), defined),
         seen.masked(np.where(line, normal, towards), defined),
         seen.masked(np.where(line, np.inf, diameter), defined),

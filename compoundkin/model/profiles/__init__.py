@@ -4,15 +4,15 @@ Coordinates are those of the link that carries the profile. What they have in co
 """
 
 from compoundkin.model.profiles.contract import Profile, side_of
-from compoundkin.model.profiles.given_profiles import Disc, Formula, Points, disc, formula, profile
+from compoundkin.model.profiles.given_profiles import DiscProfile, FormulaProfile, PointsProfile, disc, formula, profile
 from compoundkin.model.profiles.synthesised import Synthesised, synthesise
 
-KINDS: tuple[type[Profile], ...] = (Disc, Points, Formula, Synthesised)
+KINDS: tuple[type[Profile], ...] = (DiscProfile, PointsProfile, FormulaProfile, Synthesised)
 
 # Those that a mechanism file can hold, by their name there.
 WRITTEN: dict[str, type[Profile]] = {kind.kind: kind for kind in KINDS if kind.keys}
 
 __all__ = [
-    "KINDS", "WRITTEN", "Disc", "Formula", "Points", "Profile", "Synthesised",
+    "KINDS", "WRITTEN", "DiscProfile", "FormulaProfile", "PointsProfile", "Profile", "Synthesised",
     "disc", "formula", "profile", "side_of", "synthesise",
 ]  # fmt: skip

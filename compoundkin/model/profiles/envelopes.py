@@ -45,7 +45,7 @@ class Lift:
         return tuple((self.start + sense * piece.start) % FULL_TURN for piece in self.program.pieces)
 
 
-class Way(ABC):
+class FollowerGuide(ABC):
     """How a follower moves by its coordinate; see `Translating` and `Oscillating`."""
 
     @property
@@ -68,7 +68,7 @@ class Way(ABC):
 
 
 @dataclass(frozen=True)
-class Translating(Way):
+class Translating(FollowerGuide):
     """Along a guide in a direction, `offset` to its left; `prime` is the distance of the edge or face at home."""
 
     prime: float
@@ -95,7 +95,7 @@ class Translating(Way):
 
 
 @dataclass(frozen=True)
-class Oscillating(Way):
+class Oscillating(FollowerGuide):
     """About a pivot; the coordinate is the angle of the arm or face. `face` is how far the face is beyond the pivot.
 
     `side` +1: the arm rises counterclockwise, so that it is on the left of the line from the pivot to the cam.
@@ -141,16 +141,16 @@ class Envelope:
     """What a follower that is carried round a cam leaves of it."""
 
     lift: Lift
-    way: Way
+    guide: FollowerGuide
     roller: float
 
     def coordinate(self, s: Series) -> Series:
         """The follower's coordinate by the cam's angle."""
-        return self.lift.at(s) * self.way.sense + self.way.home
+        return self.lift.at(s) * self.guide.sense + self.guide.home
 
     def pitch(self) -> Analytic:
         """The way of the knife edge or of the roller's middle, in the cam's frame."""
-        return self._curve(lambda s: self.way.middle(self.coordinate(s)) * (-s).turn())
+        return self._curve(lambda s: self.guide.middle(self.coordinate(s)) * (-s).turn())
 
     def rolled(self) -> Analytic:
         """What the roller leaves: the parallel curve on the cam's side."""
@@ -177,7 +177,7 @@ class Envelope:
         return Analytic(function, 0.0, FULL_TURN, True, self.lift.breaks)
 
     def _facing(self, s: Series) -> tuple[Series, Series]:
-        normal, distance = self.way.facing(self.coordinate(s))
+        normal, distance = self.guide.facing(self.coordinate(s))
         return normal * (-s).turn(), distance
 
     def _touched(self, s: Series) -> Series:

@@ -145,9 +145,9 @@ def _face(made: Synthesised, apart: float) -> Iterator[Problem]:
 
 def _highest(made: Synthesised) -> float:
     """The greatest angle between the arm or face and the line from the pivot to the cam's axis."""
-    way = made.way
-    assert isinstance(way, Oscillating)
-    return way.opening + float(np.max(made.program.values))
+    guide = made.guide
+    assert isinstance(guide, Oscillating)
+    return guide.opening + float(np.max(made.program.values))
 
 
 # --- undercut -------------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ from compoundkin.model.profiles.contract import Profile
 
 
 @dataclass(frozen=True)
-class Disc(Profile):
+class DiscProfile(Profile):
     """A round disc, an eccentric if its `middle` is not the axis of its link."""
 
     radius: float
@@ -44,7 +44,7 @@ class Disc(Profile):
             yield Problem(f"{where}.middle", f"{self.middle!r} is not a finite point")
 
 
-def disc(radius: float, middle: Any = 0j) -> Disc:
+def disc(radius: float, middle: Any = 0j) -> DiscProfile:
     """The profile of a round disc of a radius about a point of its link, (x, y) or complex.
 
     Raises InvalidMechanism for what is no number or no point.
@@ -52,11 +52,11 @@ def disc(radius: float, middle: Any = 0j) -> Disc:
     >>> disc(20, (5, 0)).circle
     ((5+0j), 20.0)
     """
-    return Disc(number_of(radius, "profile.radius"), place_of(middle, "profile.middle"))
+    return DiscProfile(number_of(radius, "profile.radius"), place_of(middle, "profile.middle"))
 
 
 @dataclass(frozen=True)
-class Points(Profile):
+class PointsProfile(Profile):
     """A smooth curve through given points, closed or open."""
 
     points: tuple[complex, ...]
@@ -72,7 +72,7 @@ class Points(Profile):
         return Spline(self.points, self.closed)
 
 
-def profile(points: Any, *, closed: bool = True) -> Points:
+def profile(points: Any, *, closed: bool = True) -> PointsProfile:
     """The profile through points, complex or (x, y): closed as of a cam, or open as of a slot.
 
     Raises InvalidMechanism for what are not points; fewer than four are told when the mechanism is built.
@@ -82,11 +82,11 @@ def profile(points: Any, *, closed: bool = True) -> Points:
     """
     if not np.iterable(points):
         raise InvalidMechanism(Problem("profile.points", f"{points!r} is not a list of points", "write [(x, y), ...]"))
-    return Points(tuple(place_of(point, f"profile.points[{k}]") for k, point in enumerate(points)), closed)
+    return PointsProfile(tuple(place_of(point, f"profile.points[{k}]") for k, point in enumerate(points)), closed)
 
 
 @dataclass(frozen=True)
-class Formula(Profile):
+class FormulaProfile(Profile):
     """A curve by a Python function of a parameter from `low` to `high`: complex points for an array of parameters."""
 
     function: Callable[[Any], Any]
@@ -101,11 +101,11 @@ class Formula(Profile):
         return Function(self.function, self.low, self.high, self.closed)
 
 
-def formula(function: Callable[[Any], Any], low: float, high: float, *, closed: bool = True) -> Formula:
+def formula(function: Callable[[Any], Any], low: float, high: float, *, closed: bool = True) -> FormulaProfile:
     """The profile that a Python function traces: complex points for an array of parameters.
 
     >>> import numpy as np
     >>> formula(lambda s: 2 * np.cos(s) + 1j * np.sin(s), 0, 2 * np.pi).curve.closed
     True
     """
-    return Formula(function, number_of(low, "profile.low"), number_of(high, "profile.high"), closed)
+    return FormulaProfile(function, number_of(low, "profile.low"), number_of(high, "profile.high"), closed)

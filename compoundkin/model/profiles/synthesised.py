@@ -16,7 +16,7 @@ from compoundkin.model.fields import Key
 from compoundkin.model.geometry import place_of
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.profiles.contract import Profile
-from compoundkin.model.profiles.envelopes import Envelope, Lift, Oscillating, Translating, Way
+from compoundkin.model.profiles.envelopes import Envelope, FollowerGuide, Lift, Oscillating, Translating
 from compoundkin.model.profiles.fitness import faults, undercuts
 
 
@@ -76,7 +76,7 @@ class Synthesised(Profile):
         return self.base + self.roller
 
     @property
-    def way(self) -> Way:
+    def guide(self) -> FollowerGuide:
         """How the follower moves."""
         flat = self.follower == "flat"
         if self.pivot is None:
@@ -86,7 +86,7 @@ class Synthesised(Profile):
     @cached_property
     def envelope(self) -> Envelope:
         """The follower carried round the cam."""
-        return Envelope(Lift(self.program, self.start, self.clockwise), self.way, self.roller)
+        return Envelope(Lift(self.program, self.start, self.clockwise), self.guide, self.roller)
 
     @cached_property
     def pitch_curve(self) -> Analytic | None:

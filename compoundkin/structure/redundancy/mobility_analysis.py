@@ -11,12 +11,12 @@ from compoundkin.base.display import Shows
 from compoundkin.base.poses import Pose
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.decomposition import decompose
+from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.redundancy.constraint_equations import ROUNDED, Equations
 from compoundkin.structure.redundancy.diagnosis import WIDEST, Examined, examined
 from compoundkin.structure.redundancy.finite_motion import rank_of
 from compoundkin.structure.redundancy.passive_freedoms import PassiveFreedom, passive_motions
 from compoundkin.structure.redundancy.self_stress import chosen, stressed_pairs
-from compoundkin.structure.structure import Structure
 
 # Singular values at random geometry are zero below this part of the largest. They get small in long mechanisms.
 GENERIC = 1e-12

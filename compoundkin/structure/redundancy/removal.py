@@ -12,10 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from compoundkin.structure.decomposition import decomposed
+from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import Group, Relaxation
 from compoundkin.structure.redundancy.diagnosis import WIDEST, Examined, examined
 from compoundkin.structure.redundancy.self_stress import Candidate, chosen, strength
-from compoundkin.structure.structure import Structure
 
 # How many structures are compared, and by how much weaker than the first choice others may be.
 COMPARED = 400

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from compoundkin.model.elements import FRAME
+from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import Group
-from compoundkin.structure.structure import Structure
 from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS
 from compoundkin.synthesis.chains.chain_names import chain_name
 from compoundkin.synthesis.chains.joints import MOST_CHAINS, REVOLUTE, Joint, Joints

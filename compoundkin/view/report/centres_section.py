@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.centres import Centre, Centres, Step, instant_centres
+from compoundkin.analysis.centres import Centre, Centres, DerivationStep, instant_centres
 from compoundkin.analysis.centres.centre_velocities import POOR
 from compoundkin.analysis.centres.circle_diagram import diagram_of
 from compoundkin.analysis.centres.derivation import derive
@@ -110,7 +110,7 @@ def derivation_section(structure: Structure) -> Section:
     return Section("derivation", "Derivation of the centres", (Paragraph(text), Table(columns, rows)))
 
 
-def _derived(step: Step) -> str:
+def _derived(step: DerivationStep) -> str:
     return _two_lines(step.text) if step.kind == "crossing" else step.text
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from compoundkin.analysis.centres import Step
+from compoundkin.analysis.centres import DerivationStep
 from compoundkin.analysis.centres.circle_diagram import diagram_of
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.structure import Structure
@@ -40,7 +40,7 @@ def circle_diagram(structure: Structure, numbers: Mapping[str, int], size: float
     return Picture((paper, *chords, *nodes, *texts), width, height, title, _counted(steps), checked_size(size))
 
 
-def _chord(step: Step, places: Mapping[str, complex], numbers: Mapping[str, int]) -> Shape:
+def _chord(step: DerivationStep, places: Mapping[str, complex], numbers: Mapping[str, int]) -> Shape:
     line = Polyline(tuple(places[name] for name in step.centre), "ink" if step.kind == "primary" else "ray")
     return Group((line,), title=_name(step.centre, numbers))
 
@@ -49,7 +49,7 @@ def _node(name: str, at: complex, number: int) -> Shape:
     return Group((Circle(at, NUMBER + 1.5, "pin ink"), Text(at, str(number), "number")), title=name, links=(name,))
 
 
-def _list(steps: Sequence[Step], numbers: Mapping[str, int]) -> tuple[list[Shape], float]:
+def _list(steps: Sequence[DerivationStep], numbers: Mapping[str, int]) -> tuple[list[Shape], float]:
     """The steps as lines of text beside the circle, and the width with them."""
     lines = [_line(step, numbers) for step in steps if step.kind != "primary"]
     first = [_name(step.centre, numbers) for step in steps if step.kind == "primary"]
@@ -65,7 +65,7 @@ def _list(steps: Sequence[Step], numbers: Mapping[str, int]) -> tuple[list[Shape
     return shapes, round(x, 1)
 
 
-def _line(step: Step, numbers: Mapping[str, int]) -> str:
+def _line(step: DerivationStep, numbers: Mapping[str, int]) -> str:
     """A step in short: 13 = 12 23 x 14 34."""
     if step.kind != "crossing":
         return f"{_name(step.centre, numbers)}: {step.kind}"
@@ -79,6 +79,6 @@ def _name(links: tuple[str, str], numbers: Mapping[str, int]) -> str:
     return f"{first}{second}" if second < 10 else f"{first},{second}"
 
 
-def _counted(steps: Sequence[Step]) -> str:
+def _counted(steps: Sequence[DerivationStep]) -> str:
     primary = sum(step.kind == "primary" for step in steps)
     return f"{primary} primary centres, {len(steps) - primary} secondary ones"

@@ -9,7 +9,7 @@ import networkx as nx
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.analysis.centres.circle_diagram import Diagram, Driven, Primary
+from compoundkin.analysis.centres.circle_diagram import Diagram, DrivenCentre, Primary
 from tests.support import home
 
 # The numbers of links with more than two pins, by their pins, that mobility 1 allows.
@@ -67,7 +67,7 @@ def diagram(graph: nx.Graph) -> Diagram:
     """A chain as a circle diagram, driven at its first pin."""
     edges = sorted(tuple(sorted(edge)) for edge in graph.edges)
     pins = tuple(Primary(f"pin {a}-{b}", f"{a}-{b}", (a, b), "point") for a, b in edges)
-    return Diagram(tuple(str(k) for k in sorted(graph)), pins, (Driven("driver", *edges[0], 0, 1),))
+    return Diagram(tuple(str(k) for k in sorted(graph)), pins, (DrivenCentre("driver", *edges[0], 0, 1),))
 
 
 def name(link: int | str) -> str:

@@ -13,7 +13,7 @@ from compoundkin.analysis.centres.derivation import derive
 from compoundkin.analysis.centres.derivation_steps import Trial
 from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.homogeneous import apart
-from compoundkin.analysis.centres.recomputation import improve
+from compoundkin.analysis.centres.recomputation import recompute
 from compoundkin.analysis.centres.twist_loops import null_twists
 from compoundkin.analysis.centres.twists import disagreement, loop_twists, solved_twists
 from tests.analysis.centres.chains import DOUBLE_BUTTERFLY, SINGLE_FLIER, chains, diagram, random_mechanism, solved
@@ -78,7 +78,7 @@ def test_against_the_null_vector_at_many_random_geometries(graph: nx.Graph) -> N
     units = [np.stack([x, y, np.ones(MANY)]) / np.sqrt(x * x + y * y + 1.0) for x, y in places]
     found = Evaluation(derive(circle), units, [np.ones(1)])
     found.run(None)
-    improve(found)
+    recompute(found)
     twists, gap = null_twists(circle, units, [np.ones(1)])
     compared = 0
     for (i, j), point in found.points.items():

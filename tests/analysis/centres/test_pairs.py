@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from compoundkin.analysis.centres.circle_diagram import Diagram, Driven, Primary
+from compoundkin.analysis.centres.circle_diagram import Diagram, DrivenCentre, Primary
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.homogeneous import apart, dot
@@ -80,7 +80,7 @@ def test_pin_in_slot() -> None:
             Primary("pin Q", "Q", (0, 2), "point"),
             Primary("slot", "slot", (1, 2), "line"),
         ),
-        (Driven("crank", 0, 1, 0, 1),),
+        (DrivenCentre("crank", 0, 1, 0, 1),),
     )
     step = derive(diagram).steps[-1]
     assert step.text == "line (slot) x line (crank frame)(frame lever)"
@@ -101,7 +101,7 @@ def test_two_slots_between_two_links() -> None:
     driven = Diagram(
         ("frame", "plate", "crank"),
         (*diagram.primaries, Primary("pin A", "A", (0, 2), "point"), Primary("slot c", "c", (1, 2), "line")),
-        (Driven("crank", 0, 2, 2, 1),),
+        (DrivenCentre("crank", 0, 2, 2, 1),),
     )
     assert derive(driven).steps[1].text == "line (slot a) x line (slot b)"
     confirmed(driven)
@@ -112,7 +112,7 @@ def test_three_links_on_one_pin_give_one_line_only() -> None:
     names = ("frame", "crank", "one", "two", "left", "right")
     pins = [("A", (0, 1)), ("B", (1, 2, 3)), ("C", (2, 4)), ("D", (0, 4)), ("E", (3, 5)), ("F", (0, 5))]
     primaries = tuple(Primary(f"pin {letter}", letter, links, "point") for letter, links in pins)
-    diagram = Diagram(names, primaries, (Driven("crank", 0, 1, 0, 1),))
+    diagram = Diagram(names, primaries, (DrivenCentre("crank", 0, 1, 0, 1),))
     steps = derive(diagram).steps
     assert len(steps) == 15
     assert [step.kind for step in steps].count("primary") == 8
@@ -123,4 +123,4 @@ def test_a_driver_between_two_links_of_a_multiple_pin() -> None:
     names = ("frame", "crank", "one", "two", "left", "right")
     pins = [("A", (0, 1)), ("B", (1, 2, 3)), ("C", (2, 4)), ("D", (0, 4)), ("E", (3, 5)), ("F", (0, 5))]
     primaries = tuple(Primary(f"pin {letter}", letter, links, "point") for letter, links in pins)
-    confirmed(Diagram(names, primaries, (Driven("elbow", 2, 3, 1, 1),)))
+    confirmed(Diagram(names, primaries, (DrivenCentre("elbow", 2, 3, 1, 1),)))

@@ -14,7 +14,7 @@ from compoundkin.analysis.centres.derivation import derive
 from compoundkin.analysis.centres.derivation_steps import Trial
 from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.homogeneous import apart
-from compoundkin.analysis.centres.rate_sets import Growth
+from compoundkin.analysis.centres.rate_sets import RateSets
 from compoundkin.analysis.centres.twist_loops import null_twists
 from tests.analysis.centres.chains import DOUBLE_BUTTERFLY, SINGLE_FLIER, diagram, random_mechanism, solved
 from tests.support import home
@@ -30,7 +30,7 @@ def _fresh_derivations() -> Iterator[None]:
 @pytest.mark.parametrize(("graph6", "values"), [(DOUBLE_BUTTERFLY, 3), (SINGLE_FLIER, 2)])
 def test_several_trial_values(graph6: str, values: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Carried link by link only, the motion needs more trial values; the answer is the same."""
-    monkeypatch.setattr(Growth, "_next_bridge", lambda growth: None)
+    monkeypatch.setattr(RateSets, "_next_bridge", lambda sets: None)
     circle = diagram(nx.from_graph6_bytes(graph6.encode()))
     plan = derive(circle)
     trial = next(rule for rule in plan.rules if isinstance(rule, Trial))
@@ -47,7 +47,7 @@ def test_several_trial_values(graph6: str, values: int, monkeypatch: pytest.Monk
 
 
 def test_what_nothing_else_gives_comes_from_the_solved_velocities(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(derivation, "find_trial", lambda knowledge: None)
+    monkeypatch.setattr(derivation, "trial_position", lambda centres: None)
     flier = random_mechanism(nx.from_graph6_bytes(SINGLE_FLIER.encode()), 0)
     centres = instant_centres(solved(flier))
     by_velocity = [couple for couple in centres if centres[couple].how == "solved velocities"]
@@ -62,7 +62,7 @@ def test_what_nothing_else_gives_comes_from_the_solved_velocities(monkeypatch: p
 
 
 def test_without_velocities_they_are_undetermined(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(derivation, "find_trial", lambda knowledge: None)
+    monkeypatch.setattr(derivation, "trial_position", lambda centres: None)
     flier = random_mechanism(nx.from_graph6_bytes(SINGLE_FLIER.encode()), 0)
     centres = instant_centres(ck.solve(flier, home(flier), order=0))
     statuses = [int(centres[couple].status) for couple in centres]
