@@ -11,8 +11,7 @@ import numpy as np
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.driver_rates import DriverRates
-from compoundkin.analysis.centres.homogeneous import cross, dot
-from compoundkin.analysis.centres.primary_centres import OwnCoordinates, PrimaryCentres
+from compoundkin.analysis.centres.homogeneous import OwnCoordinates, PrimaryCentres, cross, dot
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.analysis.centres.circle_diagram import Couple, diagram_of
+from compoundkin.analysis.centres.circle_diagram import Couple, Diagram, diagram_of
 from compoundkin.analysis.centres.derivation import Derivation, derive
 from compoundkin.analysis.centres.derivation_steps import SolvedCentre
 from compoundkin.analysis.centres.evaluation import Evaluation
+from compoundkin.analysis.centres.homogeneous import OwnCoordinates, PrimaryCentres, norm
 from compoundkin.analysis.centres.instant_centres import Centres
-from compoundkin.analysis.centres.primary_centres import PrimaryCentres, places_of, scale_of
 from compoundkin.analysis.centres.recomputation import recompute
-from compoundkin.analysis.centres.twists import solved_twists
+from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
+from compoundkin.model.elements import FRAME
+from compoundkin.model.pairs.contract import Line
 
 # Poses a block: temporaries of a few dozen arrays of this length stay in a second-level cache.
 BLOCK = 4096
@@ -93,4 +95,63 @@ def _lines(parts: list[Evaluation], blocks: list[slice]) -> dict[Couple, tuple[N
         own = [(part.lines[c], b.start) for part, b in zip(parts, blocks, strict=True) if c in part.lines]
         first, second = (np.concatenate([lines[k] for lines, _ in own]) for k in (1, 2))
         found[c] = np.concatenate([lines[0] + start for lines, start in own]), first, second
+    return found
+
+
+def scale_of(motion: Motion) -> OwnCoordinates:
+    """Own coordinates around the middle of the frame's points."""
+    points = list(motion.mechanism.geometry.points[FRAME].values())
+    middle = np.mean([np.mean(p) for p in points]) if points else 0.0
+    return OwnCoordinates(complex(middle), motion.size)
+
+
+def places_of(motion: Motion, diagram: Diagram, scale: OwnCoordinates) -> PrimaryCentres:
+    """The primary centres at every pose, poses and designs in one axis."""
+    units, lengths = [], []
+    for primary in diagram.primaries:
+        pair = motion.tracker.plan.pairs[primary.pair]
+        first, second = (_still(motion.poses[name]) for name in pair.members[:2])
+        centre = pair.centre(motion.inputs.ends[primary.pair], (first, second))
+        assert centre is not None
+        vector = _flat(motion, scale.own_line(centre) if isinstance(centre, Line) else scale.own(*centre))
+        length = norm(vector)
+        units.append(vector / length)
+        lengths.append(length)
+    rates = tuple(
+        _flat(motion, np.asarray(motion.inputs.drives[d.driver][1], dtype=float)[None])[0] * lengths[d.primary] * d.sign
+        for d in diagram.drives
+    )
+    return PrimaryCentres(tuple(units), rates)
+
+
+def _still(pose: Pose) -> Pose:
+    """The pose without its derivatives."""
+    return pose if pose is FIXED else Pose.of(pose.z.c[0], pose.u.c[0])
+
+
+def _flat(motion: Motion, vector: Number) -> Number:
+    """(3, 1 or designs, 1 or poses) with the last two axes as one; one column where it never changes."""
+    if vector[0].size == 1:
+        return vector.reshape(-1, 1)
+    shape = (len(vector), motion.inputs.designs, motion.inputs.poses)
+    return np.ascontiguousarray(np.broadcast_to(vector, shape)).reshape(len(vector), -1)
+
+
+def solved_twists(motion: Motion, scale: OwnCoordinates) -> Number:
+    """Every link's twist as solved, (links, 3, poses), in own coordinates.
+
+    Raises InvalidInput for a motion of order 0.
+    """
+    motion._has(1)
+    count = motion.inputs.designs * motion.inputs.poses
+    shape = (motion.inputs.designs, motion.inputs.poses)
+    found = np.zeros((len(motion.mechanism.links), 3, count))
+    for k, name in enumerate(motion.mechanism.links):
+        pose = motion.poses[name]
+        u, du = pose.u.derivative(0), pose.u.derivative(1)
+        omega = np.imag(np.conjugate(u) * du)
+        # i v0 is omega times the centre; v0 is the velocity of the link's point at the world's origin
+        about = 1j * (pose.z.derivative(1) - 1j * omega * pose.z.derivative(0))
+        parts = [np.broadcast_to(v, shape).ravel() for v in (np.real(about), np.imag(about), omega)]
+        found[k] = scale.own(*parts)
     return found

@@ -1,4 +1,4 @@
-"""Points and lines of the projective plane as real 3-vectors, coordinates first: arrays of shape (3, ...).
+"""Points and lines of the projective plane as real 3-vectors, in the mechanism's own coordinates: shape (3, ...).
 
 A point (x, y, w) is at (x / w, y / w), at infinity where w is zero; a line (a, b, c) holds the points with
 ``a x + b y + c w = 0``. The cross product joins two points and meets two lines, parallel ones included.
@@ -7,9 +7,12 @@ Trailing axes broadcast.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from compoundkin.base.series import Number
+from compoundkin.model.pairs.contract import Line
 
 
 def cross(a: Number, b: Number) -> Number:
@@ -51,3 +54,52 @@ def apart(a: Number, b: Number) -> Number:
     0.0
     """
     return norm(cross(a, b)) / (norm(a) * norm(b))
+
+
+@dataclass(frozen=True)
+class OwnCoordinates:
+    """Own coordinates: a place p of the world is at ``(p - origin) / size``.
+
+    Homogeneous vectors of order one then have errors of rounding size, wherever and however large the mechanism.
+    """
+
+    origin: complex
+    size: float
+
+    def own(self, x: Number, y: Number, w: Number) -> Number:
+        """A point, or a twist, of the world in own coordinates, (3, ...)."""
+        shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(w))
+        out = np.empty((3, *shape))
+        out[0] = (x - self.origin.real * w) / self.size
+        out[1] = (y - self.origin.imag * w) / self.size
+        out[2] = w
+        return out
+
+    def own_line(self, line: Line) -> Number:
+        """A line of the world in own coordinates, (3, ...)."""
+        a, b, c = line
+        shape = np.broadcast_shapes(np.shape(a), np.shape(b), np.shape(c))
+        out = np.empty((3, *shape))
+        out[0] = a * self.size
+        out[1] = b * self.size
+        out[2] = a * self.origin.real + b * self.origin.imag + c
+        return out
+
+    def world(self, point: Number) -> Number:
+        """Own homogeneous coordinates in the world's, (3, ...)."""
+        out = np.empty_like(point)
+        out[0] = point[0] * self.size + self.origin.real * point[2]
+        out[1] = point[1] * self.size + self.origin.imag * point[2]
+        out[2] = point[2]
+        return out
+
+
+@dataclass(frozen=True)
+class PrimaryCentres:
+    """The primary centres of a motion: unit vectors (3, poses or 1), and the lengths they had before.
+
+    A driver's rate times the length is the amplitude of its twist on the unit vector; `rates` holds these.
+    """
+
+    units: tuple[Number, ...]
+    rates: tuple[Number, ...]

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.analysis.checks.centre_check import centre_findings
-from compoundkin.analysis.checks.continuity import continuity_findings
-from compoundkin.analysis.checks.derivative_check import difference_findings
+from compoundkin.analysis.checks.difference_check import continuity_findings, difference_findings
 from compoundkin.analysis.checks.finding import Check, Finding
-from compoundkin.analysis.checks.residuals import residuals
+from compoundkin.analysis.checks.residuals import centre_findings, residuals
 from compoundkin.kinematics import Motion
 
 __all__ = ["Check", "Finding", "verify"]

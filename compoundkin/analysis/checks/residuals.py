@@ -1,4 +1,4 @@
-"""Residuals of a motion in the pairs' own equations.
+"""Residuals of a motion in the pairs' own equations, and against the instant centres that geometry alone gives.
 
 Positions: what a pair holds must be zero. Velocities: the pair's Jacobian times the links' velocities must
 be zero. Accelerations: so must the second derivative of what it holds. Links: orientations must stay unit
@@ -12,7 +12,10 @@ from math import factorial
 
 import numpy as np
 
+from compoundkin.analysis.centres import instant_centres
+from compoundkin.analysis.centres.centre_velocities import SLOWEST
 from compoundkin.analysis.checks.finding import Finding, worst
+from compoundkin.base.errors import NotDetermined
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
 from compoundkin.model.pairs import Pair
@@ -23,8 +26,9 @@ TOLERANCE = 1e-9
 # Dimensions that must fit although nothing holds them are given to some five digits.
 FITS = 1e-5
 ORDERS = ("closure", "velocity", "acceleration", "jerk")
-# A pose slower than this part of the motion's fastest is judged by that: a mechanism at rest has no own scale.
-SLOWEST = 1e-6
+# n links have n (n - 1) / 2 centres and n (n - 1) (n - 2) / 6 triples: beyond this many links they take longer
+# than the motion did, and a mechanism of so many links is no longer checked by them.
+MOST_LINKS = 40
 
 
 def residuals(motion: Motion) -> Iterator[Finding]:
@@ -118,3 +122,28 @@ def _scale(motion: Motion, k: int, counted: Number) -> Number:
             largest = np.maximum(largest, size * np.abs(pose.u.derivative(1)) ** k)
     fastest = float(np.max(largest, where=counted, initial=0.0))
     return np.maximum(largest, SLOWEST * fastest) if fastest > 0 else np.ones(counted.shape)
+
+
+def centre_findings(motion: Motion) -> Iterator[Finding]:
+    """Velocities from centres, and the theorem itself, at poses where they are well conditioned.
+
+    Nothing for a motion without velocities, without drivers, or of more than MOST_LINKS links.
+    """
+    still = motion.order < 1 or not motion.inputs.drives or not motion.regular.any()
+    if still or len(motion.mechanism.links) > MOST_LINKS:
+        return
+    try:
+        centres = instant_centres(motion)
+    except NotDetermined:
+        return
+    check = centres.velocity_check()
+    yield _finding(motion, "velocities from centres", {**check.links, **check.points})
+    triples = {" ".join(names): value for names, value in centres.collinearity().items()}
+    yield _finding(motion, "Kennedy collinearity", triples)
+
+
+def _finding(motion: Motion, name: str, parts: dict[str, Number]) -> Finding:
+    # NaN is where a centre is not determined or too poorly conditioned to prove anything
+    shape = motion.shape or (1,)
+    flat = {k: np.nan_to_num(np.broadcast_to(v, shape).reshape(motion.failed.shape), nan=0.0) for k, v in parts.items()}
+    return worst(motion, name, TOLERANCE, flat, motion.regular)

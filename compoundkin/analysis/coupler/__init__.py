@@ -9,9 +9,15 @@ from compoundkin.analysis.coupler.bresse_circles import (
     tangential_circle,
 )
 from compoundkin.analysis.coupler.centrodes import Centrodes, Pole, centrode_curvature, centrodes, pole, pole_velocity
-from compoundkin.analysis.coupler.path_curvature import PathCurvature, curvature_rate, euler_savary, path_curvature
+from compoundkin.analysis.coupler.path_curvature import (
+    PathCurvature,
+    StationaryCurvature,
+    curvature_rate,
+    euler_savary,
+    path_curvature,
+    stationary_curvature,
+)
 from compoundkin.analysis.coupler.relative_motion import relative_link, relative_point
-from compoundkin.analysis.coupler.stationary_curvature import StationaryCurvature, stationary_curvature
 
 __all__ = [
     "BresseCircle",

@@ -12,12 +12,12 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.centres import Centres, Status, instant_centres
-from compoundkin.analysis.centres.twists import disagreement, loop_twists, solved_twists
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.files import shipped_mechanisms
 from compoundkin.model.elements import FRAME
 from tests import catalog
+from tests.analysis.centres.twists import disagreement, loop_twists, solved_twists
 
 EXACT = 1e-9
 each = pytest.mark.parametrize("name", shipped_mechanisms.names())

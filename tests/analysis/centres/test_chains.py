@@ -15,8 +15,8 @@ from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.homogeneous import apart
 from compoundkin.analysis.centres.recomputation import recompute
 from compoundkin.analysis.centres.twist_loops import null_twists
-from compoundkin.analysis.centres.twists import disagreement, loop_twists, solved_twists
 from tests.analysis.centres.chains import DOUBLE_BUTTERFLY, SINGLE_FLIER, chains, diagram, random_mechanism, solved
+from tests.analysis.centres.twists import disagreement, loop_twists, solved_twists
 from tests.support import REFERENCE
 
 ALL = {n: chains(n) for n in (4, 6, 8)}

@@ -10,10 +10,10 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.centres import Status, instant_centres
-from compoundkin.analysis.centres.twists import disagreement, loop_twists, solved_twists
 from compoundkin.files import shipped_mechanisms
 from tests import catalog
 from tests.analysis.centres.chains import chains, mechanism
+from tests.analysis.centres.twists import disagreement, loop_twists, solved_twists
 
 EXACT = 1e-9
 FOUR_BAR = (

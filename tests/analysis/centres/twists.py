@@ -4,34 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from compoundkin.analysis.centres import Centres
+from compoundkin.analysis.centres.centres_of_motion import solved_twists
 from compoundkin.analysis.centres.circle_diagram import couple
 from compoundkin.analysis.centres.homogeneous import cross, norm
-from compoundkin.analysis.centres.instant_centres import Centres
-from compoundkin.analysis.centres.primary_centres import OwnCoordinates
 from compoundkin.analysis.centres.twist_loops import null_twists
 from compoundkin.base.series import Number
-from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 
-
-def solved_twists(motion: Motion, scale: OwnCoordinates) -> Number:
-    """Every link's twist as solved, (links, 3, poses), in own coordinates.
-
-    Raises InvalidInput for a motion of order 0.
-    """
-    motion._has(1)
-    count = motion.inputs.designs * motion.inputs.poses
-    shape = (motion.inputs.designs, motion.inputs.poses)
-    found = np.zeros((len(motion.mechanism.links), 3, count))
-    for k, name in enumerate(motion.mechanism.links):
-        pose = motion.poses[name]
-        u, du = pose.u.derivative(0), pose.u.derivative(1)
-        omega = np.imag(np.conjugate(u) * du)
-        # i v0 is omega times the centre; v0 is the velocity of the link's point at the world's origin
-        about = 1j * (pose.z.derivative(1) - 1j * omega * pose.z.derivative(0))
-        parts = [np.broadcast_to(v, shape).ravel() for v in (np.real(about), np.imag(about), omega)]
-        found[k] = scale.own(*parts)
-    return found
+__all__ = ["disagreement", "loop_twists", "solved_twists"]
 
 
 def loop_twists(centres: Centres) -> tuple[Number, Number]:
