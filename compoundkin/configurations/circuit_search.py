@@ -13,7 +13,7 @@ from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.configurations import dyad_segments, general_segments
-from compoundkin.configurations.all_modes import Choices, closed_redundant
+from compoundkin.configurations.all_modes import AllModes, closed_redundant
 from compoundkin.configurations.chain_circuits import built
 from compoundkin.configurations.circuit import Branch, Circuit, Limit, Place, Toggle
 from compoundkin.configurations.driver_range import TURN, range_of
@@ -25,11 +25,9 @@ from compoundkin.configurations.segment_run import Sweep
 from compoundkin.configurations.segments import Strands
 from compoundkin.configurations.toggles import toggles_of
 from compoundkin.kinematics.configuration import Configuration
-from compoundkin.kinematics.groups.gear_train import TrainStep
-from compoundkin.kinematics.groups.steps import AffineStep, GeneralStep
 from compoundkin.kinematics.inputs import Inputs, inputs
 from compoundkin.kinematics.solution import plan_of
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
 
@@ -162,7 +160,7 @@ def _of_design(given: Inputs, design: int) -> Inputs:
     return given.cut(slice(design, design + 1), slice(0, 1))
 
 
-def _driver(plan: Plan, driver: str | None) -> str:
+def _driver(plan: SolvingOrder, driver: str | None) -> str:
     names = list(plan.driven)
     if driver is None and len(names) == 1:
         return names[0]
@@ -190,13 +188,13 @@ def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tupl
 def _lifted(sweep: Sweep, strands: Strands, fineness: int) -> tuple[Strands, int]:
     """All groups, one after another."""
     lost = 0
-    for k, step in enumerate(sweep.plan.steps):
+    for k, solver in enumerate(sweep.plan.solvers):
         if not strands.rows:
             break
-        if isinstance(step, GeneralStep):
+        if solver.equations is not None:
             strands, missing = general_segments.lifted(sweep, strands, k, fineness)
             lost += missing
-        elif not isinstance(step, AffineStep | TrainStep):
+        elif solver.has_limits:
             strands = dyad_segments.lifted(sweep, strands, k, fineness)
         if strands.rows > MOST_STRANDS:
             what = f"the circuits are in more than {MOST_STRANDS:,} pieces: the groups multiply them"
@@ -219,6 +217,6 @@ def _counts_agree(sweep: Sweep, strands: Strands, low: float, high: float) -> bo
     values = low + (high - low) * np.mod(GOLDEN * np.arange(1, FRESH + 1), 1.0)
     drives: dict[str, tuple[Number, ...]] = {name: (value,) for name, value in sweep.fixed.items()}
     given = Inputs((FRESH,), sweep.ends, {**drives, sweep.driver: (values[None],)})
-    counted = Choices.of(sweep.plan, given).real[:, 0].sum(axis=0)
+    counted = AllModes.of(sweep.plan, given).real[:, 0].sum(axis=0)
     crossed = ((strands.low[:, None] < values) & (values < strands.high[:, None])).sum(axis=0)
     return bool(np.all(counted == crossed))

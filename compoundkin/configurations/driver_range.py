@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.configurations.segment_run import Sweep, count_turns, edge_root
+from compoundkin.configurations.segment_run import Sweep, drawn_angle
 from compoundkin.configurations.segments import Strands, base
-from compoundkin.kinematics.groups.gear_train import TrainStep
-from compoundkin.kinematics.groups.steps import AffineStep, GeneralStep
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.solving_order import SolvingOrder, run
 
 # A turn begins here: special positions lie at round angles, and none of them shall fall on the seam.
 BEGIN = -2.5066282746310002
@@ -55,7 +56,7 @@ def _checked(between: Sequence[float]) -> tuple[float, float]:
     return low, high
 
 
-def reach_of(plan: Plan) -> float:
+def reach_of(plan: SolvingOrder) -> float:
     """A length that no displacement of links that are pinned to one another exceeds: the sum of their extents."""
     points = plan.structure.mechanism.geometry.points.values()
     return float(sum(_extent(list(placed.values())) for placed in points)) or plan.size
@@ -74,7 +75,7 @@ def _turns(sweep: Sweep) -> int | None:
 
     Raises InvalidInput where gears ride on links that groups solve, and it matters how often those have turned.
     """
-    if not any(isinstance(step, AffineStep | TrainStep) for step in sweep.plan.steps):
+    if not any(solver.counted_from for solver in sweep.plan.solvers):
         return 1
     places = _geared(sweep, BEGIN + TURN * np.arange(MOST_TURNS + 1), 0.0)
     again = np.flatnonzero(_apart(sweep, places, places[:, :1])[1:] < SAME)
@@ -89,18 +90,28 @@ def _geared(sweep: Sweep, s: Number, more: float) -> Number:
 
     Links that groups solve have turned by `more` than their orientations show.
     """
-    block, found = sweep.start(s[None]), list[Number]()
-    for step in sweep.plan.steps:
-        if isinstance(step, GeneralStep):
-            break
-        if isinstance(step, AffineStep | TrainStep):
-            step.run(block)
-            poses = [block.world[link] for link in step.group.links]
-            found += [np.broadcast_to(value, (1, len(s)))[0] for p in poses for value in (p.z.c[0], p.u.c[0])]
-        else:
-            step.run(block, 1.0, edge_root)
-            count_turns(sweep.plan, block, step.group.links, more)
-    return np.array(found).reshape(-1, len(s))
+    plan = sweep.plan
+    upto = min(plan.numbered, default=len(plan.solvers))
+    block = run(plan, sweep.start(s[None]), _Turned(plan, more), upto)
+    links = [link for solver in plan.solvers[:upto] if solver.counted_from for link in solver.group.links]
+    values = [value for link in links for value in (block.world[link].z.c[0], block.world[link].u.c[0])]
+    return np.array([np.broadcast_to(value, (1, len(s)))[0] for value in values]).reshape(-1, len(s))
+
+
+@dataclass(frozen=True)
+class _Turned:
+    """The choice of the first mode of every group, all links being turned by more than drawn."""
+
+    plan: SolvingOrder
+    more: float
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return mode +1."""
+        return 1.0
+
+    def angle(self, solver: GroupSolver, link: str) -> Number:
+        """Return the drawn angle of a link and more."""
+        return drawn_angle(self.plan, link) + self.more
 
 
 def _apart(sweep: Sweep, one: Number, other: Number) -> Number:

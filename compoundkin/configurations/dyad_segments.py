@@ -50,7 +50,7 @@ def lifted(sweep: Sweep, strands: Strands, k: int, fineness: int = 1) -> Strands
     """The strands of the first `k` groups and group `k`, which has one mode or two; cells are divided by `fineness`."""
     margins = _Margins(sweep, strands, k, CELLS * fineness)
     events = _events(margins)
-    modes = (1, -1) if sweep.plan.steps[k].modes == 2 else (1,)
+    modes = (1, -1) if sweep.plan.solvers[k].modes == 2 else (1,)
     cuts = list(_cuts(margins, events, modes))
     return _glued(strands, k, cuts, margins.at_ends())
 
@@ -76,10 +76,11 @@ class _Margins:
 
     def _at(self, rows: Number, s: Number, sides: Number | None) -> Number:
         block = self.sweep.run(self.strands, rows, s, sides=sides, upto=self.k + 1)
-        margin = block.margins.get(self.k)
+        solver = self.sweep.plan.solvers[self.k]
+        margin = solver.margin(block)
         if margin is None:
             # a group that tells no margin: whether it has a pose
-            margin = np.where(np.isfinite(block.world[self.sweep.plan.steps[self.k].group.links[0]].z.c[0]), 1.0, -1.0)
+            margin = np.where(np.isfinite(block.world[solver.group.links[0]].z.c[0]), 1.0, -1.0)
         return np.broadcast_to(np.where(np.isnan(margin), -1.0, margin), s.shape)
 
     def at_ends(self) -> Number:

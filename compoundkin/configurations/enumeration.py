@@ -14,14 +14,14 @@ from compoundkin.base.display import Shows
 from compoundkin.base.errors import NotAssembled, Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
-from compoundkin.configurations.all_modes import Choices, first_values
+from compoundkin.configurations.all_modes import AllModes, first_values
 from compoundkin.configurations.driver_range import TURN, reach_of
 from compoundkin.kinematics.configuration import Configuration, named
 from compoundkin.kinematics.inputs import Inputs, by_name, inputs
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.kinematics.results import Vectors
 from compoundkin.kinematics.solution import plan_of
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
 
@@ -41,7 +41,7 @@ class AllConfigurations(Shows):
     structure: Structure
     inputs: Inputs
     names: tuple[str, ...]
-    choices: Choices
+    choices: AllModes
     kept: Number
 
     @property
@@ -136,7 +136,7 @@ class AllConfigurations(Shows):
 
     def _dimension(self, link: str, name: str) -> Number:
         from_points = self.structure.mechanism.geometry.points[link][name]
-        return np.broadcast_to(from_points, self.shape).reshape(self.choices.shape)
+        return np.broadcast_to(from_points, self.shape).reshape(self.choices.block.shape[-2:])
 
     def _shaped(self, found: Number) -> Number:
         return np.moveaxis(found, 0, -1).reshape(*self.shape, len(found))
@@ -176,7 +176,7 @@ def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] |
     plan = plan_of(mechanism)
     with np.errstate(all="ignore"):
         given = inputs(plan, by_name(plan.structure.mechanism, values), None, None, None)
-        choices = Choices.of(plan, given)
+        choices = AllModes.of(plan, given)
         real = choices.real
         kept = np.flatnonzero(real.any(axis=(1, 2)))
         if not len(kept):
@@ -186,7 +186,7 @@ def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] |
     return AllConfigurations(plan.structure, given, names, choices, kept)
 
 
-def _nothing(plan: Plan, given: Inputs) -> Problem:
+def _nothing(plan: SolvingOrder, given: Inputs) -> Problem:
     """Why there is no configuration: where the nearest one is."""
     found = [
         (gap, name, value) for name in given.drives for gap, value in [_nearest(plan, given, name)] if gap < np.inf
@@ -199,7 +199,7 @@ def _nothing(plan: Plan, given: Inputs) -> Problem:
     return Problem("values", "the mechanism cannot be assembled there", f"the nearest value is {name} = {shown}")
 
 
-def _nearest(plan: Plan, given: Inputs, name: str) -> tuple[float, float]:
+def _nearest(plan: SolvingOrder, given: Inputs, name: str) -> tuple[float, float]:
     """The value of a driver nearest to its own with any configuration, and how far it is (of the size, or radians)."""
     first = given.cut(slice(0, 1), slice(0, 1))
     here = float(np.ravel(first.drives[name][0])[0])
@@ -218,7 +218,7 @@ def _nearest(plan: Plan, given: Inputs, name: str) -> tuple[float, float]:
     return abs(near) / (1.0 if is_angle else plan.size), here + near
 
 
-def _any(plan: Plan, given: Inputs, name: str, values: Number) -> Number:
+def _any(plan: SolvingOrder, given: Inputs, name: str, values: Number) -> Number:
     rest = {other: tuple(np.ravel(v)[0] for v in vs) for other, vs in given.drives.items()}
     drives = {**rest, name: (values[None],)}
-    return Choices.of(plan, Inputs((len(values),), given.ends, drives)).real.any(axis=(0, 1))
+    return AllModes.of(plan, Inputs((len(values),), given.ends, drives)).real.any(axis=(0, 1))

@@ -12,7 +12,7 @@ from compoundkin.configurations.roadmap import STRIPS, Port, Web
 from compoundkin.configurations.segment_closure import Equations
 from compoundkin.configurations.segment_run import Sweep
 from compoundkin.configurations.segments import LIMIT, NONE, Strands, Way
-from compoundkin.kinematics.group_states import apart
+from compoundkin.kinematics.configuration import state_distance
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def _nearest(pieces: list[Piece], piece: Piece, own: int, row: int, side: int) -
     found, least = NONE, np.inf
     for i, other in enumerate(pieces):
         if other.row == row and not _is_inside(other, side) and (other.before, other.after)[side] == NONE:
-            gap = float(apart(other.y[-side, :-1], piece.y[-own, :-1], 1.0))
+            gap = float(state_distance(other.y[-side, :-1], piece.y[-own, :-1], 1.0))
             if gap < least:
                 found, least = i, gap
     return found

@@ -16,10 +16,10 @@ from compoundkin.configurations.segment_poses import Placing, gap_between
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.approach import approach
 from compoundkin.kinematics.block import places
+from compoundkin.kinematics.chosen_modes import signs_of
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.inputs import inputs
-from compoundkin.kinematics.solution import signs_of
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.elements import Drive
 from compoundkin.structure.kinematic_structure import Structure
@@ -67,7 +67,7 @@ def _place(circuits: tuple[Circuit, ...], row: int, s: float, value: float) -> P
     return Place(circuit.number, branch.number, value, visit, s)
 
 
-def starting_values(plan: Plan, values: Mapping[str, Any], moved: str) -> dict[str, float]:
+def starting_values(plan: SolvingOrder, values: Mapping[str, Any], moved: str) -> dict[str, float]:
     """One value of each driver: that given, else where it is drawn, else the first of its own.
 
     Raises InvalidInput for names that are no driver's, and values that are no single number.
@@ -80,7 +80,7 @@ def starting_values(plan: Plan, values: Mapping[str, Any], moved: str) -> dict[s
     return {name: _number(name, values[name]) if name in values else drawn.get(name, first[name]) for name in first}
 
 
-def _first(plan: Plan, drive: Drive) -> float:
+def _first(plan: SolvingOrder, drive: Drive) -> float:
     if drive.values is not None:
         return float(np.ravel(drive.values)[0])
     return 0.0 if plan.driven[drive.name].pair.free_is_angle else plan.size / 2.0
@@ -96,7 +96,7 @@ def _number(name: str, value: Any) -> float:
     return found
 
 
-def _drawn(plan: Plan, first: Mapping[str, float]) -> dict[str, float]:
+def _drawn(plan: SolvingOrder, first: Mapping[str, float]) -> dict[str, float]:
     """Where the drivers are drawn; nothing where nothing is drawn."""
     if not plan.structure.mechanism.sketch:
         return {}
@@ -105,7 +105,7 @@ def _drawn(plan: Plan, first: Mapping[str, float]) -> dict[str, float]:
     return {name: float(np.ravel(v[0])[0]) for name, v in lead.drives.items()}
 
 
-def starting_configuration(plan: Plan, values: Mapping[str, float], design: int) -> Configuration | None:
+def starting_configuration(plan: SolvingOrder, values: Mapping[str, float], design: int) -> Configuration | None:
     """The configuration in which `solve` begins at these values; None where it does not close there."""
     given = inputs(plan, values, None, None, None)
     try:

@@ -13,7 +13,7 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.configurations.arcs import LONGEST, Arc, Paths
 from compoundkin.configurations.segment_closure import Equations
-from compoundkin.kinematics.group_states import apart, group_states
+from compoundkin.kinematics.configuration import state_distance
 
 # Every strand is cut by so many slices.
 STRIPS = 48
@@ -45,7 +45,7 @@ class Web:
         self.slices = np.linspace(0.0, np.pi, strips + 1)
         shape = (equations.strands.rows, strips + 1)
         block = equations.blocks(self.slices)
-        states = group_states(equations.step, block, equations.sweep.plan.size).states
+        states = equations.solver.every(block).states
         states = np.broadcast_to(states, (*shape, *states.shape[-2:]))
         self.known = {
             (row, j): [self._scaled(state, j) for state in states[row, j] if np.isfinite(state).all()]
@@ -121,7 +121,7 @@ class Web:
         """Which configuration of a slice a state is; a new one where none is near."""
         found = self.known[row, j]
         if found:
-            gaps = apart(np.array(found)[:, :-1], y[:-1], 1.0)
+            gaps = state_distance(np.array(found)[:, :-1], y[:-1], 1.0)
             if np.min(gaps) < MATCHED:
                 return int(np.argmin(gaps))
         found.append(y)

@@ -14,7 +14,8 @@ from compoundkin.base.series import Number, constant
 from compoundkin.configurations.segment_run import Sweep
 from compoundkin.configurations.segments import NONE, Strands
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups.steps import GeneralStep
+from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.model.pairs.contract import Poses
 
 # Nearer to an end than this, rates are taken here: at a limit position itself they are infinite.
@@ -30,17 +31,21 @@ class Equations:
     k: int
 
     @property
-    def step(self) -> GeneralStep:
-        """The group as it is solved."""
-        step = self.sweep.plan.steps[self.k]
-        assert isinstance(step, GeneralStep)
-        return step
+    def solver(self) -> GroupSolver:
+        """The group's solver."""
+        return self.sweep.plan.solvers[self.k]
+
+    @property
+    def own(self) -> GroupEquations:
+        """The group's own equations."""
+        assert self.solver.equations is not None
+        return self.solver.equations
 
     @property
     def weights(self) -> Number:
         """What makes x, y, theta of each body a part of a state."""
         size = self.sweep.plan.size
-        return np.tile([1.0 / size, 1.0 / size, 1.0], self.step.solver.n)
+        return np.tile([1.0 / size, 1.0 / size, 1.0], self.own.n)
 
     def at(self, rows: Number, y: Number) -> tuple[Number, Number]:
         """The residuals (paths, 3 n) and their Jacobian (paths, 3 n, 3 n + 1), at states `y` of strands `rows`."""
@@ -69,12 +74,12 @@ class Equations:
 
     def _assembled(self, y: Number, block: Block) -> tuple[Number, Number, Number]:
         """Residuals, their derivatives by the angle, and by x, y, theta of the bodies."""
-        solver = self.step.solver
+        own = self.own
         bodies = self.bodies(y)
-        count, n = len(y), 3 * solver.n
+        count, n = len(y), 3 * own.n
         found, by_angle, matrix = np.zeros((count, n)), np.zeros((count, n)), np.zeros((count, n, n))
         top = 0
-        for pair, members in zip(solver.pairs, solver.members, strict=True):
+        for pair, members in zip(own.pairs, own.members, strict=True):
             poses = tuple(_pose(member.link, member.body, bodies, block) for member in members)
             ends = block.ends[pair.name]
             for i, closure in enumerate(pair.closure(ends, poses)):
@@ -94,7 +99,7 @@ class Equations:
         """The poses of the bodies, each (paths, 1)."""
         size = self.sweep.plan.size
         out = []
-        for k in range(self.step.solver.n):
+        for k in range(self.own.n):
             z = size * (y[:, 3 * k] + 1j * y[:, 3 * k + 1])[:, None]
             theta = y[:, 3 * k + 2, None]
             out.append(Pose(constant(z), constant(np.cos(theta) + 1j * np.sin(theta)), constant(theta)))

@@ -13,9 +13,8 @@ from compoundkin.configurations.enumeration import dimensions_at
 from compoundkin.configurations.segment_run import Sweep
 from compoundkin.configurations.segments import NONE, Strands
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import SIGNS, Configuration
-from compoundkin.kinematics.group_states import apart, group_states
-from compoundkin.kinematics.groups.steps import GeneralStep
+from compoundkin.kinematics.configuration import SIGNS, Configuration, state_distance
+from compoundkin.kinematics.groups import GroupSolver
 
 
 @dataclass(frozen=True)
@@ -51,10 +50,10 @@ class Placing:
     def _modes(self, block: Block, rows: Number, s: Number, sides: Number) -> list[dict[int, str]]:
         """The signs and numbers of the groups with several configurations."""
         found: list[dict[int, str]] = [{} for _ in rows]
-        for k, step in enumerate(self.sweep.plan.steps):
-            if isinstance(step, GeneralStep):
-                texts = self._numbers(k, step, rows, s, sides)
-            elif k in self.strands.signs and step.modes == 2:
+        for k, solver in enumerate(self.sweep.plan.solvers):
+            if solver.modes == 0:
+                texts = self._numbers(k, solver, rows, s, sides)
+            elif k in self.strands.signs and solver.modes == 2:
                 sign = self.strands.sign(k, rows, sides[:, None])[:, 0]
                 # a second group may be at its limit there, as in a pantograph that is stretched
                 at_limit = np.abs(_column(block.margins.get(k, 1.0), len(rows))) < TOUCHING
@@ -65,14 +64,14 @@ class Placing:
                 modes[k] = text
         return found
 
-    def _numbers(self, k: int, step: GeneralStep, rows: Number, s: Number, sides: Number) -> list[str]:
+    def _numbers(self, k: int, solver: GroupSolver, rows: Number, s: Number, sides: Number) -> list[str]:
         """The number of a group's configuration among all that are real there."""
         size = self.sweep.plan.size
         block = self.sweep.run(self.strands, rows, s[:, None], sides=sides[:, None], upto=k)
-        every = group_states(step, block, size).states
+        every = solver.every(block).states
         every = np.broadcast_to(every, (len(rows), 1, *every.shape[-2:]))[:, 0]
         own = self.strands.seeds(k, rows, s[:, None])
-        gaps = np.nan_to_num(apart(every, own, size), nan=np.inf)
+        gaps = np.nan_to_num(state_distance(every, own, size), nan=np.inf)
         limit = self.strands.is_limit(k, rows, sides[:, None])[:, 0]
         numbers = np.argmin(gaps, axis=1) + 1 if gaps.shape[1] else np.ones(len(rows), dtype=int)
         return [SIGNS[0] if at_limit else str(n) for n, at_limit in zip(numbers.tolist(), limit, strict=True)]

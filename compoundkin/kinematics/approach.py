@@ -11,11 +11,11 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.sampling import CLOSE, spacings
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 
 
 def approach(
-    plan: Plan, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
+    plan: SolvingOrder, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> tuple[Inputs, int, float]:
     """The lead, from the drawn drivers to the motion's pose `at` nearest to them; `at`; and the home of the modes.
 
@@ -38,7 +38,7 @@ def approach(
     return lead.of_poses(count), at, at + _side(given, at, ways) * CLOSE
 
 
-def recounted(plan: Plan, ways: tuple[Inputs, ...], home: Inputs) -> tuple[Inputs, ...]:
+def recounted(plan: SolvingOrder, ways: tuple[Inputs, ...], home: Inputs) -> tuple[Inputs, ...]:
     """The motion and its lead with phases read off a drawing taken on by the turns that drivers have made at home.
 
     A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
@@ -48,7 +48,7 @@ def recounted(plan: Plan, ways: tuple[Inputs, ...], home: Inputs) -> tuple[Input
     return tuple(_counted_on(plan, way, rounds, turns) for way in ways)
 
 
-def _as_drawn(plan: Plan, home: Inputs) -> tuple[Inputs, dict[str, Number]]:
+def _as_drawn(plan: SolvingOrder, home: Inputs) -> tuple[Inputs, dict[str, Number]]:
     """The home with drivers as drawn, in the turn they are in at home; and that turn, by driven pair."""
     rounds: dict[str, Number] = {}
     for name, driven in plan.driven.items():
@@ -63,7 +63,7 @@ def _as_drawn(plan: Plan, home: Inputs) -> tuple[Inputs, dict[str, Number]]:
     return home, rounds
 
 
-def _counted_on(plan: Plan, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]) -> Inputs:
+def _counted_on(plan: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]) -> Inputs:
     """A way with the phases of driven pairs taken on by their turns, those of others by the turns of their links."""
     geometry = plan.structure.mechanism.geometry
     ends = dict(way.ends)
@@ -76,7 +76,7 @@ def _counted_on(plan: Plan, way: Inputs, rounds: Mapping[str, Number], turns: Ma
     return replace(way, ends=ends)
 
 
-def _turns_at(plan: Plan, drawn: Inputs) -> Iterator[tuple[str, Number]]:
+def _turns_at(plan: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]:
     """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
     poses = plan.structure.mechanism.geometry.drawn
     start = plan.start(drawn.ends, drawn.series(0), 0, (drawn.designs, 1))
@@ -89,7 +89,7 @@ def _turns_at(plan: Plan, drawn: Inputs) -> Iterator[tuple[str, Number]]:
 
 
 def _drawn_value(
-    plan: Plan, given: Inputs, name: str, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
+    plan: SolvingOrder, given: Inputs, name: str, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> Number | None:
     """The driver's coordinate as the drawing shows it, a number or (designs, 1); None where it does not."""
     driven = plan.driven[name]
@@ -102,7 +102,7 @@ def _drawn_value(
     return pair.coordinate(ends, poses).c[0] * pair.driven_by(driven.drive.link)
 
 
-def _nearest(plan: Plan, given: Inputs, values: Mapping[str, Number]) -> int:
+def _nearest(plan: SolvingOrder, given: Inputs, values: Mapping[str, Number]) -> int:
     """The index of the pose whose drivers are nearest to the drawn ones, over all designs."""
     total: Number = np.zeros((1, 1))
     for name, value in values.items():

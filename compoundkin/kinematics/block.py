@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Number, Series
+from compoundkin.kinematics.limits import CLIPPED, LimitRule, Root, double_root
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Body
 
@@ -22,7 +23,8 @@ class Block:
     its composite body (absent for the body's own base); all have derivatives to `order`. `shape` is designs x poses,
     before them an axis for each group of which several configurations are tried side by side: what is known may be
     smaller, where it does not change. `failed` is the index of the first group that does not close plus one, else 0;
-    `margins` are by the groups' indices.
+    `margins` are by the groups' indices. `limits` holds at limit positions; `doubles` marks, by group, the poses that
+    are change points.
     """
 
     shape: tuple[int, ...]
@@ -30,6 +32,8 @@ class Block:
     world: dict[str, Pose]
     local: Mapping[str, Pose]
     order: int
+    limits: LimitRule = CLIPPED
+    doubles: Mapping[int, Number] = field(default_factory=dict)
     failed: Number = 0
     margins: dict[int, Number] = field(default_factory=dict)
 
@@ -55,6 +59,10 @@ class Block:
     def in_body(self, link: str, end: End) -> End:
         """Return a link's side of a pair in the frame of its body's base link."""
         return self.local[link].carry(end) if link in self.local else end
+
+    def root(self, index: int) -> Root:
+        """Return how a group takes the square root in its closed form."""
+        return double_root(self.doubles[index]) if index in self.doubles else self.limits.root
 
     def fail(self, good: Number, index: int) -> None:
         """Note that a group does not close where `good` is false, unless one before it did not."""

@@ -16,7 +16,7 @@ import numpy as np
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import blocks, places
-from compoundkin.kinematics.groups.steps import DyadStep, Step
+from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.sampling import CLOSE, between
 from compoundkin.kinematics.tracking import Tracker
@@ -57,7 +57,7 @@ class _Way:
 def near_groups(tracker: Tracker) -> set[int]:
     """The groups that come near a limit position on the lead, or between the poses of a coarse motion."""
     found: set[int] = set()
-    upto = 1 + max((k for k, step in enumerate(tracker.plan.steps) if _may_change(step)), default=-1)
+    upto = 1 + max((k for k, solver in enumerate(tracker.plan.solvers) if _may_change(solver)), default=-1)
     for way in _ways(tracker) if upto else ():
         if way.lead or way.unit < 1.0:
             for _, _, part, s, designs in way.blocks():
@@ -66,9 +66,9 @@ def near_groups(tracker: Tracker) -> set[int]:
     return found
 
 
-def _may_change(step: Step) -> bool:
+def _may_change(solver: GroupSolver) -> bool:
     """Whether a group has modes that may meet."""
-    return isinstance(step, DyadStep) and step.modes > 1
+    return solver.tells_margin and solver.modes > 1
 
 
 def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
@@ -76,7 +76,7 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
 
     They are noted in the tracker, which changes the group's sign there.
     """
-    open_to = [k for k in sorted(near) if k not in tracker.flips and _may_change(tracker.plan.steps[k])]
+    open_to = [k for k in sorted(near) if k not in tracker.flips and _may_change(tracker.plan.solvers[k])]
     if not open_to:
         return False
     found = [(way, _touching(way, tracker, open_to)) for way in _ways(tracker)]
@@ -89,7 +89,7 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
             flips = tracker.lead_flips if way.lead else tracker.flips
             flips[first] = _padded(spots.designs[here], spots.places[here], tracker.given.designs)
     tracker.flips.setdefault(first, np.full((tracker.given.designs, 1), np.inf))
-    if tracker.plan.general or tracker.turns:
+    if tracker.plan.numbered or tracker.turns:
         tracker.choose()
     return True
 

@@ -1,16 +1,16 @@
-"""One configuration of a mechanism: where all its links are; and how configurations are called."""
+"""Configurations: one of a mechanism, where all its links are; and arrays of them, of a group's bodies."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from compoundkin.base.display import Shows
-from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.groups.steps import Step
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.base.series import Number
 from compoundkin.structure.kinematic_structure import Structure
 
 BETWEEN = " / "
@@ -69,28 +69,69 @@ def named(structure: Structure, modes: Mapping[int, str]) -> str:
     return BETWEEN.join(parts) or ONLY
 
 
-def read_name(plan: Plan, name: str) -> dict[int, int]:
-    """The signs and numbers that a name gives to groups; raises InvalidInput for parts that name none."""
-    return dict(_read(plan, part.strip()) for part in name.split(BETWEEN.strip())) if name.strip() != ONLY else {}
+@dataclass(frozen=True)
+class Configurations:
+    """All configurations of a group: arrays (..., m) over poses and configurations, NaN where there are fewer.
+
+    `turns` and `origins` (..., m, n) are the bodies' unit orientations and origins, for a configuration that is
+    not `real` complex continuations without a picture. `count` (...) are found; `expected` is their number for
+    generic dimensions (0 unknown), `exact` whether it is known by theory or from a generic instance solved numerically.
+    """
+
+    turns: Number
+    origins: Number
+    real: Number
+    count: Number
+    expected: int
+    exact: bool
+
+    @classmethod
+    def of_bodies(cls, bodies: Sequence[Pose], real: Number, shape: tuple[int, ...]) -> Configurations:
+        """Return those of closed forms: none is missing; all arrays with the configurations as their first axis."""
+        z, u = (np.stack([np.broadcast_to(v, shape) for v in values], axis=-1) for values in (
+            [pose.z.c[0] for pose in bodies], [pose.u.c[0] for pose in bodies]))  # fmt: skip
+        turns, origins = np.moveaxis(u, 0, -2), np.moveaxis(z, 0, -2)
+        count = np.full(shape[1:], shape[0])
+        return cls(turns, origins, np.moveaxis(np.broadcast_to(real, shape), 0, -1), count, shape[0], True)
+
+    @classmethod
+    def of_states(cls, states: Number) -> Configurations:
+        """Return those that a search found: states (..., m, 3 n), x, y, theta of each body, NaN pads."""
+        theta = states[..., 2::3]
+        real = np.isfinite(states).all(axis=-1)
+        origins = states[..., 0::3] + 1j * states[..., 1::3]
+        return cls(np.cos(theta) + 1j * np.sin(theta), origins, real, real.sum(axis=-1), 0, False)
+
+    @property
+    def certified(self) -> Number:
+        """Where no configuration is missing, for as many were found as theory knows."""
+        return self.exact & (self.count == self.expected)
+
+    @property
+    def real_count(self) -> Number:
+        """The number of real configurations at every pose."""
+        return self.real.sum(axis=-1)
+
+    @property
+    def states(self) -> Number:
+        """The real configurations as states (..., most real ones, 3 n): x, y, theta of each body; NaN pads."""
+        most = int(self.real_count.max(initial=0))
+        shown = self.real[..., :most]
+        z, u = self.origins[..., :most, :], self.turns[..., :most, :]
+        states = np.stack([z.real, z.imag, np.angle(u)], axis=-1)
+        return np.where(shown[..., None], states.reshape(*shown.shape, 3 * u.shape[-1]), np.nan)
+
+    def poses(self, number: int) -> list[Pose]:
+        """Return the bodies' poses (...) in one configuration; NaN at the poses where it is not real."""
+        shown = self.real[..., number, None]
+        z = np.where(shown, self.origins[..., number, :], np.nan)
+        u = np.where(shown, self.turns[..., number, :], np.nan)
+        return [Pose.of(z[..., b], u[..., b]) for b in range(z.shape[-1])]
 
 
-def _read(plan: Plan, part: str) -> tuple[int, int]:
-    known = dict(_labels(plan))
-    for text, k in known.items():
-        mode = _mode(plan.steps[k], part.removeprefix(text)) if part.startswith(text) else None
-        if mode is not None:
-            return k, mode
-    what = f"{part!r} is no configuration of a group"
-    raise InvalidInput(Problem("modes", what, nearest(part, list(known)) + " with +, - or a number from 1"))
-
-
-def _labels(plan: Plan) -> Iterator[tuple[str, int]]:
-    for k, step in enumerate(plan.steps):
-        if step.modes != 1:
-            yield label(plan.structure, k), k
-
-
-def _mode(step: Step, text: str) -> int | None:
-    if step.modes == 0:
-        return int(text) if text.strip().isdecimal() and int(text) > 0 else None
-    return {"+": 1, "-": -1}.get(text)
+def state_distance(one: Number, other: Number, size: float) -> Number:
+    """Return how far states (..., 3 n) are from each other: parts of the size, radians; whole turns do not count."""
+    gap = one - other
+    turn = np.abs(np.angle(np.exp(1j * gap[..., 2::3])))
+    shift = np.maximum(np.abs(gap[..., 0::3]), np.abs(gap[..., 1::3])) / size
+    return np.maximum(turn, shift).max(axis=-1)

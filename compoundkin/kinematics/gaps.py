@@ -109,9 +109,9 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[s
 def _reasons(motion: Motion, designs: Number, poses: Number) -> list[str]:
     part = motion.inputs.pick(designs, poses.astype(float))
     block = motion.tracker.run(part, 0, poses.astype(float)[:, None], designs[:, None])
-    steps = motion.tracker.plan.steps
+    solvers = motion.tracker.plan.solvers
     failed = motion.failed[designs, poses]
-    return [steps[index - 1].explain(block, k) for k, index in enumerate(failed.tolist())]
+    return [solvers[index - 1].why(block, k) for k, index in enumerate(failed.tolist())]
 
 
 def _at(values: Mapping[str, Number], k: int) -> dict[str, float]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups.general import General
+from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.sampling import CLOSE, pace
 
@@ -36,7 +36,7 @@ SLOWEST = 1e-9
 
 
 @dataclass(frozen=True)
-class Path:
+class GroupPath:
     """The tracked states of one group: nodes `s`, states (designs, nodes, 3 n), their slopes by s, and the
     reach (designs, 2) of s within which each design was tracked."""
 
@@ -63,22 +63,22 @@ class Path:
         return np.where(((s >= low) & (s <= high))[..., None], out, np.nan)
 
 
-def track(tracker: Tracker, k: int, solver: General, state: Number) -> tuple[Path, Path]:
+def track(tracker: Tracker, k: int, equations: GroupEquations, state: Number) -> tuple[GroupPath, GroupPath]:
     """Follow group `k` along the lead to the motion, then from there to both ends of the motion."""
     given, lead, at = tracker.given, tracker.lead, tracker.at
     alive = np.isfinite(state).all(axis=(1, 2))
     stops = np.arange(lead.poses, dtype=float)
-    first = _March(tracker, k, solver, lead.at, state, alive, lead=True).go(stops)
+    first = _March(tracker, k, equations, lead.at, state, alive, lead=True).go(stops)
     state, alive = first.state, first.alive
-    ahead = _March(tracker, k, solver, given.at, state, alive).go(np.arange(at, given.poses, dtype=float))
-    back = _March(tracker, k, solver, given.before, state, alive).go(np.arange(at, -1, -1, dtype=float))
+    ahead = _March(tracker, k, equations, given.at, state, alive).go(np.arange(at, given.poses, dtype=float))
+    back = _March(tracker, k, equations, given.before, state, alive).go(np.arange(at, -1, -1, dtype=float))
     return first.path(np.zeros(len(state))), _joined(back, ahead)
 
 
-def _joined(back: _March, ahead: _March) -> Path:
+def _joined(back: _March, ahead: _March) -> GroupPath:
     one, two = back.path(back.reached), ahead.path(ahead.reached)
     keep = slice(None, 0, -1)
-    return Path(
+    return GroupPath(
         np.concatenate([one.s[keep], two.s]),
         np.concatenate([one.states[:, keep], two.states], axis=1),
         np.concatenate([one.slopes[:, keep], two.slopes], axis=1),
@@ -98,13 +98,13 @@ class _March:
         self,
         tracker: Tracker,
         k: int,
-        solver: General,
+        equations: GroupEquations,
         along: Callable[[Number], Inputs],
         state: Number,
         alive: Number,
         lead: bool = False,
     ) -> None:
-        self.tracker, self.k, self.solver, self.along, self.lead = tracker, k, solver, along, lead
+        self.tracker, self.k, self.equations, self.along, self.lead = tracker, k, equations, along, lead
         self.state = state
         self.alive = alive
         self.s: list[float] = []
@@ -144,7 +144,7 @@ class _March:
 
     def _stride(self, rates: list[Number]) -> float:
         """How far the prediction is good: by the farthest move that each of its terms may make."""
-        weights = self.solver.weights
+        weights = self.equations.weights
         sizes = (float(np.max(np.abs(c[self.alive] * weights), initial=0.0)) for c in rates)
         return min(((most / c) ** (1.0 / k) for k, (most, c) in enumerate(zip(MOVES, sizes, strict=True), 1) if c > 0),
                    default=np.inf)  # fmt: skip
@@ -156,7 +156,7 @@ class _March:
 
     def _rates(self, state: Number, block: Block) -> tuple[list[Number], Number]:
         """The state's coefficients by s, and on which side of a singularity the configuration is."""
-        rates, side = self.solver.rates(state, block, len(MOVES))
+        rates, side = self.equations.rates(state, block, len(MOVES))
         return rates, np.broadcast_to(side, state.shape[:2])
 
     def _step(
@@ -165,7 +165,7 @@ class _March:
         """One step: the state there, its rates and side, and for which designs it is a neighbour."""
         guess = self.state + sum(c * h**k for k, c in enumerate(rates, 1))
         block = self._block(here + h)
-        found = self.solver.newton(guess, block)
+        found = self.equations.newton(guess, block)
         good = (found.closed & (found.moved <= STRAY)).reshape(len(self.state))
         state = np.where(good[:, None, None], found.state, self.state)
         new_rates, new_side = self._rates(state, block)
@@ -173,13 +173,13 @@ class _March:
         between = (self.state + state) / 2.0 + (rates[0] - new_rates[0]) * (h / 8.0)
         predicted = self.state + sum(c * (h / 2.0) ** k for k, c in enumerate(rates, 1))
         gaps = (between - predicted, state - self.state)
-        off, moved = (np.abs(gap * self.solver.weights).max(axis=(1, 2)) for gap in gaps)
+        off, moved = (np.abs(gap * self.equations.weights).max(axis=(1, 2)) for gap in gaps)
         near = off <= BENT * moved + SAME
         return state, new_rates, new_side, good & near & (new_side == side).reshape(len(self.state))
 
-    def path(self, begin: Number) -> Path:
+    def path(self, begin: Number) -> GroupPath:
         """What was tracked; `begin` is where each design's reach starts."""
-        return Path(
+        return GroupPath(
             np.array(self.s),
             np.concatenate(self.states, axis=1),
             np.concatenate(self.slopes, axis=1),

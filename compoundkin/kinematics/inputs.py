@@ -14,7 +14,7 @@ from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import rates
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.times import RATES, timed
 from compoundkin.model.elements import Drive
 from compoundkin.model.mechanism import Mechanism
@@ -104,7 +104,7 @@ class Inputs:
 
 
 def inputs(
-    plan: Plan,
+    plan: SolvingOrder,
     values: Mapping[str, Any] | None,
     speed: Any,
     acceleration: Any,
@@ -138,7 +138,9 @@ def by_name(mechanism: Mechanism, values: Any) -> Mapping[str, Any] | None:
     return {mechanism.drives[0].name: values}
 
 
-def _driver(plan: Plan, drive: Drive, asked: Mapping[str, Any], times: Number | None, order: int) -> tuple[Number, ...]:
+def _driver(
+    plan: SolvingOrder, drive: Drive, asked: Mapping[str, Any], times: Number | None, order: int
+) -> tuple[Number, ...]:
     """Value, speed, acceleration and jerk of a driver; those of a law beyond the order are not asked for."""
     value = (asked["values"] or {}).get(drive.name, drive.values)
     if value is None:
@@ -152,7 +154,7 @@ def _driver(plan: Plan, drive: Drive, asked: Mapping[str, Any], times: Number | 
     return timed(drive, given, times, called, order)
 
 
-def _unsaid(plan: Plan, drive: Drive) -> Number:
+def _unsaid(plan: SolvingOrder, drive: Drive) -> Number:
     """The values of a driver that is given none: a full turn."""
     if not plan.driven[drive.name].pair.free_is_angle:
         raise InvalidInput(
@@ -196,7 +198,7 @@ def _only_known(mechanism: Mechanism, given: Mapping[str, Any]) -> None:
         raise InvalidInput(wrong)
 
 
-def _shape(plan: Plan, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, ...]:
+def _shape(plan: SolvingOrder, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, ...]:
     found: tuple[int, ...] = ()
     named = [(f"drives.{k}", v) for k, vs in drives.items() for v in vs]
     named += [(name, v) for name, ends in plan.ends.items() for end in ends for v in end if v is not None]

@@ -15,7 +15,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.inputs import Inputs, fit
 from compoundkin.kinematics.results import LinkMotion, Named, PairMotion, PointMotion
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.table import Table, table_of
 from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
@@ -113,7 +113,7 @@ class Motion(ShowsPicture):
         return way("animation")(self, **options)
 
     @property
-    def _plan(self) -> Plan:
+    def _plan(self) -> SolvingOrder:
         return self.tracker.plan
 
     def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:

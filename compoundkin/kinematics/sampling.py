@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 
 # Samples lie at most so far apart: radians of a driver's angle, or parts of the size of its length.
 SPACING = np.pi / 36.0
@@ -19,22 +19,22 @@ MOST = 1000
 CLOSE = 1e-6
 
 
-def spacings(plan: Plan, name: str, way: Number) -> int:
+def spacings(plan: SolvingOrder, name: str, way: Number) -> int:
     """How many spacings the longest of some ways of a driver takes; 0 where it stands still."""
     return max(0, int(np.ceil(min(_spacings(plan, name, way) - CLOSE, MOST))))
 
 
-def between(plan: Plan, given: Inputs) -> int:
+def between(plan: SolvingOrder, given: Inputs) -> int:
     """How many spacings the longest step of a driver from one pose of a motion to the next takes."""
     return max((spacings(plan, name, steps) for name, steps in _steps(given)), default=0)
 
 
-def pace(plan: Plan, given: Inputs) -> float:
+def pace(plan: SolvingOrder, given: Inputs) -> float:
     """How many spacings the longest step of a driver from one pose to the next is, as a fraction."""
     return max((_spacings(plan, name, steps) for name, steps in _steps(given)), default=0.0)
 
 
-def _spacings(plan: Plan, name: str, way: Number) -> float:
+def _spacings(plan: SolvingOrder, name: str, way: Number) -> float:
     size = 1.0 if plan.driven[name].pair.free_is_angle else plan.size
     return float(np.max(np.abs(way))) / size / SPACING
 

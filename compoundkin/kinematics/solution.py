@@ -12,14 +12,15 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
-from compoundkin.kinematics.configuration import Configuration, read_name
+from compoundkin.kinematics.chosen_modes import read_hint, signs_of
+from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.inputs import Inputs, by_name, inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.redundant_pairs import because, explained, hold_redundant
 from compoundkin.kinematics.solvable import relaxed
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.times import times_of
-from compoundkin.kinematics.tracking import Tracker, read_hint
+from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
@@ -96,12 +97,12 @@ def solve(
     return motion
 
 
-def plan_of(mechanism: Mechanism | Structure) -> Plan:
+def plan_of(mechanism: Mechanism | Structure) -> SolvingOrder:
     """The plan of a mechanism, made once and kept with it."""
     if not isinstance(mechanism, Mechanism | Structure):
         raise InvalidInput(Problem("mechanism", f"{mechanism!r} is not a mechanism", "load() one from a file"))
     owner = mechanism.mechanism if isinstance(mechanism, Structure) else mechanism
-    plan: Plan | None = owner.__dict__.get("_plan")
+    plan: SolvingOrder | None = owner.__dict__.get("_plan")
     if plan is None:
         structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
         if structure.faults:
@@ -109,11 +110,11 @@ def plan_of(mechanism: Mechanism | Structure) -> Plan:
         if structure.faults:
             problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
             raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved{because(structure)}")
-        plan = owner.__dict__["_plan"] = Plan(structure)
+        plan = owner.__dict__["_plan"] = SolvingOrder(structure)
     return plan
 
 
-def _start(plan: Plan, modes: Any) -> Configuration | None:
+def _start(plan: SolvingOrder, modes: Any) -> Configuration | None:
     """The configuration that is given; raises InvalidInput for one of another mechanism."""
     if not isinstance(modes, Configuration):
         return None
@@ -122,35 +123,7 @@ def _start(plan: Plan, modes: Any) -> Configuration | None:
     return modes
 
 
-def signs_of(plan: Plan, modes: Mapping[str, int] | str | Configuration | None = None) -> dict[int, int]:
-    """The modes chosen by sign, by group; those of the call go before those of the mechanism."""
-    mechanism = plan.structure.mechanism
-    if isinstance(modes, Configuration):
-        return {}
-    if isinstance(modes, str):
-        written = {link: mode.sign for mode in mechanism.modes for link in mode.links}
-        return {**_by_group(plan, written), **read_name(plan, modes)}
-    if modes is not None and not isinstance(modes, Mapping):
-        raise InvalidInput(Problem("modes", f"{modes!r} does not name a link", "write {'link of the group': -1}"))
-    called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
-    return {**_by_group(plan, written), **_by_group(plan, called)}
-
-
-def _by_group(plan: Plan, modes: Mapping[str, int]) -> dict[int, int]:
-    signs: dict[int, int] = {}
-    where = {link: k for k, step in enumerate(plan.steps) for link in step.group.links}
-    for name, sign in modes.items():
-        plan.structure.mechanism.link(name)
-        if name not in where:
-            raise InvalidInput(Problem(f"modes.{name}", "this link is driven or fixed: it has no assembly mode"))
-        if sign not in (1, -1) and not (plan.steps[where[name]].modes == 0 and isinstance(sign, int) and sign > 0):
-            raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
-        if signs.setdefault(where[name], sign) != sign:
-            raise InvalidInput(Problem(f"modes.{name}", "another link of its group has the opposite mode"))
-    return signs
-
-
-def _settled(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> Motion:
+def _settled(plan: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> Motion:
     """Solve; again where a group is found to pass through a change point, from which its mode changes sign."""
     while True:
         motion, near = _run(plan, given, tracker, order)
@@ -159,7 +132,7 @@ def _settled(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> Motion:
             return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
 
 
-def _run(plan: Plan, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
+def _run(plan: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
     """Solve block by block and gather; also the groups that come near a limit position."""
     designs, poses = given.designs, given.poses
     near: set[int] = set()

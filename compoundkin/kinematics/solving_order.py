@@ -1,25 +1,26 @@
-"""A structure made ready for numbers: what each group needs, bound once, run over any block of poses."""
+"""The solving order of a structure: a solver for each group, bound once, run over any block of poses."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
+from typing import Protocol
+
+import numpy as np
 
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Series, constant
+from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups import DYADS
-from compoundkin.kinematics.groups.gear_train import TrainStep
-from compoundkin.kinematics.groups.steps import AffineStep, DyadStep, FollowerStep, GeneralStep, Step
+from compoundkin.kinematics.groups import GroupSolver, solver_of
+from compoundkin.kinematics.limits import CLIPPED, LimitRule
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends, Equivalent
-from compoundkin.structure.assur_groups import named_group
+from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.parts import Body, DrivenPair, Group
+from compoundkin.structure.parts import Body, DrivenPair
 
 
-class Plan:
-    """The steps that solve a structure, in order: the driven links of the frame, then the groups."""
+class SolvingOrder:
+    """What solves a structure, in order: the driven links of the frame, then the solvers of its groups."""
 
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
@@ -32,33 +33,17 @@ class Plan:
             pairs.update({d.pair.name: d.pair for d in body.driven})
         self.pairs = pairs
         self.ends: dict[str, Ends] = {name: pair.ends(geometry) for name, pair in pairs.items()}
-        self.steps: tuple[Step, ...] = tuple(self._step(k, g) for k, g in enumerate(structure.groups))
-
-    def _step(self, k: int, group: Group) -> Step:
-        """How a group is solved: in closed form, by lower pairs that stand for a higher one, or in general."""
-        if group.name in DYADS:
-            return DyadStep(k, group, self.size)
-        if len(group.bodies) == 1 and len(group.outer) == 2:
-            lower, higher = sorted(group.outer, key=lambda pair: -pair.held)
-            own = next(j for j, name in enumerate(higher.members) if name in group.links)
-            if higher.is_affine(lower, own):
-                return AffineStep(k, group, lower, higher)
-            if higher.has_profile and lower.is_simple and higher.equivalent(self.ends[higher.name]) is None:
-                return FollowerStep(k, group, lower, higher, self.size)
-            found = higher.equivalent(self.ends[higher.name])
-            if found is not None:
-                dyad = _by_lower_pairs(group, lower, own, found)
-                if dyad.name in DYADS:
-                    self.ends.update(found.ends)
-                    return DyadStep(k, group, self.size, dyad)
-        return TrainStep.of(k, group) or GeneralStep(k, group, self.size)
+        self.solvers: tuple[GroupSolver, ...] = tuple(
+            solver_of(k, group, self.size, self.ends) for k, group in enumerate(structure.groups)
+        )
+        for solver in self.solvers:
+            self.ends.update(solver.ends)
 
     @cached_property
     def turning(self) -> frozenset[str]:
         """The links whose angles some pair asks for with full turns, and those from which such angles count."""
         asked = {name for pair in self.pairs.values() if pair.counts_turns for name in pair.members}
-        hung = (step.hangs_on for step in self.steps if isinstance(step, AffineStep | TrainStep))
-        return frozenset(asked.union(*hung))
+        return frozenset(asked.union(*(solver.counted_from for solver in self.solvers)))
 
     @cached_property
     def bodies(self) -> tuple[Body, ...]:
@@ -71,12 +56,17 @@ class Plan:
         return {d.drive.name: d for body in self.bodies for d in body.driven if not d.is_passive}
 
     @cached_property
-    def general(self) -> tuple[int, ...]:
-        """The indices of the groups without a closed form."""
-        return tuple(k for k, step in enumerate(self.steps) if isinstance(step, GeneralStep))
+    def numbered(self) -> tuple[int, ...]:
+        """The indices of the groups whose configurations are numbered."""
+        return tuple(solver.index for solver in self.solvers if solver.equations is not None)
 
     def start(
-        self, ends: Mapping[str, Ends], drives: Mapping[str, Series], order: int, shape: tuple[int, ...]
+        self,
+        ends: Mapping[str, Ends],
+        drives: Mapping[str, Series],
+        order: int,
+        shape: tuple[int, ...],
+        limits: LimitRule = CLIPPED,
     ) -> Block:
         """Return a block in which only the frame and the links it drives are known."""
         world: dict[str, Pose] = {}
@@ -89,19 +79,56 @@ class Plan:
                 world.update(placed)
             else:
                 local.update({k: v for k, v in placed.items() if v is not FIXED})
-        return Block(shape, ends, world, local, order)
+        return Block(shape, ends, world, local, order, limits)
+
+    def closing(self, solver: GroupSolver) -> tuple[Pair, ...]:
+        """Return the redundant pairs that close or open as a group is assembled, all links before it being known."""
+        if not self.structure.redundant:
+            return ()
+        before: dict[str, None] = dict.fromkeys(self.structure.ground.links)
+        for other in self.solvers[: solver.index]:
+            before.update(dict.fromkeys(other.group.links))
+        known = {*before, *solver.group.links}
+        closing = (pair for pair in self.structure.redundant if known.issuperset(pair.members))
+        return tuple(pair for pair in closing if not before.keys() >= {*pair.members})
+
+
+class Choice(Protocol):
+    """What the loop over the groups is told: which mode each is to be in, and where angles are counted from."""
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the mode of a group, all before it being assembled: a sign, a state, or anything where it has one."""
+
+    def angle(self, solver: GroupSolver, link: str) -> Number | None:
+        """Return about which angle, full turns counted, a link of a group has; None where it is not counted."""
+
+
+def run(plan: SolvingOrder, block: Block, choose: Choice, upto: int | None = None) -> Block:
+    """Assemble the groups one after another, up to one, each in the mode that is chosen; return the block."""
+    for solver in plan.solvers[:upto]:
+        solver.close(block, choose.mode(block, solver))
+        for link in solver.group.links if plan.turning else ():
+            pose = block.world[link]
+            near = choose.angle(solver, link) if link in plan.turning and pose.theta is None else None
+            if near is not None:
+                block.world[link] = pose.counted(near)
+    return block
+
+
+def residual(pairs: Sequence[Pair], block: Block) -> Number:
+    """Return the sum of the squares of all that pairs, which were left out, ought to hold."""
+    total: Number = 0.0
+    for pair in pairs:
+        poses = tuple(block.world[name] for name in pair.members)
+        for held in pair.closure(block.ends[pair.name], poses):
+            total = total + np.abs(held.c[0]) ** 2
+    return total
 
 
 def _driven(driven: DrivenPair, ends: Mapping[str, Ends], drives: Mapping[str, Series]) -> Pose:
-    """The pose of a driven link in its parent's frame."""
+    """Return the pose of a driven link in its parent's frame."""
     pair = driven.pair
     value = constant(0.0) if driven.is_passive else drives[driven.drive.name]
     free = value if pair.driven_by(driven.drive.link) > 0 else -value
     pose = pair.placed(ends[pair.name], free)
     return pose if driven.link == pair.members[1] else pose.inverse()
-
-
-def _by_lower_pairs(group: Group, lower: Pair, own: int, found: Equivalent) -> Group:
-    """The dyad of a body and the link that stands, with two lower pairs, for its higher pair."""
-    inner, outer = found.pairs[own], found.pairs[1 - own]
-    return named_group([*group.bodies, Body((found.link,))], [inner], [lower, outer])

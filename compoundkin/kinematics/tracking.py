@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import approach, recounted
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.first_pose import distance, first_state, shown
 from compoundkin.kinematics.full_turns import Turns, turns_of
-from compoundkin.kinematics.group_paths import Path, track
-from compoundkin.kinematics.groups.contract import clipped_root, double_root, nearest_root
-from compoundkin.kinematics.groups.gear_train import TrainStep
-from compoundkin.kinematics.groups.steps import AffineStep, DyadStep, FollowerStep
+from compoundkin.kinematics.group_paths import GroupPath, track
+from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.redundant_residuals import closed_with, openings
+from compoundkin.kinematics.limits import NEAREST
 from compoundkin.kinematics.sampling import CLOSE
-from compoundkin.kinematics.solving_order import Plan
-from compoundkin.model.geometry import vector
+from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 
 
 class Tracker:
@@ -29,7 +26,7 @@ class Tracker:
 
     def __init__(
         self,
-        plan: Plan,
+        plan: SolvingOrder,
         given: Inputs,
         signs: Mapping[int, int],
         hint: Mapping[str, Number],
@@ -49,8 +46,8 @@ class Tracker:
             self.sketch, self.drawn = dict(start.points), start.poses
         self.shown_by = "configuration" if start else "hint" if hint else "drawing"
         self.signs: dict[int, Number] = {}
-        self.paths: dict[int, Path] = {}
-        self.leads: dict[int, Path] = {}
+        self.paths: dict[int, GroupPath] = {}
+        self.leads: dict[int, GroupPath] = {}
         # the angles of links, full turns counted, that pairs ask for and no driver tells
         self.turns: dict[str, Turns] = {}
         self.chosen_by: dict[int, str] = {}
@@ -64,13 +61,13 @@ class Tracker:
         if plan.turning and geometry.drawn:
             home = self.lead.cut(slice(None), slice(0, 1))
             self.given, self.lead = recounted(plan, (given, self.lead), home)
-        self._fixed = signs
-        if self.sketch or plan.general or plan.turning:
+        self.fixed = signs
+        if self.sketch or plan.numbered or plan.turning:
             self.choose()
         else:
-            for k in range(len(plan.steps)):
-                self.signs[k] = self._fixed.get(k, 1)
-                self.chosen_by[k] = "sign" if k in self._fixed else "default"
+            for k in range(len(plan.solvers)):
+                self.signs[k] = signs.get(k, 1)
+                self.chosen_by[k] = "sign" if k in signs else "default"
 
     def run(
         self,
@@ -88,23 +85,12 @@ class Tracker:
         broadcast to the block, so that a column of designs and a row of places make a rectangle. `doubles`
         marks, by group, the poses that are change points.
         """
-        paths = self.leads if lead else self.paths
         block = self.plan.start(part.ends, part.series(order), order, np.broadcast_shapes(s.shape, designs.shape))
-        for k, step in enumerate(self.plan.steps[:upto]):
-            if isinstance(step, DyadStep | FollowerStep):
-                sign = self.sign(k, designs, s, lead)
-                step.run(block, sign, double_root(doubles[k]) if doubles and k in doubles else clipped_root)
-            elif isinstance(step, AffineStep | TrainStep):
-                step.run(block)
-            else:
-                step.run(block, paths[k].seeds(designs, s))
-            for link in step.group.links:
-                if link in self.turns:
-                    block.world[link] = block.world[link].counted(self.turns[link].near(designs, s, lead))
-        return block
+        block.doubles = doubles or {}
+        return run(self.plan, block, _Kept(self, designs, s, lead), upto)
 
     def sign(self, k: int, designs: Number, s: Number, lead: bool = False) -> Number:
-        """The sign of a dyad's mode: it changes wherever the dyad passes a change point."""
+        """Return the sign of a dyad's mode: it changes wherever the dyad passes a change point."""
         sign = self.signs[k]
         sign = sign if np.ndim(sign) == 0 else sign[designs, 0]
         if k in self.lead_flips:
@@ -119,62 +105,73 @@ class Tracker:
         """Pass through the groups at the drawn pose, choosing; track those without a closed form."""
         self.turns = {}
         home = self.lead.cut(slice(None), slice(0, 1))
-        block = self.plan.start(home.ends, home.series(0), 0, (self.given.designs, 1))
-        for k, step in enumerate(self.plan.steps):
-            if isinstance(step, DyadStep | FollowerStep):
-                self.signs[k] = self._sign(k, step, block)
-                step.run(block, self.signs[k], nearest_root)
-            elif isinstance(step, AffineStep | TrainStep):
-                self.chosen_by[k] = "only one"
-                step.run(block)
-            else:
-                number = self._fixed.get(k)
-                state, self.chosen_by[k] = first_state(self.plan, step, block, self.sketch, self.given.designs, number)
-                if self.chosen_by[k] == "drawing":
-                    self.chosen_by[k] = self.shown_by
-                self.leads[k], self.paths[k] = track(self, k, step.solver, state)
-                step.run(block, state)
-            for link in step.group.links:
-                if link in self.plan.turning and block.world[link].theta is None:
-                    self.turns[link] = turns_of(self, k, link)
-                    block.world[link] = block.world[link].counted(self.turns[link].lead[:, :1])
+        run(self.plan, self.plan.start(home.ends, home.series(0), 0, (self.given.designs, 1), NEAREST), _First(self))
 
-    def _sign(self, k: int, step: DyadStep | FollowerStep, block: Block) -> Number:
-        """The mode whose points lie nearest to the drawn ones."""
-        if k in self._fixed or step.modes == 1:
-            self.chosen_by[k] = "sign" if k in self._fixed else "only one"
-            return self._fixed.get(k, 1)
-        letters = shown(self.plan, step, self.sketch)
-        closing = closed_with(self.plan, step)
+
+@dataclass(frozen=True)
+class _Kept:
+    """The choice at places along the motion, or along the way to it: the configuration that was chosen is kept."""
+
+    tracker: Tracker
+    designs: Number
+    s: Number
+    lead: bool
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the tracked state, or the sign."""
+        if solver.equations is not None:
+            paths = self.tracker.leads if self.lead else self.tracker.paths
+            return paths[solver.index].seeds(self.designs, self.s)
+        return self.tracker.sign(solver.index, self.designs, self.s, self.lead)
+
+    def angle(self, solver: GroupSolver, link: str) -> Number | None:
+        """Return what was counted along the way."""
+        turns = self.tracker.turns.get(link)
+        return None if turns is None else turns.near(self.designs, self.s, self.lead)
+
+
+@dataclass(frozen=True)
+class _First:
+    """The choice at the drawn pose: by number or sign, else the nearest to the drawing; paths begin there."""
+
+    tracker: Tracker
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the chosen mode, and note it."""
+        tracker, k = self.tracker, solver.index
+        if solver.equations is None:
+            tracker.signs[k], tracker.chosen_by[k] = self._sign(block, solver)
+            return tracker.signs[k]
+        number = tracker.fixed.get(k)
+        state, by = first_state(tracker.plan, solver, block, tracker.sketch, number)
+        tracker.chosen_by[k] = tracker.shown_by if by == "drawing" else by
+        tracker.leads[k], tracker.paths[k] = track(tracker, k, solver.equations, state)
+        return state
+
+    def angle(self, solver: GroupSolver, link: str) -> Number:
+        """Count the turns of a link from here on."""
+        turns = self.tracker.turns[link] = turns_of(self.tracker, solver.index, link)
+        return turns.lead[:, :1]
+
+    def _sign(self, block: Block, solver: GroupSolver) -> tuple[Number, str]:
+        """Return the mode whose points lie nearest to the drawn ones, and what chose it."""
+        tracker, plan = self.tracker, self.tracker.plan
+        if solver.index in tracker.fixed or solver.modes == 1:
+            return tracker.fixed.get(solver.index, 1), "sign" if solver.index in tracker.fixed else "only one"
+        letters = shown(plan, solver, tracker.sketch)
+        closing = plan.closing(solver)
         if not letters and not closing:
-            self.chosen_by[k] = "default"
-            return 1
-        self.chosen_by[k] = "redundant" if closing else self.shown_by
+            return 1, "default"
         cost = []
         for sign in (1, -1):
             trial = block.copy()
-            step.run(trial, sign, nearest_root)
-            cost.append(openings(closing, trial) if closing else distance(self.plan, letters, self.sketch, trial))
+            solver.close(trial, sign)
+            cost.append(residual(closing, trial) if closing else distance(plan, letters, tracker.sketch, trial))
         best = np.where(cost[1] < cost[0], -1.0, 1.0)
-        return float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
+        chosen = float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
+        return chosen, "redundant" if closing else tracker.shown_by
 
 
 def _parity(passed: Number) -> Number:
-    """+1 where an even number of change points is passed, -1 where an odd number."""
+    """Return +1 where an even number of change points is passed, -1 where an odd number."""
     return np.where(passed.sum(axis=-1) % 2, -1.0, 1.0)
-
-
-def read_hint(plan: Plan, hint: Mapping[str, object] | None) -> dict[str, Number]:
-    """A hint as planar vectors; raises InvalidInput for points that the mechanism does not have."""
-    letters = plan.structure.mechanism.carriers
-    wrong = [
-        Problem(f"hint.{k}", f"there is no point {k!r}", nearest(k, list(letters)))
-        for k in hint or {}
-        if k not in letters
-    ]
-    if wrong:
-        raise InvalidInput(wrong)
-    found = {k: vector(f"hint.{k}", v) for k, v in (hint or {}).items()}
-    if not all(np.isfinite(v).all() for v in found.values()):
-        raise InvalidInput(Problem("hint", "a point of the hint is not finite"))
-    return found

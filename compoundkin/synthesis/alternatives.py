@@ -11,7 +11,7 @@ from math import comb, prod
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.assembly.group_geometry import GroupGraph
 from compoundkin.kinematics.assembly.mode_count import exact_count
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import FRAME, Drive, Item
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
@@ -298,10 +298,10 @@ def _titled(joints: Joints, frame: int, driver: int | None) -> str:
 
 def _solved(structure: Structure) -> tuple[int | None, bool]:
     """In how many ways all groups together can be assembled, and whether all are solved in closed form."""
-    plan = Plan(structure)
-    numbers = [step.modes or group_count(step.group) for step in plan.steps]
+    plan = SolvingOrder(structure)
+    numbers = [solver.modes or group_count(solver.group) for solver in plan.solvers]
     known = [number for number in numbers if number is not None]
-    return prod(known) if len(known) == len(numbers) else None, not plan.general
+    return prod(known) if len(known) == len(numbers) else None, not plan.numbered
 
 
 def group_count(group: Group) -> int | None:

@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.kinematics.block import blocks, rates
 from compoundkin.kinematics.inputs import FULL_TURN, fit, inputs
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.solving_order import SolvingOrder
 
 
 def arm(**words: Any) -> ck.Mechanism:
@@ -109,7 +109,7 @@ def test_everything_is_brought_into_designs_by_poses() -> None:
 
 
 def test_a_rectangle_of_the_inputs() -> None:
-    plan = Plan(ck.decompose(arm()))
+    plan = SolvingOrder(ck.decompose(arm()))
     given = inputs(plan, {"upper": np.arange(4.0), "fore": np.arange(3.0)[:, None]}, None, None, None)
     assert (given.designs, given.poses) == (3, 4)
     part = given.cut(slice(1, 3), slice(2, 4))

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.poses import Pose
 from compoundkin.kinematics.assembly import elimination, homotopy, neighbours
 from compoundkin.kinematics.assembly.group_geometry import GroupGeometry, GroupGraph
 from compoundkin.kinematics.assembly.loop_closure import rotation_equations_of
 from compoundkin.kinematics.assembly.mode_count import exact_count
 from compoundkin.kinematics.assembly.neighbours import distinct
 from compoundkin.kinematics.assembly.rotation_equations import RotationEquations, conjugates, holds, polish, relative
+from compoundkin.kinematics.configuration import Configurations
 
 # A solution this near to its own mirror image, its conjugate, is tried as a real one. Where it is none, two
 # complex configurations are about to meet in a real one; Newton then leaves the real numbers.
@@ -25,52 +23,10 @@ SAME_ANGLE = 1e-9
 QUICK_LOOPS = 2
 
 
-@dataclass(frozen=True)
-class Configurations:
-    """All configurations of a group: arrays (..., m) over poses and configurations, NaN where there are fewer.
-
-    `turns` and `origins` (..., m, n) are the bodies' unit orientations and origins, for a configuration that is
-    not `real` complex continuations without a picture. `count` (...) are found; `expected` is their number for
-    generic dimensions, `exact` whether it is known by theory or from a generic instance solved numerically.
-    The real ones come first, ordered by the angles of the bodies one after another, in (-pi, pi].
-    """
-
-    turns: Number
-    origins: Number
-    real: Number
-    count: Number
-    expected: int
-    exact: bool
-
-    @property
-    def certified(self) -> Number:
-        """Where no configuration is missing, for as many were found as theory knows."""
-        return self.exact & (self.count == self.expected)
-
-    @property
-    def real_count(self) -> Number:
-        """The number of real configurations at every pose."""
-        return self.real.sum(axis=-1)
-
-    @property
-    def states(self) -> Number:
-        """The real configurations as states (..., most real ones, 3 n): x, y, theta of each body; NaN pads."""
-        most = int(self.real_count.max(initial=0))
-        shown = self.real[..., :most]
-        z, u = self.origins[..., :most, :], self.turns[..., :most, :]
-        states = np.stack([z.real, z.imag, np.angle(u)], axis=-1)
-        return np.where(shown[..., None], states.reshape(*shown.shape, 3 * u.shape[-1]), np.nan)
-
-    def poses(self, number: int) -> list[Pose]:
-        """Return the bodies' poses (...) in one configuration; NaN at the poses where it is not real."""
-        shown = self.real[..., number, None]
-        z = np.where(shown, self.origins[..., number, :], np.nan)
-        u = np.where(shown, self.turns[..., number, :], np.nan)
-        return [Pose.of(z[..., b], u[..., b]) for b in range(z.shape[-1])]
-
-
 def all_configurations(geometry: GroupGeometry) -> Configurations:
     """Find all configurations of a group, at all its poses at once.
+
+    The real ones come first, ordered by the angles of the bodies one after another, in (-pi, pi].
 
     Fewer than `expected` are found where, for special dimensions, some coincide or lie at infinity. Raises
     `InvalidInput` where the connections leave a body free or holds it twice. Work grows as the cube of C(2 l, l) for l

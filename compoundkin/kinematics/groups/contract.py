@@ -1,122 +1,79 @@
-"""What every kind of Assur group answers; each kind lives in one file of this folder.
-
-A kernel closes a group by one textbook formula in series arithmetic. It sees a body of the group as its
-pose, unknown, and the sides of pairs in the body's own frame, known; and of the outside only the sides of
-the outer pairs in the world.
-"""
+"""What every way of solving a group answers; each way is one file of this folder and one line of its registry."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from typing import ClassVar, NamedTuple, TypeAlias
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
-
-# Below this fraction of its largest terms a discriminant is zero: rounding of a limit position, where
-# the group is stretched or folded. A few hundred units in the last place of the terms it is the difference of.
-LIMIT = 1e-13
-# Outer pins nearer to each other than this part of a link coincide but for rounding, which must not choose
-# the direction of that link.
-COINCIDENT = 1e-13
+from compoundkin.base.series import Number
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.structure.parts import Group
 
 
-# How a kernel takes the square root of a discriminant: (discriminant, scale) -> (root, margin).
-Root: TypeAlias = Callable[[Series, Number], tuple[Series, Number]]
+class GroupSolver(ABC):
+    """A group of a structure, made ready to be solved on any block: what it needs is bound once.
 
-
-class Attachment(NamedTuple):
-    """An outer pair: its side in the world, and its side in the frame of the group's body."""
-
-    world: End
-    local: End
-
-
-class Closed(NamedTuple):
-    """A group solved: the poses of its two bodies, and the margin, negative where it cannot be assembled.
-
-    For a group of two modes the margin is the squared sine of the angle in which the modes differ. `meeting`
-    is a squared length whose zero leaves the pose undetermined, for groups that have such a place.
+    `index` is its place in the solving order. `ends` are those of lower pairs that stand for others, `counted_from`
+    the links from whose angles, full turns counted, its own are taken.
     """
 
-    poses: tuple[Pose, Pose]
-    margin: Number
-    meeting: Number | None = None
+    modes: ClassVar[int]  # how many: 1, 2, or 0 where configurations are numbered
+    sign_means: ClassVar[str] = ""  # what mode +1 is
+    tells_margin: ClassVar[bool] = False  # whether it says how far it is from its limit position
+    ends: Mapping[str, Ends]
+    counted_from: tuple[str, ...] = ()
+    # the equations of a group whose configurations are numbered: states are followed by them
+    equations: GroupEquations | None = None
 
+    def __init__(self, index: int, group: Group) -> None:
+        self.index = index
+        self.group = group
+        self.ends = {}
 
-class Dyad(ABC):
-    """A group of two bodies, solved in closed form."""
-
-    name: ClassVar[str]
-    modes: ClassVar[int]  # how many assembly modes it has
-    sign_means: ClassVar[str]  # what mode +1 is
-    follows_inner: ClassVar[bool] = False  # whether the first body must carry the inner pair's first member
-
-    @staticmethod
+    @classmethod
     @abstractmethod
-    def close(first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = ...) -> Closed:
-        """Solve the group; `inner` is the inner pair's side on the first and on the second body.
+    def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> GroupSolver | None:
+        """Return the solver of a group, None where this way does not fit it.
 
-        `root` takes the square root of the discriminant, given a scale of its terms, and gives the margin.
+        `size` is the mechanism's length scale, `ends` are the pairs' sides on their links.
         """
 
-    @staticmethod
     @abstractmethod
-    def explain(
-        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
-    ) -> str:
-        """Why the group cannot be assembled at the flat pose index `at`; `names` are the letters of its pairs."""
+    def close(self, block: Block, mode: Number) -> None:
+        """Assemble the group and add its links to what is known.
 
+        `mode` is a sign, or a state of the bodies in `equations`; it has no effect where there is only one.
+        """
 
-def clipped_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
-    """The square root, with zero for a discriminant that is zero but for rounding; and the margin.
+    @abstractmethod
+    def every(self, block: Block) -> Configurations:
+        """Return all configurations in these surroundings, in a fixed order."""
 
-    >>> from compoundkin.base.series import constant
-    >>> value, margin = clipped_root(constant(np.array([4.0, -1e-15])), 1.0)
-    >>> value.c[0].tolist()
-    [2.0, 0.0]
-    """
-    margin = np.divide(discriminant.c[0], scale) + LIMIT
-    clipped = np.where(margin >= 0, np.maximum(discriminant.c[0], 0.0), np.nan)
-    return Series((clipped, *discriminant.c[1:])).sqrt(), margin
+    @abstractmethod
+    def why(self, block: Block, at: int) -> str:
+        """Say why the group cannot be assembled at a pose, given by its flat index."""
 
+    @property
+    def has_limits(self) -> bool:
+        """Whether it may come to a limit position that its closed form shows."""
+        return self.modes == 2 or self.tells_margin
 
-def nearest_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
-    """The square root, or zero: where a group cannot be assembled, its nearest approach."""
-    lead = np.maximum(discriminant.c[0], 0.0)
-    return Series((lead, *discriminant.c[1:])).sqrt(), np.ones_like(lead)
+    def margin(self, block: Block) -> Number | None:
+        """Return how far it is from its limit position, negative beyond; None where it does not say."""
+        return block.margins.get(self.index)
 
-
-def double_root(where: Number) -> Root:
-    """The root that takes, where asked, the discriminant to be a square: zero, and so is its first rate.
-
-    There the root is ``t sqrt(c[2] + c[3] t + ...)``: the group passes through its limit position without
-    turning back. Two coefficients are lost: the last two of the result mean nothing.
-    """
-
-    def root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
-        plain, margin = clipped_root(discriminant, scale)
-        inner = Series(discriminant.c[2:]).sqrt().c
-        through = (np.zeros_like(margin), *inner, np.zeros_like(margin))
-        return Series(tuple([np.where(where, t, p) for t, p in zip(through, plain.c, strict=True)])), margin
-
-    return root
-
-
-def placed_at(point: Series, u: Series, local: Series | Number) -> Pose:
-    """The pose with orientation `u` that has the body's point `local` at `point`."""
-    return Pose(Pose(point, u).at(-local), u)
-
-
-def element(value: Number, at: int) -> float:
-    """One element, by its flat index, of an array; or the number that holds for all."""
-    flat = np.asarray(value).ravel()
-    return float(flat[at if flat.size > 1 else 0])
-
-
-def text(value: Number, at: int) -> str:
-    """One element of a number or array, for a sentence."""
-    return f"{element(value, at):.6g}"
+    def in_modes(self, block: Block) -> Configurations:
+        """Return the configurations in all modes, for groups of one mode or two."""
+        trial = block.leading()
+        signs = np.array([1.0, -1.0])[: self.modes].reshape(-1, *[1] * len(block.shape))
+        trial.failed = 0
+        self.close(trial, signs)
+        return Configurations.of_bodies(
+            [trial.world[body.links[0]] for body in self.group.bodies], trial.failed == 0, (self.modes, *block.shape)
+        )

@@ -6,26 +6,31 @@ distance exactly, and every further coefficient of its time series one division 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import ClassVar, TypeAlias
+from collections.abc import Callable, Mapping
+from typing import ClassVar, Self, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.groups.general import CLOSED, STEPS
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, Series, constant
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.groups.contract import GroupSolver
+from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
+from compoundkin.kinematics.groups.mounted_body import MountedBody
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends, Freedom, Poses
+from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.structure.parts import Group
 
 # The members' poses where the body's coordinate is the one given.
 Placing: TypeAlias = Callable[[Series], Poses]
-
 
 # Newton's steps: three or four from between two samples; at a limit position, where the two contacts of a path meet,
 # every step but halves the error.
 HALVINGS = 40
 
 
-class Follower:
+class FollowerSolver(GroupSolver):
     """A contact has two places at most that count; what the modes mean is that of the dyad for a round disc.
 
     On a slide mode +1 is farthest along the guide. On a pin it is the most clockwise place for a roller or edge; a face
@@ -37,18 +42,39 @@ class Follower:
         "the follower is farther along its slide; on a pin, its roller is more clockwise, its face touches ahead of it"
     )
 
-    def __init__(self, pair: Pair, own: int, size: float) -> None:
-        self.pair = pair
-        self.own = own
+    def __init__(self, index: int, group: Group, size: float, lower: Pair, higher: Pair) -> None:
+        super().__init__(index, group)
         self.size = size
+        self.mounted = MountedBody(lower, higher, group.bodies[0])
+        self.pair = higher
+        self.own = next(j for j, name in enumerate(higher.members) if name in group.links)
 
-    def start(self, ends: Ends, at_zero: Poses, freedom: Freedom, sign: Number) -> Number:
-        """The coordinate, nearly, in a mode; NaN where there is no contact."""
+    @classmethod
+    def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self | None:
+        """Return the solver of a body on a pin or slide and on a profile for which no lower pairs stand."""
+        if len(group.bodies) != 1 or len(group.outer) != 2:
+            return None
+        lower, higher = sorted(group.outer, key=lambda pair: -pair.held)
+        if not (higher.has_profile and lower.is_simple) or higher.equivalent(ends[higher.name]) is not None:
+            return None
+        return cls(index, group, size, lower, higher)
+
+    def close(self, block: Block, mode: Number) -> None:
+        """Assemble the group and add its links to what is known."""
+        ends = block.ends[self.pair.name]
+        leading = self.mounted.leading(block)
+        at_zero, freedom = self.mounted.poses(leading, constant(0.0)), self.mounted.freedom(leading)
         other, one = self.pair.contact_candidates(ends, at_zero, self.own, freedom)
-        return np.where(sign > 0, one, other)
+        start = np.where(mode > 0, one, other)
+        found, closed, slope = self._polished(ends, lambda q: self.mounted.poses(leading, q), start)
+        block.fail(closed, self.index)
+        coordinate = self._series(ends, lambda q: self.mounted.poses(block, q), found, slope, block.order)
+        pose = self.mounted.placed(block, coordinate)
+        # no turns are counted: the angle found may leap by one between poses
+        block.publish(self.group.bodies[0], Pose(pose.z, pose.u))
 
-    def polished(self, ends: Ends, placing: Placing, start: Number) -> tuple[Number, Number, Number]:
-        """The coordinate, where it closes the contact, and the slope of the contact's distance there."""
+    def _polished(self, ends: Ends, placing: Placing, start: Number) -> tuple[Number, Number, Number]:
+        """Return the coordinate, where it closes the contact, and the slope of the contact's distance there."""
         coordinate, before = start, np.inf
         for k in range(HALVINGS):
             gap, slope = self._gap(ends, placing, coordinate)
@@ -63,8 +89,8 @@ class Follower:
         closed = (np.abs(gap) <= CLOSED * self.size) & assembled
         return np.where(closed, coordinate, np.nan), closed, slope
 
-    def series(self, ends: Ends, placing: Placing, coordinate: Number, slope: Number, order: int) -> Series:
-        """The coordinate to the given order, from its closed value and the slope there."""
+    def _series(self, ends: Ends, placing: Placing, coordinate: Number, slope: Number, order: int) -> Series:
+        """Return the coordinate to the given order, from its closed value and the slope there."""
         found: tuple[Number, ...] = (coordinate,)
         for k in range(1, order + 1):
             trial = Series((*found, *[np.zeros_like(coordinate)] * (order + 1 - k)))
@@ -72,6 +98,14 @@ class Follower:
         return Series(found)
 
     def _gap(self, ends: Ends, placing: Placing, coordinate: Number) -> tuple[Number, Number]:
-        """The contact's distance and its slope by the coordinate, all else standing still."""
+        """Return the contact's distance and its slope by the coordinate, all else standing still."""
         gap = self.pair.closure(ends, placing(Series((coordinate, 1.0))))[0]
         return gap.c[0], gap.c[1]
+
+    def every(self, block: Block) -> Configurations:
+        """Return one configuration for each mode."""
+        return self.in_modes(block)
+
+    def why(self, block: Block, at: int) -> str:
+        """Say why it cannot be assembled at a pose."""
+        return self.pair.no_contact_reason()

@@ -1,23 +1,29 @@
-"""Trains: bodies that turn on pins, all of whose angles gear pairs give together."""
+"""Gear trains: wheels and racks whose angles or displacements gear pairs give in proportion; one wheel is a train."""
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import ClassVar, Self
 
 import numpy as np
 
 from compoundkin.base.linear import inverted
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups.mounts import FLAT, Mounted
+from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.groups.contract import GroupSolver
+from compoundkin.kinematics.groups.mounted_body import FLAT, MountedBody
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import table
+from compoundkin.model.pairs.contract import Ends, table
 from compoundkin.structure.parts import Body, Group
 
+UNIT = Series((0.0, 1.0))
 
-class TrainStep:
-    """Bodies that turn on pins, all of whose angles gear pairs give together: one system of linear equations.
 
+class GearTrainSolver(GroupSolver):
+    """Bodies on pins, all of whose angles gear pairs give together; or one that a gear or rack moves in proportion.
+
+    The closures where all coordinates are zero, by their slopes, give the coordinates: linear equations.
     Source: Willis's equation for every pair, e.g. R. L. Norton, Design of Machinery, section 9.8.
     """
 
@@ -25,22 +31,21 @@ class TrainStep:
     sign_means: ClassVar[str] = "there is only one mode"
 
     def __init__(self, index: int, group: Group, lowers: tuple[tuple[Pair, Body], ...], highers: tuple[Pair, ...]):
-        self.index = index
-        self.group = group
-        self.mounted = tuple(Mounted(pair, highers[0], body) for pair, body in lowers)
+        super().__init__(index, group)
+        self.mounted = tuple(MountedBody(pair, highers[0], body) for pair, body in lowers)
         self.highers = highers
-        others = [mounted.side.other for mounted in self.mounted]
-        self.links = tuple(dict.fromkeys([*others, *(name for pair in highers for name in pair.members)]))
-
-    @property
-    def hangs_on(self) -> tuple[str, ...]:
-        """The links from which its coordinates count."""
-        return tuple(mounted.side.other for mounted in self.mounted)
+        self.counted_from = tuple(mounted.side.other for mounted in self.mounted)
+        self.links = tuple(dict.fromkeys([*self.counted_from, *(name for pair in highers for name in pair.members)]))
 
     @classmethod
-    def of(cls, index: int, group: Group) -> TrainStep | None:
-        """The step for a group whose bodies hang on pins one after another, joined by gear pairs; None for others."""
+    def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self | None:
+        """Return the solver of a wheel, and of bodies that hang on pins one after another, joined by gear pairs."""
         pairs = (*group.inner, *group.outer)
+        if len(group.bodies) == 1 and len(group.outer) == 2:
+            lower, higher = sorted(pairs, key=lambda pair: -pair.held)
+            own = next(j for j, name in enumerate(higher.members) if name in group.links)
+            if higher.is_affine(lower, own):
+                return cls(index, group, ((lower, group.bodies[0]),), (higher,))
         highers = tuple(pair for pair in pairs if pair.adds_angles)
         pins = [pair for pair in pairs if pair.is_simple and pair.free_is_angle]
         if not highers or len(pins) + len(highers) < len(pairs) or len(pins) != len(group.bodies):
@@ -52,21 +57,36 @@ class TrainStep:
             left = [body for body in left if body not in [b for _, b in found]]
         return None if left else cls(index, group, tuple(found), highers)
 
-    def run(self, block: Block) -> None:
-        """Close the group: the closures where all coordinates are zero, by their slopes, give the coordinates."""
+    def close(self, block: Block, mode: Number) -> None:
+        """Assemble the group; a mode has no effect."""
+        start = self._closures(block.copy(), [constant(0.0)] * len(self.mounted))
+        self._place(block, self._alone(block, start) if len(start) == 1 else self._together(block, start))
+
+    def _alone(self, block: Block, start: list[Series]) -> list[Series]:
+        """Return the coordinate of one body, whose slope changes where a rack and a guide turn on each other."""
+        lead = self._closures(block.leading(self.links), [UNIT])[0].c[1]
+        rates = (self._closures(block.copy(), [constant(1.0)])[0] - start[0]).c[1:]
+        slope = Series((lead, *rates) if any(np.any(rate != 0.0) for rate in rates) else (lead,))
+        free = np.abs(lead) <= FLAT
+        if np.any(free):
+            slope = Series((np.where(free, np.nan, lead), *slope.c[1:]))
+            block.fail(~free, self.index)
+        return [-start[0] / slope]
+
+    def _together(self, block: Block, start: list[Series]) -> list[Series]:
+        """Return the coordinates of several bodies, whose slopes are ratios."""
         rest = [constant(0.0)] * len(self.mounted)
-        start = self._closures(block.copy(), rest)
-        units = ([*rest[:j], Series((0.0, 1.0)), *rest[j + 1 :]] for j in range(len(rest)))
+        units = ([*rest[:j], UNIT, *rest[j + 1 :]] for j in range(len(rest)))
         slopes = [[_second(c) for c in self._closures(block.leading(self.links), unit)] for unit in units]
         inverse = inverted(table(*zip(*slopes, strict=True)))
         free = ~(np.abs(inverse).max(axis=(-1, -2)) < 1.0 / FLAT)
-        block.failed = np.where((block.failed == 0) & free, self.index + 1, block.failed)
+        block.fail(~free, self.index)
         inverse = np.where(free[..., None, None], np.nan, inverse)
         solved = []
         for k in range(max(len(c.c) for c in start)):
             lacking = np.stack(np.broadcast_arrays(*(c.c[k] if len(c.c) > k else 0.0 for c in start)), -1)
             solved.append(-np.einsum("...ij,...j->...i", inverse, lacking))
-        self._place(block, [Series(tuple([c[..., j] for c in solved])) for j in range(len(rest))])
+        return [Series(tuple([c[..., j] for c in solved])) for j in range(len(rest))]
 
     def _closures(self, block: Block, coordinates: list[Series]) -> list[Series]:
         self._place(block, coordinates)
@@ -77,13 +97,19 @@ class TrainStep:
         for mounted, coordinate in zip(self.mounted, coordinates, strict=True):
             block.publish(mounted.body, mounted.placed(block, coordinate))
 
-    def explain(self, block: Block, at: int) -> str:
-        """It can be assembled wherever what it hangs on can, unless its ratios leave it free."""
+    def every(self, block: Block) -> Configurations:
+        """Return the only configuration."""
+        return self.in_modes(block)
+
+    def why(self, block: Block, at: int) -> str:
+        """Say what leaves it free: else it can be assembled wherever what it hangs on can."""
+        if len(self.mounted) == 1:
+            return f"{self.mounted[0].side.pair.name} may move without any effect on {self.highers[0].name}"
         return f"the ratios of {', '.join(pair.name for pair in self.highers)} do not determine it"
 
 
 def _hangs(pair: Pair, body: Body, left: list[Body]) -> bool:
-    """Whether a pin joins a body to a link that is known, or to a body that is placed already."""
+    """Return whether a pin joins a body to a link that is known, or to a body that is placed already."""
     own = [name for name in pair.members if name in body.links]
     waiting = [name for name in pair.members if any(name in other.links for other in left)]
     return len(own) == 1 and waiting == own

@@ -1,294 +1,128 @@
-"""Any group of pairs, without a closed form: Newton for the position, one matrix for all derivatives.
-
-The unknowns are x, y, theta of every body that is no bar; the equations are the lengths of the bars and the other
-pairs' own closures, the matrix their own Jacobians. Each further coefficient of the time series comes from ONE linear
-solve with the matrix of the position: the residual's next coefficient, taken with the unknown one set to zero, is the
-right-hand side.
-
-Source: the velocity and acceleration equations share their coefficient matrix, e.g. P. E. Nikravesh,
-Computer-Aided Analysis of Mechanical Systems, section 3.2; for all orders A. Griewank and A. Walther,
-Evaluating Derivatives, section 13.3.
-"""
+"""Any other group: Newton's method on the pairs' own equations; its configurations are numbered."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import ClassVar, Self
 
 import numpy as np
 
-from compoundkin.base.arrays import joined
-from compoundkin.base.linear import Inverse, Row, stacked
+from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series, as_series, constant
+from compoundkin.base.series import Number, constant
+from compoundkin.kinematics.assembly import all_configurations, from_group
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups.bars import Bar, bars_of
-from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Poses
+from compoundkin.kinematics.configuration import Configurations, state_distance
+from compoundkin.kinematics.groups.bars import Member
+from compoundkin.kinematics.groups.contract import GroupSolver
+from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.structure.parts import Group
 
-# Newton stops when no correction exceeds this (of the mechanism's size, or radians): it doubles its digits with every
-# step, so that the pose is then exact to rounding.
-CONVERGED = 1e-8
-STEPS = 12
-# After a correction below this (of the size, or radians) the matrix has hardly changed and is used once more.
-CHORD = 1e-3
-# A closed pose has every residual below this fraction of the size: rounding of some tens of additions, far less than
-# what is left open a hundred-millionth of a radian beyond a limit position.
-CLOSED = 1e-12
-# Corrections above this (of the size, or radians) leave the region where Newton's answer is a neighbour.
-LEAP = 0.5
-
-
-@dataclass(frozen=True)
-class Member:
-    """One side of a pair: the link, and the index of its body in the group or None for a known link."""
-
-    link: str
-    body: int | None
+# Where no theory counts a group's configurations, Newton searches them from so many random states.
+STARTS = 60
+STEPS = 40
+# Groups of more bodies are searched too: the work for all configurations grows some sixtyfold with every two bodies.
+MOST_BODIES = 8
+# Configurations nearer than this (parts of the size, radians) are one.
+SAME = 1e-6
 
 
-class Solution(NamedTuple):
-    """Newton's answer: the state (..., width), whether it closes, and the largest correction made."""
+class GeneralSolver(GroupSolver):
+    """A group without a closed form: its configurations have no sign, and are followed along the motion."""
 
-    state: Number
-    closed: Number
-    moved: Number
+    modes: ClassVar[int] = 0
+    equations: GroupEquations
+
+    def __init__(self, index: int, group: Group, size: float) -> None:
+        super().__init__(index, group)
+        where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
+        self.pairs = (*group.inner, *group.outer)
+        members = tuple(tuple(Member(name, where.get(name)) for name in pair.members) for pair in self.pairs)
+        self.equations = GroupEquations(len(group.bodies), self.pairs, members, size)
+
+    @classmethod
+    def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self:
+        """Return the solver of any group."""
+        return cls(index, group, size)
+
+    def close(self, block: Block, mode: Number) -> None:
+        """Correct a state, add the derivatives, and the group's links to what is known."""
+        found = self.equations.newton(mode, block)
+        closed = found.closed & (found.moved < block.limits.leap)
+        keeps = block.limits.keeps_states
+        if not keeps:
+            block.fail(closed, self.index)
+        state = np.where(closed[..., None], found.state, mode if keeps else np.nan)
+        for body, pose in zip(self.group.bodies, self.equations.series(state, block, block.order), strict=True):
+            block.publish(body, pose)
+
+    def every(self, block: Block) -> Configurations:
+        """Return the real configurations, where no theory knows them those that are found from random states."""
+        found = known_configurations(self.group, block, self.equations.size)
+        return self._searched(block) if found is None else found
+
+    def why(self, block: Block, at: int) -> str:
+        """Say that its path has come to a limit position, or a pair to its end."""
+        limit = "the tracked configuration ends at a limit position, where the group's equations become singular"
+        open_ = [f"{pair.letters[0]} leaves the profile of {pair.members[0]}" for pair in self.pairs if pair.has_ends]
+        return f"{limit}, or where {' or '.join(open_)} at an end" if open_ else limit
+
+    def _searched(self, block: Block) -> Configurations:
+        """Return what Newton finds from random states around the origins of what the group is attached to."""
+        n, size = self.equations.n, self.equations.size
+        rng = np.random.default_rng(n)
+        around = np.broadcast_arrays(*(block.world[link].z.c[0] for link in self.group.uses))
+        shape = block.extent(self.group.uses)
+        single = [1] * len(shape)
+        spots = rng.standard_normal((STARTS, n)) + 1j * rng.standard_normal((STARTS, n))
+        spots = np.broadcast_to(np.mean(around, axis=0), shape) + size / 2.0 * spots.reshape(STARTS, n, *single)
+        turns = rng.uniform(-np.pi, np.pi, (STARTS, n)).reshape(STARTS, n, *single)
+        start = [v for k in range(n) for v in np.broadcast_arrays(spots[:, k].real, spots[:, k].imag, turns[:, k])]
+        known = self.equations.state(bodies_at(np.stack(start, axis=-1)))
+        found = self.equations.newton(known, block, steps=STEPS)
+        bodies = self.equations.series(found.state, block, 0)
+        numbers = [v for b in bodies for v in (b.z.c[0].real, b.z.c[0].imag, np.angle(b.u.c[0]))]
+        states = np.where(found.closed[..., None], np.stack(np.broadcast_arrays(*numbers), axis=-1), np.nan)
+        return Configurations.of_states(_once(np.moveaxis(states, 0, -2), size))
 
 
-class General:
-    """A group of `n` bodies joined and attached by `pairs`; `members` tells each pair's sides.
+def known_configurations(group: Group, block: Block, size: float, most: int = MOST_BODIES) -> Configurations | None:
+    """Return all configurations of a group without any search.
 
-    Its state (..., width) is x, y, theta of each body in `kept`: all that are no bars, or with ``bars=False`` all.
+    None for groups with higher pairs, and those of more than `most` bodies.
     """
-
-    def __init__(
-        self, n: int, pairs: tuple[Pair, ...], members: tuple[tuple[Member, ...], ...], size: float, bars: bool = True
-    ) -> None:
-        self.n = n
-        self.pairs = pairs
-        self.members = members
-        self.size = size
-        self.bars = bars_of(n, pairs, members) if bars else ()
-        left_out = {bar.body for bar in self.bars}
-        self.kept = tuple(k for k in range(n) if k not in left_out)
-        pins = {k for bar in self.bars for k in bar.pins}
-        self.others = tuple(k for k in range(len(pairs)) if k not in pins)
-
-    @property
-    def width(self) -> int:
-        """How many numbers a state has."""
-        return 3 * len(self.kept)
-
-    @property
-    def weights(self) -> Number:
-        """What makes a change of the state a pure number: parts of the size, radians."""
-        return np.tile([1.0 / self.size, 1.0 / self.size, 1.0], len(self.kept))
-
-    def state(self, bodies: list[Pose]) -> Number:
-        """The state of all bodies' poses, at their leading coefficients."""
-        kept = [bodies[k] for k in self.kept]
-        parts = [v for b in kept for v in (b.z.c[0].real, b.z.c[0].imag, b.angle.c[0])]
-        return np.stack(np.broadcast_arrays(*parts), axis=-1)
-
-    def newton(self, state: Number, block: Block, steps: int = STEPS, longest: float = np.inf) -> Solution:
-        """Correct the state until the group closes; `state` (..., width) broadcasts with the surroundings.
-
-        No single correction is longer than `longest` (of the size, or radians).
-        """
-        leading = block.leading()
-        weights = self.weights
-        start = found = [np.asarray(v) for v in np.moveaxis(np.asarray(state, dtype=float), -1, 0)]
-        bodies = self._kept_poses(found)
-        residual = self._residual(bodies, leading, 0)
-        inverse, largest = None, np.inf
-        for _ in range(steps):
-            if inverse is None or np.any(largest > CHORD):
-                inverse = Inverse(self._rows(bodies, leading), self.width)
-            correction = inverse.times(residual)
-            largest = _largest([c * w for c, w in zip(correction, weights, strict=True)])
-            if longest < np.inf:
-                share = np.minimum(1.0, longest / largest)
-                correction = [c * share for c in correction]
-            found = [v - c for v, c in zip(found, correction, strict=True)]
-            bodies = self._kept_poses(found)
-            residual = self._residual(bodies, leading, 0)
-            closed = (largest <= CONVERGED) & (_largest(residual) <= CLOSED * self.size)
-            if not np.any(~closed & np.isfinite(largest)):
-                break
-        closed = closed & self._properly_assembled(bodies, leading)
-        moved = _largest([(v - s) * w for v, s, w in zip(found, start, weights, strict=True)])
-        return Solution(np.stack(np.broadcast_arrays(*found), axis=-1), closed, moved)
-
-    def series(self, state: Number, block: Block, order: int) -> list[Pose]:
-        """All bodies' poses to the given order, from a closed state."""
-        kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
-        if order:
-            inverse = Inverse(self._rows(kept, block.leading()), self.width)
-            for k in range(1, order + 1):
-                kept = self._grown(kept, self._next(kept, inverse, block, k))
-        found = {**kept, **{bar.body: self._bar_pose(bar, kept, block, order) for bar in self.bars}}
-        return [found[k] for k in range(self.n)]
-
-    def rates(self, state: Number, block: Block, order: int) -> tuple[list[Number], Number]:
-        """The state's coefficients 1 to `order`, each (..., width), in a block of that order; and its side.
-
-        The side is the sign of the determinant of the equations: it changes across a singularity.
-        """
-        kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
-        inverse = Inverse(self._rows(kept, block.leading()), self.width)
-        found = []
-        for k in range(1, order + 1):
-            step = self._next(kept, inverse, block, k)
-            kept = self._grown(kept, step)
-            found.append(np.stack(np.broadcast_arrays(*step, state[..., 0])[:-1], axis=-1))
-        return found, np.sign(inverse.determinant)
-
-    def matrix(self, state: Number, block: Block) -> Number:
-        """The matrix of all equations at a state, (..., width, width)."""
-        kept = self._kept_poses(list(np.moveaxis(state, -1, 0)))
-        return stacked(self._rows(kept, block.leading()), self.width)
-
-    # --- equations ---
-
-    def _next(self, kept: Mapping[int, Pose], inverse: Inverse, block: Block, k: int) -> list[Number]:
-        """The k-th coefficients of the state, from poses known to the one before."""
-        trial = {j: _turned((*b.z.c, 0j), (*b.angle.c, np.zeros_like(b.angle.c[0]))) for j, b in kept.items()}
-        return inverse.times([-r for r in self._residual(trial, block, k)])
-
-    def _grown(self, kept: Mapping[int, Pose], step: list[Number]) -> dict[int, Pose]:
-        """The poses with one more coefficient."""
-        return {
-            j: _turned((*b.z.c, step[3 * i] + 1j * step[3 * i + 1]), (*b.angle.c, step[3 * i + 2]))
-            for i, (j, b) in enumerate(kept.items())
-        }
-
-    def _kept_poses(self, values: list[Number]) -> dict[int, Pose]:
-        """The poses of the kept bodies, of order 0, from the numbers of a state."""
-        found = {}
-        for i, body in enumerate(self.kept):
-            x, y, theta = values[3 * i : 3 * i + 3]
-            angle = constant(theta)
-            found[body] = Pose(constant(joined(x, y)), angle.turn(), angle)
-        return found
-
-    def _residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> list[Number]:
-        """The k-th coefficients of all equations: those of the bars, then the other pairs' closures."""
-        found = []
-        for bar in self.bars:
-            (_, one), (_, two) = self._ends_of(bar, bodies, block, k)
-            length2 = self._length2(bar, block)
-            gap = (two - one).abs2() - Series(length2.c[: k + 1])
-            found.append(gap.c[k] * (0.5 / np.sqrt(length2.c[0])) if len(gap.c) > k else 0.0)
-        for number in self.others:
-            pair = self.pairs[number]
-            closure = pair.closure(block.ends[pair.name], self._links(number, bodies, block, k))
-            found += [c.c[k] if len(c.c) > k else 0.0 for c in closure]
-        return found
-
-    def _rows(self, bodies: Mapping[int, Pose], block: Block) -> list[Row]:
-        """The Jacobian of all equations by the state."""
-        first = {body: 3 * i for i, body in enumerate(self.kept)}
-        rows = []
-        for bar in self.bars:
-            (_, one), (_, two) = ends = self._ends_of(bar, bodies, block, 0)
-            along = (two - one).c[0] / np.sqrt(self._length2(bar, block).c[0])
-            row: Row = {}
-            for (body, place), sign in zip(ends, (-1.0, 1.0), strict=True):
-                if body is not None:
-                    _add_point(row, first[body], along * sign, place.c[0] - bodies[body].z.c[0])
-            rows.append(row)
-        for number in self.others:
-            rows += self._pair_rows(number, first, bodies, block)
-        return rows
-
-    def _pair_rows(
-        self, number: int, first: Mapping[int, int], bodies: Mapping[int, Pose], block: Block
-    ) -> Iterator[Row]:
-        pair = self.pairs[number]
-        poses = self._links(number, bodies, block, 0)
-        table = pair.jacobian(block.ends[pair.name], poses)
-        for r in range(pair.held):
-            row: Row = {}
-            for side, member in enumerate(self.members[number]):
-                if member.body is not None:
-                    x, y, theta = (table[..., r, 3 * side + j] for j in range(3))
-                    arm = poses[side].z.c[0] - bodies[member.body].z.c[0]
-                    # derivatives by a link's x, y, theta as derivatives by those of the body it is fixed in
-                    turn = theta if poses[side] is bodies[member.body] else theta + y * arm.real - x * arm.imag
-                    _add(row, first[member.body], (x, y, turn))
-            yield row
-
-    def _links(self, number: int, bodies: Mapping[int, Pose], block: Block, k: int) -> Poses:
-        """The poses of a pair's members, to order k at most."""
-        return tuple(self._link(member, bodies, block, k) for member in self.members[number])
-
-    def _link(self, member: Member, bodies: Mapping[int, Pose], block: Block, k: int) -> Pose:
-        if member.body is None:
-            return block.world[member.link].trimmed(k)
-        local = block.local.get(member.link)
-        return bodies[member.body] if local is None else bodies[member.body].compose(local.trimmed(k))
-
-    # --- bars ---
-
-    def _ends_of(
-        self, bar: Bar, bodies: Mapping[int, Pose], block: Block, k: int
-    ) -> tuple[tuple[int | None, Series], tuple[int | None, Series]]:
-        """For each pin of a bar the body at its other side, and where that has the pin."""
-        found = []
-        for number, own in zip(bar.pins, bar.own, strict=True):
-            member = self.members[number][1 - own]
-            end = block.ends[self.pairs[number].name][1 - own]
-            found.append((member.body, self._link(member, bodies, block, k).at(end.point)))
-        return found[0], found[1]
-
-    def _pins_in(self, bar: Bar, block: Block) -> tuple[Series, Series]:
-        """A bar's pins in its body's frame."""
-        found = []
-        for number, own in zip(bar.pins, bar.own, strict=True):
-            local = block.local.get(self.members[number][own].link)
-            point = block.ends[self.pairs[number].name][own].point
-            found.append(as_series(point) if local is None else local.at(point))
-        return found[0], found[1]
-
-    def _length2(self, bar: Bar, block: Block) -> Series:
-        one, two = self._pins_in(bar, block)
-        return (two - one).abs2()
-
-    def _bar_pose(self, bar: Bar, kept: Mapping[int, Pose], block: Block, order: int) -> Pose:
-        """A bar's pose between its two pins."""
-        (_, one), (_, two) = self._ends_of(bar, kept, block, order)
-        first, second = self._pins_in(bar, block)
-        u = (two - one) / (second - first)
-        return Pose(one - u * first, u)
-
-    def _properly_assembled(self, bodies: Mapping[int, Pose], block: Block) -> Number:
-        """Whether every pair is closed in the way that is meant, such as no guide the wrong way round in its block."""
-        good: Number = True
-        for number in self.others:
-            pair = self.pairs[number]
-            good = good & pair.is_properly_assembled(block.ends[pair.name], self._links(number, bodies, block, 0))
-        return good
+    if len(group.bodies) > most:
+        return None
+    try:
+        return all_configurations(from_group(group, block, size))
+    except InvalidInput:
+        return None
 
 
-def _add_point(row: Row, column: int, along: Number, arm: Number) -> None:
-    """What a body's x, y, theta move its point, at an arm from its origin, in a direction."""
-    _add(row, column, (along.real, along.imag, along.imag * arm.real - along.real * arm.imag))
+def _once(states: Number, size: float) -> Number:
+    """Return each state once, in the order of the angles of the bodies; padded with NaN."""
+    shape = states.shape[:-2]
+    lists = [_distinct(found, size) for found in states.reshape(-1, *states.shape[-2:])]
+    most = max((len(found) for found in lists), default=0)
+    out = np.full((len(lists), most, states.shape[-1]), np.nan)
+    for row, found in zip(out, lists, strict=True):
+        row[: len(found)] = found
+    return out.reshape(*shape, most, states.shape[-1])
 
 
-def _add(row: Row, column: int, entries: tuple[Number, Number, Number]) -> None:
-    for j, entry in enumerate(entries, column):
-        row[j] = row[j] + entry if j in row else entry
+def _distinct(states: Number, size: float) -> Number:
+    known = states[np.isfinite(states).all(axis=-1)]
+    kept: list[Number] = []
+    for state in known:
+        if not any(state_distance(state, other, size) < SAME for other in kept):
+            kept.append(state)
+    kept.sort(key=lambda state: tuple(np.round(state[2::3], 6)))
+    return np.array(kept).reshape(len(kept), states.shape[-1])
 
 
-def _largest(values: list[Number]) -> Number:
-    found = np.abs(values[0])
-    for value in values[1:]:
-        found = np.maximum(found, np.abs(value))
-    return found
-
-
-def _turned(z: tuple[Number, ...], theta: tuple[Number, ...]) -> Pose:
-    """The pose of an origin and an angle."""
-    angle = Series(theta)
-    return Pose(Series(z), angle.turn(), angle)
+def bodies_at(states: Number) -> list[Pose]:
+    """Return the poses of bodies from states (..., 3 n): x, y, theta of each."""
+    x, y, theta = states[..., 0::3], states[..., 1::3], states[..., 2::3]
+    u, z = np.cos(theta) + 1j * np.sin(theta), x + 1j * y
+    return [Pose(constant(z[..., k]), constant(u[..., k]), constant(theta[..., k])) for k in range(x.shape[-1])]

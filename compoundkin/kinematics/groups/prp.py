@@ -11,14 +11,15 @@ import numpy as np
 
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, placed_at
+from compoundkin.kinematics.groups.dyad import Attachment, Closed, DyadSolver, placed_at
+from compoundkin.kinematics.limits import Root, clipped_root
 
 # Guides nearer to parallel than this (the sine of the angle between them) fix no point: their meeting
 # point would lie beyond a billion times the mechanism's size, and carry no correct digit.
 PARALLEL = 1e-9
 
 
-class PRP(Dyad):
+class PRP(DyadSolver):
     """It has one assembly mode; a sign has no effect."""
 
     name: ClassVar[str] = "PRP"
@@ -26,7 +27,7 @@ class PRP(Dyad):
     sign_means: ClassVar[str] = "there is only one mode"
 
     @staticmethod
-    def close(
+    def assemble(
         first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Meet the two lines on which the inner pin runs."""

@@ -9,11 +9,12 @@ from typing import ClassVar
 
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, as_series
-from compoundkin.kinematics.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, placed_at
+from compoundkin.kinematics.groups.dyad import Attachment, Closed, DyadSolver, placed_at
 from compoundkin.kinematics.groups.prp import separated
+from compoundkin.kinematics.limits import Root, clipped_root
 
 
-class RPP(Dyad):
+class RPP(DyadSolver):
     """It has one assembly mode; a sign has no effect."""
 
     name: ClassVar[str] = "RPP"
@@ -21,7 +22,7 @@ class RPP(Dyad):
     sign_means: ClassVar[str] = "there is only one mode"
 
     @staticmethod
-    def close(
+    def assemble(
         first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Slide the second body along its known guide until the first one's guide passes through."""

@@ -12,19 +12,11 @@ import numpy as np
 from compoundkin.base.composition import planar
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.contract import (
-    Attachment,
-    Closed,
-    Dyad,
-    Root,
-    clipped_root,
-    element,
-    placed_at,
-    text,
-)
+from compoundkin.kinematics.groups.dyad import Attachment, Closed, DyadSolver, element, placed_at, text
+from compoundkin.kinematics.limits import Root, clipped_root
 
 
-class RPR(Dyad):
+class RPR(DyadSolver):
     """Mode +1: along the guide's direction, the outer pin of the block lies beyond that of the guide."""
 
     name: ClassVar[str] = "RPR"
@@ -33,7 +25,7 @@ class RPR(Dyad):
     follows_inner: ClassVar[bool] = True
 
     @staticmethod
-    def close(
+    def assemble(
         first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Turn the guide so that the pins have their known distance across it."""

@@ -12,10 +12,11 @@ import numpy as np
 
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.contract import Attachment, Closed, Dyad, Root, clipped_root, placed_at, text
+from compoundkin.kinematics.groups.dyad import Attachment, Closed, DyadSolver, placed_at, text
+from compoundkin.kinematics.limits import Root, clipped_root
 
 
-class RRP(Dyad):
+class RRP(DyadSolver):
     """Mode +1: the inner pin is the one farther along the direction of the guide."""
 
     name: ClassVar[str] = "RRP"
@@ -23,7 +24,7 @@ class RRP(Dyad):
     sign_means: ClassVar[str] = "the inner pin is farther along the guide"
 
     @staticmethod
-    def close(
+    def assemble(
         first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Intersect the circle about the outer pin with the line on which the inner pin runs."""

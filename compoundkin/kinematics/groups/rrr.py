@@ -12,20 +12,11 @@ import numpy as np
 from compoundkin.base.composition import planar
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.contract import (
-    COINCIDENT,
-    Attachment,
-    Closed,
-    Dyad,
-    Root,
-    clipped_root,
-    element,
-    placed_at,
-    text,
-)
+from compoundkin.kinematics.groups.dyad import COINCIDENT, Attachment, Closed, DyadSolver, element, placed_at, text
+from compoundkin.kinematics.limits import Root, clipped_root
 
 
-class RRR(Dyad):
+class RRR(DyadSolver):
     """Mode +1: outer pin of the first link, inner pin, outer pin of the second run counterclockwise."""
 
     name: ClassVar[str] = "RRR"
@@ -33,7 +24,7 @@ class RRR(Dyad):
     sign_means: ClassVar[str] = "outer pin, inner pin, outer pin run counterclockwise"
 
     @staticmethod
-    def close(
+    def assemble(
         first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Intersect the circle about each outer pin."""

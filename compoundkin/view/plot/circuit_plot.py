@@ -108,7 +108,7 @@ def _default(found: Circuits) -> tuple[str, ...]:
     if outputs:
         return outputs
     groups, plan = found.structure.groups, found.placing.sweep.plan
-    several = [groups[k] for k, step in enumerate(plan.steps) if step.modes != 1]
+    several = [groups[k] for k, solver in enumerate(plan.solvers) if solver.modes != 1]
     return tuple(_of_group(group) for group in (several or groups)[:MOST_PANELS]) or (f"{found.driver}.value",)
 
 

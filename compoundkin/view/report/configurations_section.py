@@ -88,7 +88,7 @@ def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
     With several drivers the first one is moved, the others stay at their first values.
     """
     structure, drives = motion.structure, motion.mechanism.drives
-    modes = prod(step.modes or _modes(step.group) for step in motion.tracker.plan.steps)
+    modes = prod(solver.modes or _modes(solver.group) for solver in motion.tracker.plan.solvers)
     if not drives or motion.inputs.designs > 1 or modes > MOST_MODES:
         return ()
     first = {name: float(np.ravel(values[0])[0]) for name, values in motion.inputs.drives.items()}

@@ -115,14 +115,14 @@ def _mode(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]]:
     """Which assembly mode it is in, what that means, and what chose it."""
     tracker = motion.tracker
     why = CHOSEN_BY.get(tracker.chosen_by.get(k, ""), "")
-    step = tracker.plan.steps[k]
-    if step.modes == 0:
+    solver = tracker.plan.solvers[k]
+    if solver.modes == 0:
         yield "mode", f"{why or 'found'}, by iteration, and followed along the motion"
-    elif step.modes == 1:
+    elif solver.modes == 1:
         yield "mode", "the only one"
     else:
         sign = _sign(motion, k, design)
-        meaning = step.sign_means if sign > 0 else f"the other one; in +1, {step.sign_means}"
+        meaning = solver.sign_means if sign > 0 else f"the other one; in +1, {solver.sign_means}"
         yield "mode", f"{sign:+d}, {why} ({meaning}){_changes(motion, k, design)}"
 
 

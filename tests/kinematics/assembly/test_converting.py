@@ -8,13 +8,14 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.base.series import Series
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.kinematics.assembly import all_configurations, from_group
-from compoundkin.kinematics.groups.general import General, Member
-from compoundkin.kinematics.solving_order import Plan
+from compoundkin.kinematics.groups.bars import Member
+from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.kinematics.solving_order import SolvingOrder
 
 
 def attached(mechanism, **drives):
     """The first group, its surroundings at the driver values (poses,), and the size."""
-    plan = Plan(ck.decompose(mechanism))
+    plan = SolvingOrder(ck.decompose(mechanism))
     given = {name: Series((np.atleast_2d(value),)) for name, value in drives.items()}
     shape = np.broadcast_shapes(*(series.c[0].shape for series in given.values()))
     return plan.structure.groups[0], plan.start(plan.ends, given, 0, shape), plan.size
@@ -24,7 +25,7 @@ def as_general(group, size):
     where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
     pairs = (*group.inner, *group.outer)
     members = tuple(tuple(Member(name, where.get(name)) for name in pair.members) for pair in pairs)
-    return General(len(group.bodies), pairs, members, size)
+    return GroupEquations(len(group.bodies), pairs, members, size)
 
 
 def all_close(mechanism, **drives):

@@ -14,9 +14,11 @@ from hypothesis import strategies as st
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series, as_series
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups import DYADS, Attachment, Dyad
-from compoundkin.kinematics.groups.contract import Root, clipped_root, nearest_root
-from compoundkin.kinematics.groups.general import General, Member
+from compoundkin.kinematics.groups import DYADS, DyadSolver
+from compoundkin.kinematics.groups.bars import Member
+from compoundkin.kinematics.groups.dyad import Attachment
+from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.kinematics.limits import Root, clipped_root, nearest_root
 from compoundkin.model.pairs import KINDS, Pair
 from tests.support import largest, random_planar, random_pose, random_unit, sample
 
@@ -57,7 +59,7 @@ def random_end(rng: np.random.Generator, pair: Pair, order: int, shape: tuple[in
     return End(random_planar(rng, order, shape), random_unit(rng, order, shape) if directed(pair) else None)
 
 
-def loose(kind: type[Dyad], rng: np.random.Generator, order: int, shape: tuple[int, ...]) -> Case:
+def loose(kind: type[DyadSolver], rng: np.random.Generator, order: int, shape: tuple[int, ...]) -> Case:
     """Sides with nothing in common: it may or may not close."""
     pairs = tuple(sample(BY_CODE[code], str(k)) for k, code in enumerate(kind.name))
     outer = [Attachment(random_end(rng, p, order, shape), random_end(rng, p, order, shape)) for p in pairs[::2]]
@@ -66,7 +68,7 @@ def loose(kind: type[Dyad], rng: np.random.Generator, order: int, shape: tuple[i
 
 
 def closable(
-    kind: type[Dyad], rng: np.random.Generator, order: int, shape: tuple[int, ...]
+    kind: type[DyadSolver], rng: np.random.Generator, order: int, shape: tuple[int, ...]
 ) -> tuple[Case, tuple[Pose, Pose]]:
     """Sides that close at known poses: two random motions, and pairs put between them."""
     poses = (random_pose(rng, order, shape), random_pose(rng, order, shape))
@@ -123,10 +125,10 @@ MEANINGS: dict[str, Callable[[Case, tuple[Pose, Pose]], np.ndarray]] = {
 
 
 def close(
-    kind: type[Dyad], case: Case, sign: float | np.ndarray, root: Root = clipped_root
+    kind: type[DyadSolver], case: Case, sign: float | np.ndarray, root: Root = clipped_root
 ) -> tuple[tuple[Pose, Pose], np.ndarray]:
     with np.errstate(all="ignore"):
-        return kind.close(*case.arguments, sign, root)[:2]
+        return kind.assemble(*case.arguments, sign, root)[:2]
 
 
 def finite(poses: tuple[Pose, Pose]) -> np.ndarray:
@@ -137,7 +139,7 @@ def coefficients(poses: tuple[Pose, Pose]) -> list[np.ndarray]:
     return [c for p in poses for s in (p.z, p.u) for c in s.c]
 
 
-def conditioned(kind: type[Dyad], case: Case) -> np.ndarray:
+def conditioned(kind: type[DyadSolver], case: Case) -> np.ndarray:
     """Dyads away from a limit position in both modes, where rounding is not magnified: by their Jacobians."""
     general, setting = as_general(case)
     fit: np.ndarray = np.array(True)
@@ -155,7 +157,7 @@ def test_every_kind_with_two_modes_has_a_meaning_here() -> None:
 
 @every_dyad
 @given(seed=SEEDS)
-def test_closes_by_the_pairs_own_equations_in_every_coefficient(kind: type[Dyad], seed: int) -> None:
+def test_closes_by_the_pairs_own_equations_in_every_coefficient(kind: type[DyadSolver], seed: int) -> None:
     rng = np.random.default_rng(seed)
     case, _ = closable(kind, rng, ORDER, (MANY,))
     good = conditioned(kind, case)
@@ -175,7 +177,7 @@ def test_closes_by_the_pairs_own_equations_in_every_coefficient(kind: type[Dyad]
 
 @every_dyad
 @given(seed=SEEDS)
-def test_finds_the_motion_it_was_built_from(kind: type[Dyad], seed: int) -> None:
+def test_finds_the_motion_it_was_built_from(kind: type[DyadSolver], seed: int) -> None:
     rng = np.random.default_rng(seed)
     case, true = closable(kind, rng, ORDER, (MANY,))
     good = conditioned(kind, case)
@@ -190,7 +192,7 @@ def test_finds_the_motion_it_was_built_from(kind: type[Dyad], seed: int) -> None
 
 @every_dyad
 @given(seed=SEEDS)
-def test_the_sign_means_what_it_says(kind: type[Dyad], seed: int) -> None:
+def test_the_sign_means_what_it_says(kind: type[DyadSolver], seed: int) -> None:
     case, _ = closable(kind, np.random.default_rng(seed), 0, (MANY,))
     plus, _ = close(kind, case, 1.0)
     minus, _ = close(kind, case, -1.0)
@@ -207,7 +209,7 @@ def test_the_sign_means_what_it_says(kind: type[Dyad], seed: int) -> None:
 
 
 @every_dyad
-def test_signs_may_be_an_array_of_both(kind: type[Dyad]) -> None:
+def test_signs_may_be_an_array_of_both(kind: type[DyadSolver]) -> None:
     case, _ = closable(kind, np.random.default_rng(5), 2, (2, 60))
     both, _ = close(kind, case, np.array([[1.0], [-1.0]]))
     for row, sign in enumerate((1.0, -1.0)):
@@ -218,8 +220,8 @@ def test_signs_may_be_an_array_of_both(kind: type[Dyad]) -> None:
 
 @every_dyad
 @given(seed=SEEDS)
-def test_agrees_with_newton_and_the_series_step(kind: type[Dyad], seed: int) -> None:
-    """Against `General`: outside links and links inside composite bodies that move, a perturbed start."""
+def test_agrees_with_newton_and_the_series_step(kind: type[DyadSolver], seed: int) -> None:
+    """Against `GroupEquations`: outside links and links inside composite bodies that move, a perturbed start."""
     rng = np.random.default_rng(seed)
     case, _ = closable(kind, rng, ORDER, (MANY,))
     good = conditioned(kind, case)
@@ -240,7 +242,7 @@ def test_agrees_with_newton_and_the_series_step(kind: type[Dyad], seed: int) -> 
                     assert np.quantile(error, 0.95) < 1e-10
 
 
-def as_general(case: Case) -> tuple[General, Block]:
+def as_general(case: Case) -> tuple[GroupEquations, Block]:
     """The same dyad as a group of two bodies without closed form; every moving side is a link of its own."""
     world, local, ends = {}, {}, {}
     sides = {
@@ -259,13 +261,13 @@ def as_general(case: Case) -> tuple[General, Block]:
         members.append((found[0], found[1]))
         side = End(0j, None if not directed(pair) else 1 + 0j)
         ends[pair.name] = (side, side)
-    return General(2, case.pairs, tuple(members), 1.0, bars=False), Block((MANY,), ends, world, local, ORDER)
+    return GroupEquations(2, case.pairs, tuple(members), 1.0, bars=False), Block((MANY,), ends, world, local, ORDER)
 
 
 @every_dyad
 @settings(max_examples=6)
 @given(seed=SEEDS)
-def test_the_margin_is_negative_exactly_where_it_cannot_close(kind: type[Dyad], seed: int) -> None:
+def test_the_margin_is_negative_exactly_where_it_cannot_close(kind: type[DyadSolver], seed: int) -> None:
     """Against Newton from many random starts, which knows nothing of the formula."""
     rng = np.random.default_rng(seed)
     count = 40
@@ -283,7 +285,7 @@ def test_the_margin_is_negative_exactly_where_it_cannot_close(kind: type[Dyad], 
 
 
 @every_dyad
-def test_only_poses_that_cannot_close_are_not_numbers(kind: type[Dyad]) -> None:
+def test_only_poses_that_cannot_close_are_not_numbers(kind: type[DyadSolver]) -> None:
     case = loose(kind, np.random.default_rng(11), ORDER, (3, 500))
     for sign in (1.0, -1.0):
         poses, margin = close(kind, case, sign)
@@ -298,7 +300,7 @@ def test_only_poses_that_cannot_close_are_not_numbers(kind: type[Dyad]) -> None:
 
 
 @every_dyad
-def test_works_with_plain_numbers_as_with_arrays(kind: type[Dyad]) -> None:
+def test_works_with_plain_numbers_as_with_arrays(kind: type[DyadSolver]) -> None:
     case, _ = closable(kind, np.random.default_rng(2), 2, (7,))
 
     def one(value: Series | None, k: int) -> Series | None:
@@ -322,7 +324,7 @@ def test_works_with_plain_numbers_as_with_arrays(kind: type[Dyad]) -> None:
 
 
 @every_dyad
-def test_nearest_approach_where_it_cannot_close(kind: type[Dyad]) -> None:
+def test_nearest_approach_where_it_cannot_close(kind: type[DyadSolver]) -> None:
     """With the nearest root the outer pairs stay closed and both modes are the same pose: touching."""
     case = loose(kind, np.random.default_rng(3), 0, (300,))
     plus, margin = close(kind, case, 1.0, nearest_root)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import compoundkin as ck
-from compoundkin.kinematics.groups.steps import GeneralStep
+from compoundkin.kinematics.groups.general import GeneralSolver
 from tests.support import reference
 
 # Angles are sums and products of few terms: rounding of the largest of them.
@@ -844,13 +844,13 @@ def test_a_train_agrees_with_newton_on_the_pairs_own_equations() -> None:
     mechanism = planetary(23, 31, ck.drive("sun"), ck.drive("ring"))
     motion = ck.solve(mechanism, {"sun": [0.3, 1.0], "ring": [-0.2, 0.9]}, speed={"sun": 2, "ring": -1}, order=3)
     plan = motion.tracker.plan
-    (step,) = plan.steps
-    general = GeneralStep(0, step.group, plan.size)
+    (train,) = plan.solvers
+    general = GeneralSolver(0, train.group, plan.size).equations
     run = motion.tracker.run(motion.inputs, 3, np.arange(2.0)[None], np.zeros((1, 1), dtype=int))
-    state = general.solver.state([run.world[body.links[0]] for body in step.group.bodies])
-    solution = general.solver.newton(state + 0.05, run)
+    state = general.state([run.world[body.links[0]] for body in train.group.bodies])
+    solution = general.newton(state + 0.05, run)
     assert solution.closed.all()
-    for body, pose in zip(step.group.bodies, general.solver.series(solution.state, run, 3), strict=True):
+    for body, pose in zip(train.group.bodies, general.series(solution.state, run, 3), strict=True):
         for k in range(4):
             assert np.max(np.abs(pose.z.derivative(k) - run.world[body.links[0]].z.derivative(k))) < 1e-9
             assert np.max(np.abs(pose.angle.derivative(k) - run.world[body.links[0]].angle.derivative(k))) < 1e-11

@@ -33,20 +33,17 @@ class Side:
         """The link at the other side."""
         return self.pair.members[1 - self.own]
 
+    def in_body(self, block: Block) -> End:
+        """Return the side in the frame of its body's base link."""
+        return block.in_body(self.link, block.ends[self.pair.name][self.own])
+
 
 def side_of(pair: Pair, body: Body) -> Side:
     """A body's part in a pair."""
     return Side(pair, 0 if pair.members[0] in body.links else 1)
 
 
-def in_body(side: Side, block: Block) -> End:
-    """A side in the frame of its body's base link."""
-    end = block.ends[side.pair.name][side.own]
-    local = block.local.get(side.link)
-    return end if local is None else local.carry(end)
-
-
-class Mounted:
+class MountedBody:
     """A body on a lower pair to a link that is known, as a value of the pair's coordinate places it."""
 
     def __init__(self, lower: Pair, higher: Pair, body: Body) -> None:

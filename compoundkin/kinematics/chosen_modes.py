@@ -1,0 +1,84 @@
+"""What a call and a mechanism say of assembly modes: signs and numbers by link or by name, and hints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.series import Number
+from compoundkin.kinematics.configuration import BETWEEN, ONLY, Configuration, label
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.geometry import vector
+
+
+def signs_of(plan: SolvingOrder, modes: Mapping[str, int] | str | Configuration | None = None) -> dict[int, int]:
+    """The modes chosen by sign, by group; those of the call go before those of the mechanism."""
+    mechanism = plan.structure.mechanism
+    if isinstance(modes, Configuration):
+        return {}
+    if isinstance(modes, str):
+        written = {link: mode.sign for mode in mechanism.modes for link in mode.links}
+        return {**_by_group(plan, written), **read_name(plan, modes)}
+    if modes is not None and not isinstance(modes, Mapping):
+        raise InvalidInput(Problem("modes", f"{modes!r} does not name a link", "write {'link of the group': -1}"))
+    called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
+    return {**_by_group(plan, written), **_by_group(plan, called)}
+
+
+def _by_group(plan: SolvingOrder, modes: Mapping[str, int]) -> dict[int, int]:
+    signs: dict[int, int] = {}
+    where = {link: solver.index for solver in plan.solvers for link in solver.group.links}
+    for name, sign in modes.items():
+        plan.structure.mechanism.link(name)
+        if name not in where:
+            raise InvalidInput(Problem(f"modes.{name}", "this link is driven or fixed: it has no assembly mode"))
+        if sign not in (1, -1) and not (plan.solvers[where[name]].modes == 0 and isinstance(sign, int) and sign > 0):
+            raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
+        if signs.setdefault(where[name], sign) != sign:
+            raise InvalidInput(Problem(f"modes.{name}", "another link of its group has the opposite mode"))
+    return signs
+
+
+def read_name(plan: SolvingOrder, name: str) -> dict[int, int]:
+    """The signs and numbers that a name gives to groups; raises InvalidInput for parts that name none."""
+    return dict(_read(plan, part.strip()) for part in name.split(BETWEEN.strip())) if name.strip() != ONLY else {}
+
+
+def _read(plan: SolvingOrder, part: str) -> tuple[int, int]:
+    known = dict(_labels(plan))
+    for text, k in known.items():
+        mode = _mode(plan.solvers[k].modes, part.removeprefix(text)) if part.startswith(text) else None
+        if mode is not None:
+            return k, mode
+    what = f"{part!r} is no configuration of a group"
+    raise InvalidInput(Problem("modes", what, nearest(part, list(known)) + " with +, - or a number from 1"))
+
+
+def _labels(plan: SolvingOrder) -> Iterator[tuple[str, int]]:
+    for solver in plan.solvers:
+        if solver.modes != 1:
+            yield label(plan.structure, solver.index), solver.index
+
+
+def _mode(modes: int, text: str) -> int | None:
+    if modes == 0:
+        return int(text) if text.strip().isdecimal() and int(text) > 0 else None
+    return {"+": 1, "-": -1}.get(text)
+
+
+def read_hint(plan: SolvingOrder, hint: Mapping[str, object] | None) -> dict[str, Number]:
+    """A hint as planar vectors; raises InvalidInput for points that the mechanism does not have."""
+    letters = plan.structure.mechanism.carriers
+    wrong = [
+        Problem(f"hint.{k}", f"there is no point {k!r}", nearest(k, list(letters)))
+        for k in hint or {}
+        if k not in letters
+    ]
+    if wrong:
+        raise InvalidInput(wrong)
+    found = {k: vector(f"hint.{k}", v) for k, v in (hint or {}).items()}
+    if not all(np.isfinite(v).all() for v in found.values()):
+        raise InvalidInput(Problem("hint", "a point of the hint is not finite"))
+    return found

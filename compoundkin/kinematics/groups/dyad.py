@@ -1,0 +1,154 @@
+"""Dyads: groups of two bodies, solved in closed form; each kind is one file of this folder.
+
+A kind assembles two bodies by one textbook formula in series arithmetic. It sees a body of the group as its
+pose, unknown, and the sides of pairs in the body's own frame, known; and of the outside only the sides of
+the outer pairs in the world.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import ClassVar, NamedTuple, Self
+
+import numpy as np
+
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.groups.contract import GroupSolver
+from compoundkin.kinematics.groups.mounted_body import side_of
+from compoundkin.kinematics.limits import Root, clipped_root
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.structure.assur_groups import named_group
+from compoundkin.structure.parts import Body, Group
+
+# Outer pins nearer to each other than this part of a link coincide but for rounding, which must not choose
+# the direction of that link.
+COINCIDENT = 1e-13
+
+
+class Attachment(NamedTuple):
+    """An outer pair: its side in the world, and its side in the frame of the group's body."""
+
+    world: End
+    local: End
+
+
+class Closed(NamedTuple):
+    """A group solved: the poses of its two bodies, and the margin, negative where it cannot be assembled.
+
+    For a group of two modes the margin is the squared sine of the angle in which the modes differ. `meeting`
+    is a squared length whose zero leaves the pose undetermined, for groups that have such a place.
+    """
+
+    poses: tuple[Pose, Pose]
+    margin: Number
+    meeting: Number | None = None
+
+
+class DyadSolver(GroupSolver):
+    """A group of two bodies; or one body on a higher pair for which lower pairs and a body between them stand."""
+
+    name: ClassVar[str]
+    follows_inner: ClassVar[bool] = False  # whether the first body must carry the inner pair's first member
+    tells_margin: ClassVar[bool] = True
+
+    @staticmethod
+    @abstractmethod
+    def assemble(
+        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+    ) -> Closed:
+        """Assemble the bodies; `inner` is the inner pair's side on the first and on the second body.
+
+        `root` takes the square root of the discriminant, given a scale of its terms, and gives the margin.
+        """
+
+    @staticmethod
+    @abstractmethod
+    def explain(
+        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+    ) -> str:
+        """Say why it cannot be assembled at the flat pose index `at`; `names` are the letters of its pairs."""
+
+    def __init__(self, index: int, group: Group, size: float, dyad: Group, ends: Mapping[str, Ends]) -> None:
+        super().__init__(index, group)
+        self.size = size
+        self.ends = ends
+        (inner,) = dyad.inner
+        bodies, outer = dyad.bodies, dyad.outer
+        first = 1 if self.follows_inner and inner.members[0] in bodies[1].links else 0
+        self.bodies = (bodies[first], bodies[1 - first])
+        self.outer = tuple(side_of(outer[k], bodies[k]) for k in (first, 1 - first))
+        self.inner = tuple(side_of(inner, body) for body in self.bodies)
+
+    @classmethod
+    def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self | None:
+        """Return the solver of a dyad of this kind, and of a body for whose higher pair such a dyad stands."""
+        if group.name == cls.name:
+            return cls(index, group, size, group, {})
+        dyad, more = _by_lower_pairs(group, ends)
+        return cls(index, group, size, dyad, more) if dyad.name == cls.name else None
+
+    def arguments(self, block: Block) -> tuple[Attachment, tuple[End, End], Attachment]:
+        """Return what `assemble` asks for, at a block of poses."""
+        found = []
+        for side in self.outer:
+            ends = block.ends[side.pair.name]
+            world = block.world[side.other].carry(ends[1 - side.own])
+            found.append(Attachment(world, side.in_body(block)))
+        one, two = (side.in_body(block) for side in self.inner)
+        return found[0], (one, two), found[1]
+
+    def close(self, block: Block, mode: Number) -> None:
+        """Assemble the bodies and add the group's links to what is known."""
+        poses, margin, meeting = self.assemble(*self.arguments(block), mode, block.root(self.index))
+        if meeting is not None:
+            margin = np.fmin(margin, np.sqrt(meeting) / self.size - COINCIDENT)
+        block.margins[self.index] = margin
+        block.fail(margin >= 0, self.index)
+        for body, pose in zip(self.bodies, poses, strict=True):
+            if body in self.group.bodies:
+                block.publish(body, pose)
+
+    def every(self, block: Block) -> Configurations:
+        """Return one configuration for each mode."""
+        return self.in_modes(block)
+
+    def why(self, block: Block, at: int) -> str:
+        """Say why it cannot be assembled at a pose."""
+        first, second = (side.pair.letters[0] for side in self.outer)
+        return self.explain(*self.arguments(block), at, (first, self.inner[0].pair.letters[0], second))
+
+
+def _by_lower_pairs(group: Group, ends: Mapping[str, Ends]) -> tuple[Group, Mapping[str, Ends]]:
+    """Return the dyad of a body and the link that stands, with two lower pairs, for its higher pair; the pairs' ends.
+
+    The group itself where it is no single body, or nothing stands for its pair.
+    """
+    if len(group.bodies) != 1 or len(group.outer) != 2:
+        return group, {}
+    lower, higher = sorted(group.outer, key=lambda pair: -pair.held)
+    found = higher.equivalent(ends[higher.name])
+    if found is None:
+        return group, {}
+    own = next(j for j, name in enumerate(higher.members) if name in group.links)
+    inner, outer = found.pairs[own], found.pairs[1 - own]
+    return named_group([*group.bodies, Body((found.link,))], [inner], [lower, outer]), found.ends
+
+
+def placed_at(point: Series, u: Series, local: Series | Number) -> Pose:
+    """Return the pose with orientation `u` that has the body's point `local` at `point`."""
+    return Pose(Pose(point, u).at(-local), u)
+
+
+def element(value: Number, at: int) -> float:
+    """Return one element, by its flat index, of an array; or the number that holds for all."""
+    flat = np.asarray(value).ravel()
+    return float(flat[at if flat.size > 1 else 0])
+
+
+def text(value: Number, at: int) -> str:
+    """Return one element of a number or array, for a sentence."""
+    return f"{element(value, at):.6g}"

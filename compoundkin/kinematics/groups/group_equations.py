@@ -1,0 +1,221 @@
+"""The equations of any group of pairs: Newton for the position, one matrix for all derivatives.
+
+The unknowns are x, y, theta of every body that is no bar; the equations are the lengths of the bars and the other
+pairs' own closures, the matrix their own Jacobians. Each further coefficient of the time series comes from ONE linear
+solve with the matrix of the position: the residual's next coefficient, taken with the unknown one set to zero, is the
+right-hand side.
+
+Source: the velocity and acceleration equations share their coefficient matrix, e.g. P. E. Nikravesh,
+Computer-Aided Analysis of Mechanical Systems, section 3.2; for all orders A. Griewank and A. Walther,
+Evaluating Derivatives, section 13.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import joined
+from compoundkin.base.linear import Inverse, Row, stacked
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number, Series, constant
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.groups.bars import Member, add, bars_of
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import Poses
+
+# Newton stops when no correction exceeds this (of the mechanism's size, or radians): it doubles its digits with every
+# step, so that the pose is then exact to rounding.
+CONVERGED = 1e-8
+STEPS = 12
+# After a correction below this (of the size, or radians) the matrix has hardly changed and is used once more.
+CHORD = 1e-3
+# A closed pose has every residual below this fraction of the size: rounding of some tens of additions, far less than
+# what is left open a hundred-millionth of a radian beyond a limit position.
+CLOSED = 1e-12
+
+
+class Solution(NamedTuple):
+    """Newton's answer: the state (..., width), whether it closes, and the largest correction made."""
+
+    state: Number
+    closed: Number
+    moved: Number
+
+
+class GroupEquations:
+    """A group of `n` bodies joined and attached by `pairs`; `members` tells each pair's sides.
+
+    Its state (..., width) is x, y, theta of each body in `kept`: all that are no bars, or with ``bars=False`` all.
+    """
+
+    def __init__(
+        self, n: int, pairs: tuple[Pair, ...], members: tuple[tuple[Member, ...], ...], size: float, bars: bool = True
+    ) -> None:
+        self.n = n
+        self.pairs = pairs
+        self.members = members
+        self.size = size
+        self.bars = bars_of(n, pairs, members) if bars else ()
+        left_out = {bar.body for bar in self.bars}
+        self.kept = tuple(k for k in range(n) if k not in left_out)
+        pins = {pin.number for bar in self.bars for pin in bar.pins}
+        self.others = tuple(k for k in range(len(pairs)) if k not in pins)
+
+    @property
+    def width(self) -> int:
+        """How many numbers a state has."""
+        return 3 * len(self.kept)
+
+    @property
+    def weights(self) -> Number:
+        """What makes a change of the state a pure number: parts of the size, radians."""
+        return np.tile([1.0 / self.size, 1.0 / self.size, 1.0], len(self.kept))
+
+    def state(self, bodies: list[Pose]) -> Number:
+        """The state of all bodies' poses, at their leading coefficients."""
+        kept = [bodies[k] for k in self.kept]
+        parts = [v for b in kept for v in (b.z.c[0].real, b.z.c[0].imag, b.angle.c[0])]
+        return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+    def newton(self, state: Number, block: Block, steps: int = STEPS, longest: float = np.inf) -> Solution:
+        """Correct the state until the group closes; `state` (..., width) broadcasts with the surroundings.
+
+        No single correction is longer than `longest` (of the size, or radians).
+        """
+        leading = block.leading()
+        weights = self.weights
+        start = found = [np.asarray(v) for v in np.moveaxis(np.asarray(state, dtype=float), -1, 0)]
+        bodies = self._kept_poses(found)
+        residual = self._residual(bodies, leading, 0)
+        inverse, largest = None, np.inf
+        for _ in range(steps):
+            if inverse is None or np.any(largest > CHORD):
+                inverse = Inverse(self._rows(bodies, leading), self.width)
+            correction = inverse.times(residual)
+            largest = _largest([c * w for c, w in zip(correction, weights, strict=True)])
+            if longest < np.inf:
+                share = np.minimum(1.0, longest / largest)
+                correction = [c * share for c in correction]
+            found = [v - c for v, c in zip(found, correction, strict=True)]
+            bodies = self._kept_poses(found)
+            residual = self._residual(bodies, leading, 0)
+            closed = (largest <= CONVERGED) & (_largest(residual) <= CLOSED * self.size)
+            if not np.any(~closed & np.isfinite(largest)):
+                break
+        closed = closed & self._properly_assembled(bodies, leading)
+        moved = _largest([(v - s) * w for v, s, w in zip(found, start, weights, strict=True)])
+        return Solution(np.stack(np.broadcast_arrays(*found), axis=-1), closed, moved)
+
+    def series(self, state: Number, block: Block, order: int) -> list[Pose]:
+        """All bodies' poses to the given order, from a closed state."""
+        kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
+        if order:
+            inverse = Inverse(self._rows(kept, block.leading()), self.width)
+            for k in range(1, order + 1):
+                kept = self._grown(kept, self._next(kept, inverse, block, k))
+        found = {**kept, **{bar.body: bar.pose(kept, block, order) for bar in self.bars}}
+        return [found[k] for k in range(self.n)]
+
+    def rates(self, state: Number, block: Block, order: int) -> tuple[list[Number], Number]:
+        """The state's coefficients 1 to `order`, each (..., width), in a block of that order; and its side.
+
+        The side is the sign of the determinant of the equations: it changes across a singularity.
+        """
+        kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
+        inverse = Inverse(self._rows(kept, block.leading()), self.width)
+        found = []
+        for k in range(1, order + 1):
+            step = self._next(kept, inverse, block, k)
+            kept = self._grown(kept, step)
+            found.append(np.stack(np.broadcast_arrays(*step, state[..., 0])[:-1], axis=-1))
+        return found, np.sign(inverse.determinant)
+
+    def matrix(self, state: Number, block: Block) -> Number:
+        """The matrix of all equations at a state, (..., width, width)."""
+        kept = self._kept_poses(list(np.moveaxis(state, -1, 0)))
+        return stacked(self._rows(kept, block.leading()), self.width)
+
+    # --- equations ---
+
+    def _next(self, kept: Mapping[int, Pose], inverse: Inverse, block: Block, k: int) -> list[Number]:
+        """The k-th coefficients of the state, from poses known to the one before."""
+        trial = {j: _turned((*b.z.c, 0j), (*b.angle.c, np.zeros_like(b.angle.c[0]))) for j, b in kept.items()}
+        return inverse.times([-r for r in self._residual(trial, block, k)])
+
+    def _grown(self, kept: Mapping[int, Pose], step: list[Number]) -> dict[int, Pose]:
+        """The poses with one more coefficient."""
+        return {
+            j: _turned((*b.z.c, step[3 * i] + 1j * step[3 * i + 1]), (*b.angle.c, step[3 * i + 2]))
+            for i, (j, b) in enumerate(kept.items())
+        }
+
+    def _kept_poses(self, values: list[Number]) -> dict[int, Pose]:
+        """The poses of the kept bodies, of order 0, from the numbers of a state."""
+        found = {}
+        for i, body in enumerate(self.kept):
+            x, y, theta = values[3 * i : 3 * i + 3]
+            angle = constant(theta)
+            found[body] = Pose(constant(joined(x, y)), angle.turn(), angle)
+        return found
+
+    def _residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> list[Number]:
+        """The k-th coefficients of all equations: those of the bars, then the other pairs' closures."""
+        found = [bar.residual(bodies, block, k) for bar in self.bars]
+        for number in self.others:
+            pair = self.pairs[number]
+            closure = pair.closure(block.ends[pair.name], self._links(number, bodies, block, k))
+            found += [c.c[k] if len(c.c) > k else 0.0 for c in closure]
+        return found
+
+    def _rows(self, bodies: Mapping[int, Pose], block: Block) -> list[Row]:
+        """The Jacobian of all equations by the state."""
+        first = {body: 3 * i for i, body in enumerate(self.kept)}
+        rows = [bar.row(first, bodies, block) for bar in self.bars]
+        for number in self.others:
+            rows += self._pair_rows(number, first, bodies, block)
+        return rows
+
+    def _pair_rows(
+        self, number: int, first: Mapping[int, int], bodies: Mapping[int, Pose], block: Block
+    ) -> Iterator[Row]:
+        pair = self.pairs[number]
+        poses = self._links(number, bodies, block, 0)
+        table = pair.jacobian(block.ends[pair.name], poses)
+        for r in range(pair.held):
+            row: Row = {}
+            for side, member in enumerate(self.members[number]):
+                if member.body is not None:
+                    x, y, theta = (table[..., r, 3 * side + j] for j in range(3))
+                    arm = poses[side].z.c[0] - bodies[member.body].z.c[0]
+                    # derivatives by a link's x, y, theta as derivatives by those of the body it is fixed in
+                    turn = theta if poses[side] is bodies[member.body] else theta + y * arm.real - x * arm.imag
+                    add(row, first[member.body], (x, y, turn))
+            yield row
+
+    def _links(self, number: int, bodies: Mapping[int, Pose], block: Block, k: int) -> Poses:
+        """The poses of a pair's members, to order k at most."""
+        return tuple(member.pose(bodies, block, k) for member in self.members[number])
+
+    def _properly_assembled(self, bodies: Mapping[int, Pose], block: Block) -> Number:
+        """Whether every pair is closed in the way that is meant, such as no guide the wrong way round in its block."""
+        good: Number = True
+        for number in self.others:
+            pair = self.pairs[number]
+            good = good & pair.is_properly_assembled(block.ends[pair.name], self._links(number, bodies, block, 0))
+        return good
+
+
+def _largest(values: list[Number]) -> Number:
+    found = np.abs(values[0])
+    for value in values[1:]:
+        found = np.maximum(found, np.abs(value))
+    return found
+
+
+def _turned(z: tuple[Number, ...], theta: tuple[Number, ...]) -> Pose:
+    """The pose of an origin and an angle."""
+    angle = Series(theta)
+    return Pose(Series(z), angle.turn(), angle)
