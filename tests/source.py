@@ -1,0 +1,106 @@
+"""The package's own code, read: its files, classes and functions, and which file imports which."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "compoundkin"
+FILES = sorted(PACKAGE.rglob("*.py"))
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def nodes(path: Path) -> tuple[ast.AST, ...]:
+    """All that a file's code consists of."""
+    return tuple(ast.walk(tree(path)))
+
+
+def where(path: Path) -> str:
+    """A file's place in the package."""
+    return path.relative_to(PACKAGE).as_posix()
+
+
+def room(path: Path) -> str:
+    """The folder of the first level that a file is in, or the file's own name."""
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def imports(path: Path) -> Iterator[str]:
+    """The modules and names of the package that a file imports: also in functions, also for types only."""
+    for node in nodes(path):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+
+
+def rooms_used(path: Path) -> set[str]:
+    return {name.split(".")[1] for name in imports(path) if name.startswith("compoundkin.")}
+
+
+def file_of(name: str) -> Path | None:
+    """The file that holds a module, or the module that a name is imported from; none outside the package."""
+    parts = name.split(".")
+    if parts[0] != PACKAGE.name:
+        return None
+    for end in (len(parts), len(parts) - 1):
+        place = ROOT.joinpath(*parts[:end])
+        for path in (place.with_suffix(".py"), place / "__init__.py"):
+            if path.is_file():
+                return path
+    return None
+
+
+@cache
+def files_used() -> dict[Path, set[Path]]:
+    """For every file the files that it imports from."""
+    return {path: {used for name in imports(path) if (used := file_of(name))} - {path} for path in FILES}
+
+
+def classes(path: Path) -> Iterator[ast.ClassDef]:
+    return (node for node in nodes(path) if isinstance(node, ast.ClassDef))
+
+
+def functions(path: Path) -> Iterator[Function]:
+    return (node for node in nodes(path) if isinstance(node, Function))
+
+
+def docstring_of(node: ast.AST) -> ast.Constant | None:
+    """The constant that is the docstring of a module, a class or a function."""
+    if isinstance(node, ast.Module | ast.ClassDef | Function) and node.body:
+        first = node.body[0]
+        if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant) and isinstance(first.value.value, str):
+            return first.value
+    return None
+
+
+def length(function: Function) -> int:
+    """Its lines, from `def` to its end, its docstring left out."""
+    text = docstring_of(function)
+    documented = 0 if text is None else (text.end_lineno or 0) - text.lineno + 1
+    return (function.end_lineno or 0) - function.lineno + 1 - documented
+
+
+def code_without_text(path: Path) -> str:
+    """The names and string constants of a file's code, its docstrings and comments left out."""
+    docs = {docstring_of(node) for node in nodes(path)}
+    words = []
+    for node in nodes(path):
+        if isinstance(node, ast.Name):
+            words.append(node.id)
+        elif isinstance(node, ast.Attribute):
+            words.append(node.attr)
+        elif isinstance(node, ast.alias):
+            words.append(node.name)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in docs:
+            words.append(node.value)
+    return " ".join(words)
