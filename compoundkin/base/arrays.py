@@ -156,6 +156,15 @@ def entry(value: Number, at: tuple[int, ...]) -> Number:
     return array[tuple([k if n > 1 else 0 for k, n in zip(own, array.shape, strict=True)])]
 
 
+def first(value: Number) -> Number:
+    """Return a number as it is, of an array its first entry.
+
+    >>> first(np.array([[1.0, 2.0]])), first(3.0)
+    (np.float64(1.0), 3.0)
+    """
+    return value if np.ndim(value) == 0 else np.ravel(value)[0]
+
+
 def column(value: Number, designs: int) -> Number:
     """Return one number for each design, of a value that broadcasts with designs at one pose.
 

@@ -16,8 +16,8 @@ from compoundkin.structure.redundancy import mobility_analysis
 from compoundkin.structure.redundancy.constraint_equations import ROUNDED
 
 
-def because(structure: Structure) -> str:
-    """What the dimensions say of a mechanism that is held by too much, to be added to a heading."""
+def rank_diagnosis(structure: Structure) -> str:
+    """Say what the dimensions make of an overconstrained mechanism, to be added to a heading."""
     if not any(fault.kind == "over" for fault in structure.faults):
         return ""
     found = mobility_analysis(structure)
@@ -25,8 +25,8 @@ def because(structure: Structure) -> str:
 
 
 @contextmanager
-def explained(structure: Structure) -> Iterator[None]:
-    """Raises NotDetermined with the reason where a group has no pose because its dimensions are special."""
+def diagnosing(structure: Structure) -> Iterator[None]:
+    """Raise NotDetermined with the reason where a group has no pose because its dimensions are special."""
     try:
         yield
     except NotAssembled as error:
@@ -37,8 +37,8 @@ def explained(structure: Structure) -> Iterator[None]:
         raise NotDetermined(Problem("structure", found.verdict), heading=heading) from None
 
 
-def hold_redundant(motion: Motion) -> None:
-    """Nothing, where every redundant pair is closed at all assembled poses; else raises NotAssembled, naming them."""
+def check_redundant(motion: Motion) -> None:
+    """Raise NotAssembled, naming them, unless every redundant pair is closed at all assembled poses."""
     opened = [(pair, opening(motion, pair)) for pair in motion.structure.redundant]
     wrong = [_problem(motion, pair, gap) for pair, gap in opened if np.nanmax(gap) > ROUNDED.closed * motion.size]
     if wrong:

@@ -16,7 +16,7 @@ from compoundkin.kinematics.chosen_modes import read_hint, signs_of
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.inputs import Inputs, by_name, inputs
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.redundant_pairs import because, explained, hold_redundant
+from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
 from compoundkin.kinematics.solvable import relaxed
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.times import times_of
@@ -83,11 +83,11 @@ def solve(
         given = inputs(plan, values, speed, acceleration, jerk, times, order)
         start = _start(plan, modes)
         named = isinstance(modes, str)
-        with explained(plan.structure):
+        with diagnosing(plan.structure):
             tracker = Tracker(plan, given, signs_of(plan, modes), read_hint(plan, hint), start, named)
         motion = replace(_settled(plan, tracker.given, tracker, order), time=times)
         if plan.structure.relaxation:
-            hold_redundant(motion)
+            check_redundant(motion)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         text = (
@@ -109,7 +109,7 @@ def plan_of(mechanism: Mechanism | Structure) -> SolvingOrder:
             structure = relaxed(structure)
         if structure.faults:
             problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
-            raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved{because(structure)}")
+            raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved{rank_diagnosis(structure)}")
         plan = owner.__dict__["_plan"] = SolvingOrder(structure)
     return plan
 

@@ -1,28 +1,33 @@
-"""An assembled pose: from the drawing as far as it goes, corrected by Gauss and Newton."""
+"""An assembled pose: from the drawing as far as it goes, corrected by Gauss's and Newton's least steps."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
+from compoundkin.base.arrays import Number, first, wrapped
+from compoundkin.base.newton import Rest, gauss_newton
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, constant
+from compoundkin.base.series import constant
 from compoundkin.model.elements import FRAME
 from compoundkin.model.geometry import fitted_pose
-from compoundkin.structure.redundancy.constraint_equations import STRICT, Array, Equations
+from compoundkin.structure.redundancy.constraint_equations import STRICT, Array, ConstraintEquations
 
 # Gauss and Newton's steps: at a pose where the equations are singular each halves the error only.
 STEPS = 60
-# So many steps must leave less than this part of a residual: else it is a place where none leads on.
-PATIENCE, GAIN = 10, 0.9
-# No step is longer than this (parts of the size, or radians): from far away it would lead anywhere.
-LONGEST = 0.3
-# A residual that is rounding: no step could make it less.
-EXACT = 1e-14
-# Where a step gains nothing below this, what is left is rounding too.
-ROUNDING = 1e-11
+REST = Rest(
+    # a residual that is rounding: no step could make it less; where one gains nothing below the second, that is too
+    exact=1e-14,
+    rounding=1e-11,
+    # no step is longer (parts of the size, or radians): from far away it would lead anywhere
+    longest=0.3,
+    # so many steps must leave less than this part of a residual: else it is a place where none leads on
+    patience=10,
+    gain=0.9,
+)
 # Beyond so many columns a step is taken from the normal equations, with this part of the largest singular value squared
 # added: well above the rounding of the products.
 DENSE_UP_TO = 150
@@ -35,10 +40,12 @@ SOMEWHERE = 1.0
 # so that all together have no more than so many columns.
 TRIES = 40
 COLUMNS = 4000
+# The design and pose at which a drawing is read.
+FIRST = (0, 0)
 
 
 @dataclass(frozen=True)
-class Assembly:
+class AssembledPose:
     """The nearest that was found to an assembled pose: its state, and the largest residual in parts of the size.
 
     `is_given` says that it needed no correction.
@@ -50,32 +57,19 @@ class Assembly:
     is_given: bool = False
 
 
-def corrected(equations: Equations, state: Array, goal: Array | None = None, steps: int = STEPS) -> Assembly:
-    """The nearest assembled pose, by so many least steps at most; with the drivers' coordinates at `goal` if given."""
+def corrected(
+    equations: ConstraintEquations, state: Array, goal: Array | None = None, steps: int = STEPS
+) -> AssembledPose:
+    """Find the nearest assembled pose by least steps; with the drivers' coordinates at `goal` if given."""
     closed, rank = equations.tolerance
-    least = UNDETERMINED if equations.tolerance is STRICT else rank
-    best, before = Assembly(state, np.inf, False), list[float]()
-    for _ in range(steps):
-        residual, rows = _system(equations, state, goal)
-        worst = float(np.max(np.abs(residual), initial=0.0))
-        before.append(worst)
-        if not np.isfinite(worst) or (len(before) > PATIENCE and worst > GAIN * before[-1 - PATIENCE]):
-            return best
-        stalls = worst > best.residual / 2.0
-        if worst < best.residual:
-            best = Assembly(state, worst, worst <= closed, best.residual == np.inf and worst <= ROUNDING)
-        if worst <= EXACT or (stalls and worst <= ROUNDING) or best.is_given:
-            break
-        step = _least_step(rows, -residual, least)
-        longest = float(np.max(np.abs(step), initial=0.0))
-        if longest <= EXACT:
-            break
-        state = state + step * min(1.0, LONGEST / longest)
-    return best
+    determined = UNDETERMINED if equations.tolerance is STRICT else rank
+    found = gauss_newton(partial(_system, equations, goal), partial(_least_step, determined), state, steps, REST)
+    is_given = found.steps == 0 and found.residual <= REST.rounding
+    return AssembledPose(found.x, found.residual, found.residual <= closed, is_given)
 
 
-def _least_step(rows: Array, residual: Array, least: float) -> Array:
-    """The least step that closes what can be closed, directions that are determined less than `least` left alone."""
+def _least_step(least: float, rows: Array, residual: Array) -> Array:
+    """Return the least step that closes what it can; directions determined less than `least` are left alone."""
     if rows.shape[1] <= DENSE_UP_TO:
         return np.asarray(np.linalg.lstsq(rows, residual, rcond=least)[0])
     # far faster than a singular value decomposition; what is nearly undetermined is damped and not cut off
@@ -84,31 +78,35 @@ def _least_step(rows: Array, residual: Array, least: float) -> Array:
     return np.asarray(rows.T @ np.linalg.solve(normal, residual))
 
 
-def _system(equations: Equations, state: Array, goal: Array | None) -> tuple[Array, Array]:
+def _system(equations: ConstraintEquations, goal: Array | None, state: Array) -> tuple[Array, Array]:
+    """Return by how much the pairs are open, and the drivers off their goal; and the rows of both."""
     rows, lengths = equations.jacobian(state)
     residual = equations.closures(state) / lengths
     if goal is None:
         return residual, rows
     gap = equations.coordinates(state) - goal
     angular = np.array([pair.free_is_angle for pair in equations.driven], dtype=bool)
-    gap = np.where(angular, np.angle(np.exp(1j * gap)), gap / equations.size)
+    gap = np.where(angular, wrapped(gap), gap / equations.size)
     signs = [pair.driven_by(d.link) for pair, d in zip(equations.driven, equations.mechanism.drives, strict=True)]
     return np.concatenate([residual, gap]), np.vstack([rows, equations.driving(state) * np.array(signs)[:, None]])
 
 
-def assembled(equations: Equations) -> Assembly:
-    """An assembled pose near the drawing, the drivers free; without a drawing, at the drivers' first values if any."""
+def assemble(equations: ConstraintEquations) -> AssembledPose:
+    """Find an assembled pose near the drawing, the drivers free; without one, at the drivers' first values if any."""
     mechanism = equations.mechanism
     if mechanism.sketch:
         return _nearest(equations, None)
     drives = zip(mechanism.drives, equations.driven, strict=True)
-    values = [_first(drive.values, SOMEWHERE if pair.free_is_angle else 0.0) for drive, pair in drives]
+    values = [
+        (SOMEWHERE if pair.free_is_angle else 0.0) if drive.values is None else float(first(drive.values))
+        for drive, pair in drives
+    ]
     at_values = _nearest(equations, np.array(values))
     return at_values if at_values.is_closed else _nearest(equations, None)
 
 
-def _nearest(equations: Equations, goal: Array | None) -> Assembly:
-    best: Assembly | None = None
+def _nearest(equations: ConstraintEquations, goal: Array | None) -> AssembledPose:
+    best: AssembledPose | None = None
     for start, is_complete in _starts(equations):
         found = corrected(equations, start, goal)
         good = found.is_closed and equations.is_properly_assembled(found.state)
@@ -120,29 +118,25 @@ def _nearest(equations: Equations, goal: Array | None) -> Assembly:
     return best
 
 
-def _first(values: Number, otherwise: float) -> float:
-    return otherwise if values is None else float(np.ravel(values)[0])
-
-
-def _starts(equations: Equations) -> Iterator[tuple[Array, bool]]:
-    """States to start from; the only one where a drawing shows every link."""
+def _starts(equations: ConstraintEquations) -> Iterator[tuple[Array, bool]]:
+    """List states to start from; the only one where a drawing shows every link."""
     shown = _shown(equations)
     missing = [name for name in equations.links if name not in shown]
     places, guided = _places(equations, shown), _guided(equations, shown)
-    still = {name: _upright(equations, name, places, guided.get(name, 0.0)) for name in missing}
+    still = {name: _placed(equations, name, places, guided.get(name, 0.0)) for name in missing}
     yield equations.state({**shown, **still}), not missing
     rng = np.random.default_rng(len(missing))
     for _ in range(min(TRIES, COLUMNS // equations.width) if missing else 0):
         around = complex(*rng.standard_normal(2)) * equations.size / 2.0
         angles = {name: float(rng.uniform(-np.pi, np.pi)) for name in missing} | guided
-        turned = {name: _upright(equations, name, places, angles[name], around) for name in missing}
+        turned = {name: _placed(equations, name, places, angles[name], around) for name in missing}
         yield equations.state({**shown, **turned}), False
 
 
-def _shown(equations: Equations) -> dict[str, Pose]:
-    """The poses of the links that the drawing fixes, or points of links that it fixes."""
+def _shown(equations: ConstraintEquations) -> dict[str, Pose]:
+    """Return the poses of the links that the drawing fixes, or points of links that it fixes."""
     geometry = equations.mechanism.geometry
-    shown = {name: _at_first(pose) for name, pose in geometry.drawn.items()}
+    shown = {name: pose.entry(FIRST) for name, pose in geometry.drawn.items()}
     seen = {letter: _number(p) for letter, p in geometry.sketch.items()}
     points = {name: {k: _number(p) for k, p in geometry.points[name].items()} for name in equations.mechanism.links}
     while True:
@@ -155,8 +149,8 @@ def _shown(equations: Equations) -> dict[str, Pose]:
         shown.update(found)
 
 
-def _guided(equations: Equations, shown: Mapping[str, Pose]) -> dict[str, float]:
-    """The angles of links that are not shown, where slides keep them from turning on links that are."""
+def _guided(equations: ConstraintEquations, shown: Mapping[str, Pose]) -> dict[str, float]:
+    """Return the angles of links that are not shown, where slides keep them from turning on links that are."""
     known = {**shown, FRAME: FIXED}
     slides = [pair for pair in equations.pairs if pair.is_simple and not pair.free_is_angle]
     found: dict[str, float] = {}
@@ -166,14 +160,14 @@ def _guided(equations: Equations, shown: Mapping[str, Pose]) -> dict[str, float]
             return found
         pair = open_to[0]
         relative = pair.placed(equations.ends[pair.name], constant(0.0))
-        first, second = pair.members
-        base, name = (first, second) if first in known else (second, first)
-        known[name] = known[base].compose(relative if base == first else relative.inverse())
+        one, other = pair.members
+        base, name = (one, other) if one in known else (other, one)
+        known[name] = known[base].compose(relative if base == one else relative.inverse())
         found[name] = float(np.angle(known[name].u.c[0]))
 
 
-def _places(equations: Equations, shown: Mapping[str, Pose]) -> dict[str, complex]:
-    """Where the points of what is shown are."""
+def _places(equations: ConstraintEquations, shown: Mapping[str, Pose]) -> dict[str, complex]:
+    """Return where the points of what is shown are."""
     geometry = equations.mechanism.geometry
     places = {letter: _number(p) for letter, p in geometry.sketch.items()}
     for name, pose in {**shown, FRAME: FIXED}.items():
@@ -181,19 +175,15 @@ def _places(equations: Equations, shown: Mapping[str, Pose]) -> dict[str, comple
     return places
 
 
-def _upright(
-    equations: Equations, name: str, places: Mapping[str, complex], angle: float, around: complex = 0j
+def _placed(
+    equations: ConstraintEquations, name: str, places: Mapping[str, complex], angle: float, around: complex = 0j
 ) -> Pose:
-    """A link that is not shown, at an angle; at the place of one of its points that is shown, else anywhere."""
+    """Place a link that is not shown, at an angle; at the place of one of its points that is shown, else anywhere."""
     points = equations.mechanism.geometry.points[name]
     turned = complex(np.exp(1j * angle))
     at = next((places[k] - turned * _number(p) for k, p in points.items() if k in places), around)
     return Pose.of(complex(at), turned)
 
 
-def _at_first(pose: Pose) -> Pose:
-    return Pose.of(_number(pose.z.c[0]), _number(pose.u.c[0]))
-
-
 def _number(value: Number) -> complex:
-    return complex(np.ravel(value)[0])
+    return complex(first(value))

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import first
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import constant
 from compoundkin.model.elements import FRAME
@@ -20,7 +21,7 @@ from compoundkin.structure.system import LINK_FREEDOMS
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-_SEED = 20260101
+SEED = 20260101
 
 
 class Tolerance(NamedTuple):
@@ -47,7 +48,7 @@ class Rows:
 
 
 @dataclass(frozen=True)
-class Equations:
+class ConstraintEquations:
     """The equations of a mechanism: first what its pairs hold, then the drivers' coordinates.
 
     A state holds x, y (in parts of `size`) and theta (radians) of every moving link, in the order of the mechanism. A
@@ -79,13 +80,6 @@ class Equations:
         """The pair of every driver."""
         pins = Pins(self.mechanism)
         return tuple(driven_pair(pins, drive) for drive in self.mechanism.drives)
-
-    def is_bar(self, link: str, one: str, two: str) -> bool:
-        """Whether a link has no pairs but two pins, neither of them driven: the force in it is along it."""
-        on_it = [pair for pair in self.mechanism.written_pairs if link in pair.members]
-        driven = [drive for drive in self.mechanism.drives if link in (drive.link, drive.on)]
-        pinned = [letter for letter, names in self.mechanism.pins.items() if link in names]
-        return not on_it and not driven and sorted(pinned) == sorted((one, two))
 
     @cached_property
     def size(self) -> float:
@@ -123,13 +117,13 @@ class Equations:
         return {p.name: tuple(map(_first, p.ends(geometry))) for p in (*self.pairs, *self.driven)}
 
     def state(self, poses: Mapping[str, Pose]) -> Array:
-        """The state in which the links have the given poses."""
+        """Return the state in which the links have the given poses."""
         placed = (poses[name] for name in self.links)
         parts = [(p.z.c[0].real / self.size, p.z.c[0].imag / self.size, p.angle.c[0]) for p in placed]
         return np.array(parts, dtype=float).ravel()
 
     def poses(self, state: Array) -> dict[str, Pose]:
-        """The poses of all links in a state."""
+        """Return the poses of all links in a state."""
         found = {FRAME: FIXED}
         for name, k in self.column.items():
             angle = constant(float(state[k + 2]))
@@ -137,11 +131,11 @@ class Equations:
         return found
 
     def place(self, poses: dict[str, Pose], link: str, letter: str) -> complex:
-        """Where a point of a link is."""
+        """Return where a point of a link is."""
         return complex(poses[link].at(_number(self.mechanism.geometry.points[link][letter])).c[0])
 
     def closures(self, state: Array) -> Array:
-        """By how much every held coordinate is open, lengths in the user's unit."""
+        """Return by how much every held coordinate is open, lengths in the user's unit."""
         poses = self.poses(state)
         return np.array(
             [
@@ -152,7 +146,7 @@ class Equations:
         )
 
     def coordinates(self, state: Array) -> Array:
-        """The drivers' coordinates, as the drivers count them."""
+        """Return the drivers' coordinates, as the drivers count them."""
         poses = self.poses(state)
         found = []
         for drive, pair in zip(self.mechanism.drives, self.driven, strict=True):
@@ -161,20 +155,20 @@ class Equations:
         return np.array(found)
 
     def is_properly_assembled(self, state: Array) -> bool:
-        """Whether every closed pair is in the way that is meant."""
+        """Tell whether every closed pair is in the way that is meant."""
         poses = self.poses(state)
         return all(
             bool(np.all(pair.is_properly_assembled(self.ends[pair.name], _of(pair, poses)))) for pair in self.pairs
         )
 
     def jacobian(self, state: Array) -> tuple[Array, Array]:
-        """The rows of all pairs by the state, each of the length 1; and by what each was divided."""
+        """Return the rows of all pairs by the state, each of the length 1; and by what each was divided."""
         poses = self.poses(state)
         tables = ((pair, pair.jacobian(self.ends[pair.name], _of(pair, poses))) for pair in self.pairs)
         return self._scaled(self._filled((pair, table[..., : pair.held, :]) for pair, table in tables), self.size)
 
     def driving(self, state: Array) -> Array:
-        """The rows of the drivers' coordinates by the state, each of the length 1."""
+        """Return the rows of the drivers' coordinates by the state, each of the length 1."""
         poses = self.poses(state)
         tables = ((pair, pair.jacobian(self.ends[pair.name], _of(pair, poses))) for pair in self.driven)
         coordinate = ((pair, table[..., pair.held : pair.held + 1, :]) for pair, table in tables)
@@ -183,7 +177,7 @@ class Equations:
     @cached_property
     def generic(self) -> Array:
         """The rows of all pairs at random geometry: the same kinds of pairs between the same links."""
-        rng = np.random.default_rng(_SEED)
+        rng = np.random.default_rng(SEED)
         places: dict[str, Ends] = {}
         tables = []
         for number, pair in enumerate(self.pairs):
@@ -221,4 +215,4 @@ def _first(end: End) -> End:
 
 
 def _number(value: Any) -> Any:
-    return value if np.ndim(value) == 0 else np.ravel(value)[0].item()
+    return value if np.ndim(value) == 0 else first(value).item()

@@ -1,18 +1,27 @@
-"""A mechanism examined at its own dimensions: an assembled pose, how it moves from there, and what is held twice."""
+"""What is redundant at a mechanism's own dimensions, and its structure without that.
+
+What is left out is checked along the whole motion. It is chosen so that what remains falls into groups with closed
+forms where it can.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+
+import numpy as np
 
 from compoundkin.base.poses import Pose
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.composites import composites
-from compoundkin.structure.redundancy.assembled_pose import Assembly, assembled, corrected
-from compoundkin.structure.redundancy.constraint_equations import ROUNDED, STRICT, Array, Equations, Tolerance
-from compoundkin.structure.redundancy.finite_motion import Flex, flex_of, null_space, rank_of
-from compoundkin.structure.redundancy.self_stress import Candidate, candidates, stresses
+from compoundkin.structure.decomposition import decomposed
+from compoundkin.structure.kinematic_structure import Structure
+from compoundkin.structure.parts import Group, Relaxation
+from compoundkin.structure.redundancy.assembled_pose import AssembledPose, assemble, corrected
+from compoundkin.structure.redundancy.constraint_equations import ROUNDED, STRICT, Array, ConstraintEquations, Tolerance
+from compoundkin.structure.redundancy.finite_motion import FiniteMotion, finite_motion, null_space, rank_of
+from compoundkin.structure.redundancy.self_stress import Candidate, candidates, chosen, strength, stresses
 
 # Wider equations than those of some hundred links take a dense decomposition many seconds.
 WIDEST = 1500
@@ -21,24 +30,29 @@ FAR = 100.0
 # At a pose that is found by iteration where the equations are singular, residuals of 1e-15 leave the pose, and so what
 # ought to be zero, uncertain by their root.
 ITERATED = 1e-6
+# How many structures are compared, and by how much weaker than the first choice others may be.
+COMPARED = 400
+WEAKER = 0.1
+# A group without a closed form takes so many times as long as a dyad, and more with the number of its bodies.
+GENERAL = 10
 
 
 @dataclass(frozen=True)
-class Examined:
-    """A mechanism examined at its own dimensions: an assembled pose, how it moves, and its states of self-stress."""
+class Diagnosis:
+    """A mechanism at its own dimensions: an assembled pose, how it moves, and its states of self-stress."""
 
-    equations: Equations
-    assembly: Assembly
+    equations: ConstraintEquations
+    pose: AssembledPose
 
     @cached_property
     def rows(self) -> Array:
         """The rows of the pairs at the assembled pose."""
-        return self.equations.jacobian(self.assembly.state)[0]
+        return self.equations.jacobian(self.pose.state)[0]
 
     @property
     def dependent(self) -> float:
         """Below which part of the largest a singular value at the assembled pose is zero."""
-        return max(self.equations.tolerance.rank, 0.0 if self.assembly.is_given else ITERATED)
+        return max(self.equations.tolerance.rank, 0.0 if self.pose.is_given else ITERATED)
 
     @cached_property
     def rank(self) -> int:
@@ -46,45 +60,131 @@ class Examined:
         return rank_of(self.rows, self.dependent)
 
     @cached_property
-    def flex(self) -> Flex:
+    def motion(self) -> FiniteMotion:
         """How it moves. Where no row is redundant, all that is left free is motion."""
-        state = self.assembly.state
+        state = self.pose.state
         if self.rank == len(self.rows):
             free = null_space(self.rows, self.dependent)
-            return Flex(state, free, free.shape[1])
-        return flex_of(self.equations, state, self.dependent)
+            return FiniteMotion(state, free, free.shape[1])
+        return finite_motion(self.equations, state, self.dependent)
 
     @cached_property
     def stress(self) -> Array:
         """The states of self-stress, at a pose that is not special."""
-        return stresses(self.equations, self.flex.state)
+        return stresses(self.equations, self.motion.state)
 
     @cached_property
     def candidates(self) -> list[Candidate]:
         """What may be left out."""
         bodies = composites(self.equations.mechanism)
-        return candidates(self.equations, self.flex.state, self.stress, bodies) if self.stress.shape[1] else []
+        return candidates(self.equations, self.motion.state, self.stress, bodies) if self.stress.shape[1] else []
 
     @property
     def determined(self) -> int:
         """How many of its motions the drivers determine."""
-        return rank_of(self.equations.driving(self.flex.state) @ self.flex.along, self.equations.tolerance.rank)
+        return rank_of(self.equations.driving(self.motion.state) @ self.motion.along, self.equations.tolerance.rank)
 
 
-def examined(mechanism: Mechanism, poses: Mapping[str, Pose] | None = None) -> Examined:
-    """A mechanism examined at its own dimensions; taken to be rounded where exact ones leave no motion."""
-    exact = _examined(mechanism, STRICT, poses)
-    if exact.assembly.is_closed and (exact.rank == len(exact.rows) or exact.flex.along.shape[1]):
+def diagnose(mechanism: Mechanism, poses: Mapping[str, Pose] | None = None) -> Diagnosis:
+    """Diagnose a mechanism at its own dimensions; taken to be rounded where exact ones leave no motion."""
+    exact = _diagnosed(mechanism, STRICT, poses)
+    if exact.pose.is_closed and (exact.rank == len(exact.rows) or exact.motion.along.shape[1]):
         return exact
-    if not exact.assembly.is_closed and exact.assembly.residual > FAR * ROUNDED.closed:
+    if not exact.pose.is_closed and exact.pose.residual > FAR * ROUNDED.closed:
         # so far open is nothing by rounding
         return exact
-    rounded = _examined(mechanism, ROUNDED, poses)
-    return rounded if rounded.assembly.is_closed and rounded.flex.along.shape[1] else exact
+    rounded = _diagnosed(mechanism, ROUNDED, poses)
+    return rounded if rounded.pose.is_closed and rounded.motion.along.shape[1] else exact
 
 
-def _examined(mechanism: Mechanism, tolerance: Tolerance, poses: Mapping[str, Pose] | None) -> Examined:
-    equations = Equations(mechanism, tolerance)
+def _diagnosed(mechanism: Mechanism, tolerance: Tolerance, poses: Mapping[str, Pose] | None) -> Diagnosis:
+    equations = ConstraintEquations(mechanism, tolerance)
     if poses is None:
-        return Examined(equations, assembled(equations))
-    return Examined(equations, corrected(equations, equations.state(poses)))
+        return Diagnosis(equations, assemble(equations))
+    return Diagnosis(equations, corrected(equations, equations.state(poses)))
+
+
+def without_redundancy(structure: Structure, closed: Collection[str]) -> Structure:
+    """Return the structure without what is redundant, where its mechanism moves although it is overconstrained.
+
+    The structure itself where nothing is overconstrained, or nothing moves. `closed` are the names of the groups that
+    have closed forms: what remains falls into these where it can.
+    """
+    mechanism = structure.mechanism
+    if not any(fault.kind == "over" for fault in structure.faults) or 3 * len(mechanism.links) > WIDEST:
+        return structure
+    with np.errstate(all="ignore"):
+        found = diagnose(mechanism)
+        if not found.pose.is_closed or found.motion.along.shape[1] <= len(structure.passive):
+            return structure
+        return _chosen(structure, found, closed)
+
+
+def _chosen(structure: Structure, found: Diagnosis, closed: Collection[str]) -> Structure:
+    states = found.stress.shape[1]
+    picked = chosen(found.candidates, states)
+    if not picked:
+        return structure
+    pose = _relaxation(found)
+    limit, order = WEAKER * strength(picked), found.candidates
+    best = _made(structure, picked, pose)
+    least, left = _cost(best, picked, order, closed), COMPARED
+    improved = True
+    while improved and left > 0:
+        improved = False
+        for other in _neighbours(picked, order):
+            if left <= 0:
+                break
+            if sum(len(one.forces) for one in other) != states or strength(other) < limit:
+                continue
+            left -= 1
+            trial = _made(structure, other, pose)
+            cost = _cost(trial, other, order, closed)
+            if cost < least:
+                best, least, picked, improved = trial, cost, other, True
+                break
+    return best if _excess(best) < _excess(structure) else structure
+
+
+def _neighbours(picked: Sequence[Candidate], order: Sequence[Candidate]) -> list[list[Candidate]]:
+    """List the choices in which one part is exchanged, the last written first."""
+    found = []
+    for k in range(len(picked)):
+        rest = [*picked[:k], *picked[k + 1 :]]
+        taken = {one.place for one in rest}
+        found += [[*rest, other] for other in reversed(order) if other.place not in taken and other is not picked[k]]
+    return found
+
+
+def _made(structure: Structure, picked: Sequence[Candidate], pose: Relaxation) -> Structure:
+    return decomposed(structure.mechanism, replace(pose, dropped=tuple(one.dropped for one in picked)))
+
+
+def _cost(
+    made: Structure, picked: Sequence[Candidate], order: Sequence[Candidate], closed: Collection[str]
+) -> tuple[int, ...]:
+    """Weigh what is left undecomposed or may fail, how hard the groups are, and how early what is left out stands."""
+    places = list(dict.fromkeys(one.place for one in order))
+    early = sum(len(places) - places.index(one.place) for one in picked)
+    oblique = sum(not one.is_aligned for one in picked)
+    return _excess(made), oblique, sum(_effort(group, closed) for group in made.groups), early
+
+
+def _excess(structure: Structure) -> int:
+    return sum(fault.amount for fault in structure.faults)
+
+
+def _effort(group: Group, closed: Collection[str]) -> int:
+    count = len(group.bodies)
+    is_closed = group.name in closed or (count == 1 and len(group.outer) == 2)
+    return count if is_closed else GENERAL * count * count
+
+
+def _relaxation(found: Diagnosis) -> Relaxation:
+    """Return the assembled pose; where nothing is drawn, one that is not special."""
+    equations = found.equations
+    drawn = bool(equations.mechanism.sketch)
+    poses = equations.poses(found.pose.state if drawn else found.motion.state)
+    carriers = equations.mechanism.carriers
+    places = {letter: equations.place(poses, names[0], letter) for letter, names in carriers.items()}
+    return Relaxation((), places, poses)

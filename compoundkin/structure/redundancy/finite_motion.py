@@ -2,16 +2,19 @@
 
 Where the rank of the equations is the same all around a pose, what they leave free is the tangent of the motion. Where
 it is not, steps in directions that are no motion are undone by the correction.
+Freedoms that move one link alone are passive.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from math import degrees
 
 import numpy as np
 
 from compoundkin.structure.redundancy.assembled_pose import corrected
-from compoundkin.structure.redundancy.constraint_equations import STRICT, Array, Equations
+from compoundkin.structure.redundancy.constraint_equations import STRICT, Array, ConstraintEquations
 
 # A step (parts of the size, or radians), and what part of it has to persist when it is corrected: what curves away
 # differs from its tangent by the square of the step.
@@ -22,11 +25,14 @@ WALK = 4
 TRIED = 16
 # Gauss and Newton's steps after each: what is no motion is halved by every one, and need not be undone to the end.
 CORRECTIONS = 12
-_SEED = 7
+SEED = 7
+# A motion that turns less than this (radians, while it shifts by the size) is a translation; and the point about which
+# a link turns is one of its own if it is not farther away than this part of the size.
+STRAIGHT = 1e-6
 
 
 @dataclass(frozen=True)
-class Flex:
+class FiniteMotion:
     """How a mechanism moves from a pose: at a pose near it that is not special, the tangents of its motions.
 
     `along` has an orthonormal column for each of them; `free` counts what the equations leave free there, tangents and
@@ -39,7 +45,7 @@ class Flex:
 
 
 def null_space(rows: Array, tolerance: float = STRICT.rank) -> Array:
-    """An orthonormal basis of what the rows leave free, in columns."""
+    """Return an orthonormal basis of what the rows leave free, in columns."""
     if not len(rows):
         return np.eye(rows.shape[1])
     _, values, right = np.linalg.svd(rows, full_matrices=True)
@@ -48,16 +54,16 @@ def null_space(rows: Array, tolerance: float = STRICT.rank) -> Array:
 
 
 def rank_of(rows: Array, tolerance: float = STRICT.rank) -> int:
-    """The rank of some rows."""
+    """Return the rank of some rows."""
     if not rows.size:
         return 0
     values = np.linalg.svd(rows, compute_uv=False)
     return int(np.sum(values > tolerance * max(values, default=1.0)))
 
 
-def flex_of(equations: Equations, state: Array, dependent: float) -> Flex:
-    """How a mechanism moves from an assembled pose, where singular values below `dependent` of the largest are zero."""
-    rng = np.random.default_rng(_SEED)
+def finite_motion(equations: ConstraintEquations, state: Array, dependent: float) -> FiniteMotion:
+    """Find how a mechanism moves from a pose; singular values below `dependent` of the largest are zero."""
+    rng = np.random.default_rng(SEED)
     free = null_space(equations.jacobian(state)[0], dependent)
     start, steps, tried = state, 0, 0
     while free.shape[1] and steps < WALK and tried < TRIED:
@@ -68,7 +74,7 @@ def flex_of(equations: Equations, state: Array, dependent: float) -> Flex:
         if moved is not None:
             steps += 1
             state, free = moved, null_space(equations.jacobian(moved)[0], equations.tolerance.rank)
-    return Flex(state, _persisting(equations, state, free), free.shape[1])
+    return FiniteMotion(state, _persisting(equations, state, free), free.shape[1])
 
 
 def _direction(rng: np.random.Generator, count: int) -> Array:
@@ -76,15 +82,15 @@ def _direction(rng: np.random.Generator, count: int) -> Array:
     return np.asarray(chosen / np.linalg.norm(chosen))
 
 
-def _moved(equations: Equations, state: Array, direction: Array) -> Array | None:
-    """The pose after a step that is corrected, or None where the correction undoes it."""
+def _moved(equations: ConstraintEquations, state: Array, direction: Array) -> Array | None:
+    """Return the pose after a step that is corrected, or None where the correction undoes it."""
     found = corrected(equations, state + STEP * direction, steps=CORRECTIONS)
     stays = found.is_closed and float(np.linalg.norm(found.state - state)) >= PERSISTS * STEP
     return found.state if stays else None
 
 
-def _persisting(equations: Equations, state: Array, free: Array) -> Array:
-    """The directions of what is free in which the mechanism really moves."""
+def _persisting(equations: ConstraintEquations, state: Array, free: Array) -> Array:
+    """Return the directions of what is free in which the mechanism really moves."""
     moved = [corrected(equations, state + STEP * direction, steps=CORRECTIONS) for direction in free.T]
     steps = [(one.state - state) / STEP for one in moved if one.is_closed]
     if not steps:
@@ -92,3 +98,42 @@ def _persisting(equations: Equations, state: Array, free: Array) -> Array:
     # in coordinates of what is free: what a motion curves away from it does not count
     left, values, _ = np.linalg.svd(free.T @ np.array(steps).T)
     return np.asarray(free @ left[:, : int(np.sum(values > PERSISTS))])
+
+
+@dataclass(frozen=True)
+class PassiveFreedom:
+    """A freedom of one link alone, in words: `motion` is "turn about C" or "slide along a line at 30 degrees"."""
+
+    link: str
+    motion: str
+
+    def __str__(self) -> str:
+        return f"{self.link} may {self.motion} without moving anything else"
+
+
+def passive_freedoms(equations: ConstraintEquations, state: Array) -> Iterator[PassiveFreedom]:
+    """Find the freedoms of single links while the drivers stand still, of links on two pairs or more.
+
+    A link on one pair only is no passive part: it is left free.
+    """
+    rows = np.vstack([equations.jacobian(state)[0], equations.driving(state)])
+    counts = dict.fromkeys(equations.mechanism.links, 0)
+    for pair in equations.pairs:
+        for name in pair.members:
+            counts[name] += 1
+    for name, first in equations.column.items():
+        if counts[name] > 1:
+            for motion in null_space(rows[:, first : first + 3], equations.tolerance.rank).T:
+                yield PassiveFreedom(name, _in_words(equations, state, name, motion))
+
+
+def _in_words(equations: ConstraintEquations, state: Array, name: str, motion: Array) -> str:
+    x, y, turn = motion
+    if abs(turn) < STRAIGHT:
+        return f"slide along a line at {degrees(np.arctan2(y, x)) % 180.0:.4g} degrees"
+    poses = equations.poses(state)
+    pivot = complex(poses[name].z.c[0]) + 1j * complex(x, y) / turn * equations.size
+    letters = equations.mechanism.links[name].points
+    near = (k for k in letters if abs(equations.place(poses, name, k) - pivot) < STRAIGHT * equations.size)
+    at = next(near, f"({pivot.real:.6g}, {pivot.imag:.6g})")
+    return f"turn about {at}"

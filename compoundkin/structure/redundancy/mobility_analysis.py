@@ -12,10 +12,9 @@ from compoundkin.base.poses import Pose
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.redundancy.constraint_equations import ROUNDED, Equations
-from compoundkin.structure.redundancy.diagnosis import WIDEST, Examined, examined
-from compoundkin.structure.redundancy.finite_motion import rank_of
-from compoundkin.structure.redundancy.passive_freedoms import PassiveFreedom, passive_motions
+from compoundkin.structure.redundancy.constraint_equations import ROUNDED, ConstraintEquations
+from compoundkin.structure.redundancy.diagnosis import WIDEST, Diagnosis, diagnose
+from compoundkin.structure.redundancy.finite_motion import PassiveFreedom, passive_freedoms, rank_of
 from compoundkin.structure.redundancy.self_stress import chosen, stressed_pairs
 
 # Singular values at random geometry are zero below this part of the largest. They get small in long mechanisms.
@@ -23,7 +22,7 @@ GENERIC = 1e-12
 
 
 @dataclass(frozen=True)
-class Gap:
+class MobilityGap:
     """The pair that is open most where no assembled pose was found, and by how much, in its own unit."""
 
     pair: str
@@ -54,7 +53,7 @@ class MobilityAnalysis(Shows):
     freed: tuple[str, ...] = ()
     undetermined: tuple[str, ...] = ()
     passive: tuple[PassiveFreedom, ...] = ()
-    gap: Gap | None = None
+    gap: MobilityGap | None = None
     rounded: bool = False
 
     @property
@@ -132,7 +131,7 @@ class MobilityAnalysis(Shows):
 
 
 def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose] | None = None) -> MobilityAnalysis:
-    """The mobility by count, for general dimensions and at the assembled pose, and what is redundant or passive.
+    """Find the mobility by count, for general dimensions and at the assembled pose, and what is redundant or passive.
 
     The pose is that of `poses`, of order 0, by the links' names; else the drawn one, made exact; without a drawing, one
     at the drivers' first values. Lengths of several designs are those of the first.
@@ -155,17 +154,17 @@ def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose
 
 
 def _analysed(structure: Structure, poses: Mapping[str, Pose] | None) -> MobilityAnalysis:
-    equations, passive = Equations(structure.mechanism), len(structure.passive)
+    equations, passive = ConstraintEquations(structure.mechanism), len(structure.passive)
     counts = structure.mobility.freedoms, structure.mobility.drivers
     if equations.width > WIDEST:
         return MobilityAnalysis(counts[0], counts[0], 0, counts[1])
     rank = rank_of(equations.generic, GENERIC)
     generic = equations.width - rank - passive, equations.held - rank
-    found = examined(structure.mechanism, poses)
+    found = diagnose(structure.mechanism, poses)
     equations = found.equations
-    if not found.assembly.is_closed:
+    if not found.pose.is_closed:
         return MobilityAnalysis(counts[0], *generic, counts[1], gap=_gap(found))
-    state, free = found.flex.state, found.flex.along.shape[1] - passive
+    state, free = found.motion.state, found.motion.along.shape[1] - passive
     stress = found.stress
     return MobilityAnalysis(
         counts[0],
@@ -177,13 +176,13 @@ def _analysed(structure: Structure, poses: Mapping[str, Pose] | None) -> Mobilit
         redundant=stress.shape[1],
         freed=_freed(structure, found),
         undetermined=stressed_pairs(equations, stress),
-        passive=tuple(one for one in passive_motions(equations, state) if not _is_roller(structure, one)),
+        passive=tuple(one for one in passive_freedoms(equations, state) if not _is_roller(structure, one)),
         rounded=equations.tolerance is ROUNDED,
     )
 
 
-def _freed(structure: Structure, found: Examined) -> tuple[str, ...]:
-    """What a structure leaves out already; else what it could leave out."""
+def _freed(structure: Structure, found: Diagnosis) -> tuple[str, ...]:
+    """List what a structure leaves out already; else what it could leave out."""
     if structure.relaxation:
         return tuple(map(str, structure.relaxation.dropped))
     return tuple(str(one.dropped) for one in chosen(found.candidates, found.stress.shape[1]))
@@ -197,8 +196,8 @@ def _counted(number: int, word: str) -> str:
     return f"{number} {word}{'' if number == 1 else 's'}"
 
 
-def _gap(found: Examined) -> Gap:
+def _gap(found: Diagnosis) -> MobilityGap:
     equations = found.equations
-    open_by = np.abs(equations.closures(found.assembly.state))
+    open_by = np.abs(equations.closures(found.pose.state))
     worst = max(equations.rows, key=lambda rows: float(np.max(open_by[rows.first : rows.last])))
-    return Gap(worst.pair.name, float(np.linalg.norm(open_by[worst.first : worst.last])))
+    return MobilityGap(worst.pair.name, float(np.linalg.norm(open_by[worst.first : worst.last])))

@@ -15,10 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.poses import Pose
+from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.loosened import loosened, pin_in_slot
 from compoundkin.structure.composites import GROUND, Composites
 from compoundkin.structure.parts import Dropped
-from compoundkin.structure.redundancy.constraint_equations import Array, Equations
+from compoundkin.structure.redundancy.constraint_equations import Array, ConstraintEquations
 
 # A pair takes part in a state of self-stress if its share is above this.
 PART = 1e-6
@@ -45,8 +46,8 @@ class Candidate:
         return self.dropped.name, self.dropped.off
 
 
-def stresses(equations: Equations, state: Array) -> Array:
-    """An orthonormal basis of the states of self-stress, in columns, by the rows of the pairs."""
+def stresses(equations: ConstraintEquations, state: Array) -> Array:
+    """Return an orthonormal basis of the states of self-stress, in columns, by the rows of the pairs."""
     rows, _ = equations.jacobian(state)
     if not len(rows):
         return np.zeros((0, 0))
@@ -55,14 +56,14 @@ def stresses(equations: Equations, state: Array) -> Array:
     return np.asarray(left[:, rank:])
 
 
-def stressed_pairs(equations: Equations, stress: Array) -> tuple[str, ...]:
-    """The pairs that take part in a state of self-stress."""
+def stressed_pairs(equations: ConstraintEquations, stress: Array) -> tuple[str, ...]:
+    """Name the pairs that take part in a state of self-stress."""
     shares = ((rows.pair.name, stress[rows.first : rows.last]) for rows in equations.rows)
     return tuple(name for name, share in shares if np.max(np.abs(share), initial=0.0) > PART)
 
 
-def candidates(equations: Equations, state: Array, stress: Array, bodies: Composites) -> list[Candidate]:
-    """All that may be left out, in the order of the mechanism."""
+def candidates(equations: ConstraintEquations, state: Array, stress: Array, bodies: Composites) -> list[Candidate]:
+    """List all that may be left out, in the order of the mechanism."""
     _, lengths = equations.jacobian(state)
     found = list(_of_pins(equations, state, stress * (equations.size / lengths)[:, None], bodies))
     joined = {step.pair.name for body in (bodies.ground, *bodies.moving) for step in body.driven}
@@ -73,8 +74,8 @@ def candidates(equations: Equations, state: Array, stress: Array, bodies: Compos
     return [one for one in found if _carries(one.forces)]
 
 
-def _of_pins(equations: Equations, state: Array, stress: Array, bodies: Composites) -> Iterator[Candidate]:
-    """A body taken off a pin, but for a slot in the direction of another of its points, or of the other link's."""
+def _of_pins(equations: ConstraintEquations, state: Array, stress: Array, bodies: Composites) -> Iterator[Candidate]:
+    """Take a body off a pin, but for a slot in the direction of another of its points, or of the other link's."""
     poses = equations.poses(state)
     forces = _forces(equations, stress)
     for letter, names in equations.mechanism.pins.items():
@@ -91,8 +92,13 @@ def _of_pins(equations: Equations, state: Array, stress: Array, bodies: Composit
 
 
 def _slots(
-    equations: Equations, poses: dict[str, Pose], letter: str, sides: tuple[tuple[str, ...], str], force: Array
+    equations: ConstraintEquations,
+    poses: dict[str, Pose],
+    letter: str,
+    sides: tuple[tuple[str, ...], str],
+    force: Array,
 ) -> Iterator[Candidate]:
+    """Hold a body on a pin in a slot, in the direction of another point of either link."""
     off, other = sides
     for slotted, pinned in ((off[0], other), (other, off[0])):
         points = equations.mechanism.links[slotted].points
@@ -102,12 +108,20 @@ def _slots(
                 along = np.array([line.real, line.imag]) / abs(line)
                 kept = pin_in_slot(letter, pinned, slotted, through)
                 freed = f"along {through}{letter} of {slotted}"
-                is_bar = off == (slotted,) and equations.is_bar(slotted, letter, through)
+                is_bar = off == (slotted,) and _is_bar(equations.mechanism, slotted, letter, through)
                 yield Candidate(Dropped(letter, off, kept, freed), (along @ force)[None], is_bar)
 
 
-def _forces(equations: Equations, stress: Array) -> dict[tuple[str, str], Array]:
-    """The forces of every pin on every link at it, (2, states)."""
+def _is_bar(mechanism: Mechanism, link: str, one: str, two: str) -> bool:
+    """Tell whether a link has no pairs but two pins, neither of them driven: the force in it is along it."""
+    on_it = [pair for pair in mechanism.written_pairs if link in pair.members]
+    driven = [drive for drive in mechanism.drives if link in (drive.link, drive.on)]
+    pinned = [letter for letter, names in mechanism.pins.items() if link in names]
+    return not on_it and not driven and sorted(pinned) == sorted((one, two))
+
+
+def _forces(equations: ConstraintEquations, stress: Array) -> dict[tuple[str, str], Array]:
+    """Return the forces of every pin on every link at it, (2, states)."""
     found: dict[tuple[str, str], Array] = {}
     for rows in equations.rows[: len(equations.pins)]:
         letter, (first, second) = rows.pair.letters[0], rows.pair.members
@@ -118,13 +132,13 @@ def _forces(equations: Equations, stress: Array) -> dict[tuple[str, str], Array]
 
 
 def _carries(forces: Array) -> bool:
-    """Whether every coordinate carries a force of its own."""
+    """Tell whether every coordinate carries a force of its own."""
     values = np.linalg.svd(forces, compute_uv=False)
     return len(forces) <= forces.shape[1] and bool(values[-1] > PART)
 
 
 def chosen(given: Sequence[Candidate], states: int) -> list[Candidate]:
-    """Candidates that take away all states of self-stress and no more: each time the one that carries most.
+    """Choose candidates that take away all states of self-stress and no more: each time the one that carries most.
 
     Aligned ones go before others.
     """
@@ -151,7 +165,7 @@ def chosen(given: Sequence[Candidate], states: int) -> list[Candidate]:
 
 
 def strength(given: Sequence[Candidate]) -> float:
-    """How well the candidates together carry all states: the least singular value of their forces."""
+    """Measure how well the candidates together carry all states: the least singular value of their forces."""
     if not given:
         return 0.0
     return float(np.linalg.svd(np.vstack([one.forces for one in given]), compute_uv=False)[-1])
