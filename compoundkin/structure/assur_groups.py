@@ -18,8 +18,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from compoundkin.model.pairs import KINDS, Pair
-from compoundkin.structure.composites import GROUND, find
-from compoundkin.structure.cycles import cycle_basis
+from compoundkin.structure.composites import GROUND
+from compoundkin.structure.cycles import cycle_basis, find
 from compoundkin.structure.parts import Body, Group
 from compoundkin.structure.system import Constraint, System
 

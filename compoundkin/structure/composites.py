@@ -10,6 +10,7 @@ from functools import cached_property
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair, Revolute
+from compoundkin.structure.cycles import find
 from compoundkin.structure.parts import Body, DrivenPair, Passive
 
 GROUND = -1
@@ -166,11 +167,3 @@ def _join(leader: dict[str, str], a: str, b: str) -> bool:
     a, b = find(leader, a), find(leader, b)
     leader[b] = a
     return a != b
-
-
-def find(leader: dict[str, str], name: str) -> str:
-    """The representative of the set that a name belongs to."""
-    while leader[name] != name:
-        leader[name] = leader[leader[name]]
-        name = leader[name]
-    return name

@@ -1,15 +1,38 @@
-"""Independent cycles of a multigraph of numbered nodes: a shortest basis, or a quick one for large graphs."""
+"""Sets that are joined, and independent cycles of a multigraph: a shortest basis, or a quick one for large graphs."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import Protocol, TypeAlias, TypeVar
 
+T = TypeVar("T")
 Edges: TypeAlias = Sequence[tuple[int, int]]
 
 # Beyond this many nodes the shortest basis (work as their cube) gives way to that of a spanning tree.
 SHORTEST_BASIS_UP_TO = 60
+
+
+class Leaders(Protocol[T]):
+    """What leads from each member of a set towards its representative: a list, or a dictionary."""
+
+    def __getitem__(self, member: T, /) -> T:
+        """Return the next one on the way."""
+
+    def __setitem__(self, member: T, leader: T, /) -> None:
+        """Shorten the way."""
+
+
+def find(leader: Leaders[T], member: T) -> T:
+    """Return the representative of the set that a member belongs to; ways are halved as they are gone.
+
+    >>> find([0, 0, 1, 3], 2), find({"a": "b", "b": "b"}, "a")
+    (0, 'b')
+    """
+    while leader[member] != member:
+        leader[member] = leader[leader[member]]
+        member = leader[member]
+    return member
 
 
 def cycle_basis(nodes: int, edges: Edges) -> list[tuple[int, ...]]:

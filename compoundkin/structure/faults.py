@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.pairs import Pair
-from compoundkin.structure.composites import GROUND, find, spanned
+from compoundkin.structure.composites import GROUND, spanned
+from compoundkin.structure.cycles import find
 from compoundkin.structure.matching import Matching
 from compoundkin.structure.parts import Body, DrivenPair, Fault
 from compoundkin.structure.rank import Deficiency, RankTest, Subsystem

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.structure.composites import find
-from compoundkin.structure.cycles import cycle_basis
+from compoundkin.structure.cycles import cycle_basis, find
 
 if TYPE_CHECKING:
     import networkx as nx

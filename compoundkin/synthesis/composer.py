@@ -6,25 +6,20 @@ Source: L. V. Assur, Investigation of plane hinged mechanisms, 1914: attaching a
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import count
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.groups import DYADS
 from compoundkin.model.elements import FRAME, Item, drawn, drive, link
-from compoundkin.model.geometry import vector
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
 from compoundkin.synthesis.chains import AssurGroup, assur_group
-from compoundkin.synthesis.chains.chain_layout import layout
 from compoundkin.synthesis.chains.joints import REVOLUTE, SLIDE
-from compoundkin.synthesis.chains.skeletons import lettered
+from compoundkin.synthesis.lettered_links import ON, LetteredLinks
 
-_ON, _TOWARD = " on ", " toward "
+_TOWARD = " toward "
 DYAD_NAMES = tuple(DYADS)
 
 
@@ -48,7 +43,7 @@ class _GroupPair:
 
 
 @dataclass
-class Composer:
+class Composer(LetteredLinks):
     """Builds a mechanism group by group; `mechanism()` is the result, as drawn.
 
     Points not named get the letters A, B, C, ...; those that `place` does not place get generic places, so that the
@@ -60,33 +55,8 @@ class Composer:
     """
 
     title: str
-    links: dict[str, list[str]] = field(default_factory=lambda: {FRAME: []})
-    places: dict[str, complex] = field(default_factory=dict)
     _slides: list[dict[str, str]] = field(default_factory=list)
     _drives: list[dict[str, Any]] = field(default_factory=list)
-    _carriers: dict[str, list[str]] = field(default_factory=dict)
-    _guiding: dict[str, int] = field(default_factory=dict)
-    _letters: Iterator[str] = field(default_factory=lambda: _endless())
-
-    def place(self, **points: Any) -> Composer:
-        """Where points are in the drawing: ``place(A=(0, 0), B=3+1j)``; they may be named before or after.
-
-        Raises InvalidMechanism for what is not one point.
-
-        >>> Composer("m").place(A=(0, 1)).places
-        {'A': 1j}
-        """
-        self.places.update({letter: complex(vector(f"place.{letter}", p)) for letter, p in points.items()})
-        return self
-
-    def point(self, on: str, letter: str) -> Composer:
-        """A point more on a link: a tracing point, or one to place.
-
-        >>> Composer("m").point("frame", "A").links
-        {'frame': ['A']}
-        """
-        self._carry(self._link(on), letter)
-        return self
 
     def drive(self, name: str, to: str = FRAME, pair: str = REVOLUTE, **words: Any) -> Composer:
         """A driven link: pinned (`pair` "R") or sliding ("P") on the frame or another link.
@@ -98,7 +68,7 @@ class Composer:
         {'frame': ['A'], 'crank': ['A']}
         """
         place = self._place(to)
-        self._new((name,), 1, "drive")
+        self.new_links((name,), 1, "drive")
         if pair not in (REVOLUTE, SLIDE):
             raise InvalidInput(Problem("pair", f"{pair!r} is no pair to drive", f"known: {REVOLUTE}, {SLIDE}"))
         letter = self._write(_GroupPair(pair, place.link, name, place.point, place.toward))
@@ -121,8 +91,8 @@ class Composer:
         >>> composer.mechanism().pins["G"]
         ('base', 'z')
         """
-        pairs, outer, size = self._pairs(group)
-        self._new(links, size, str(group))
+        pairs, outer, size = pairs_of(group)
+        self.new_links(links, size, str(group))
         places = [self._place(entry) for entry in to]
         inner = [pair for pair in pairs if None not in pair[1:]]
         _fits("to", len(places), outer, "outer pairs")
@@ -153,95 +123,38 @@ class Composer:
         for driven in [told["link"] for told in self._drives]:
             if len(self.links[driven]) == 1:
                 # a driven link shows its angle by two points
-                self._carry(driven, "")
-        places = self._placed()
+                self.carry(driven, "")
+        places = self.placed()
         items: list[Item] = [link(name, *letters) for name, letters in self.links.items() if letters]
         items += [slide(**told) for told in self._slides]
         items += [drive(**self._driver(told, places)) for told in self._drives]
         return Mechanism(self.title, *items, drawn(**places), **words)
 
-    def _pairs(self, group: str | AssurGroup) -> tuple[list[tuple[str, int | None, int]], int, int]:
-        """The pairs of a group as code, first body (None for what is known) and second; outer pairs, links."""
-        if isinstance(group, str) and group in DYADS:
-            return [(group[0], None, 0), (group[1], 0, 1), (group[2], None, 1)], 2, 2
-        if isinstance(group, str):
-            group = assur_group(group, [*DYADS])
-        left = [k for k in range(group.truss.links) if k != group.removed]
-        outer = [(REVOLUTE, None, left.index(k)) for k in left if k in group.truss.neighbours[group.removed]]
-        inner = [(REVOLUTE, left.index(a), left.index(b)) for a, b in group.truss.pairs if group.removed not in (a, b)]
-        return [*outer, *inner], len(outer), len(left)
-
     def _place(self, text: str) -> Attachment:
         """A link, or points on it: "B on crank", "E toward F on frame"."""
         if text in self.links:
             return Attachment(text)
-        points, on, name = text.partition(_ON)
+        points, on, name = text.partition(ON)
         if not on:
             points, name = "", text
         point, _, toward = points.partition(_TOWARD)
-        return Attachment(self._link(name), point.strip(), toward.strip())
-
-    def _link(self, name: str) -> str:
-        if name not in self.links:
-            raise UnknownName(Problem(name, "there is no such link yet", nearest(name, list(self.links))))
-        return name
-
-    def _new(self, names: Sequence[str], wanted: int, where: str) -> None:
-        if isinstance(names, str) or len(names) != wanted:
-            raise InvalidInput(Problem("links", f"{where} has {wanted} links", f"name {wanted} new links"))
-        for name in names:
-            if name in self.links or list(names).count(name) > 1:
-                raise InvalidInput(Problem("links", f"there is a link {name!r} already", "name new links"))
-        self.links.update({name: [] for name in names})
-
-    def _carry(self, name: str, letter: str) -> str:
-        """Put a point on a link: a new one where no letter is given."""
-        letter = letter or next(k for k in self._letters if k not in self._carriers and k not in self.places)
-        if letter in self.links[name]:
-            return letter
-        if letter in self._carriers:
-            others = self._carriers[letter]
-            what = f"{letter} is a point of {' and '.join(others)}, not of {name}"
-            remedy = f"attach to {others[0]} there, or take a letter that is not in use"
-            raise InvalidInput(Problem(f"{letter}{_ON}{name}", what, remedy))
-        return self._share(name, letter)
-
-    def _share(self, name: str, letter: str) -> str:
-        """Put a point on a link that others may have already: a pin."""
-        self._carriers.setdefault(letter, []).append(name)
-        self.links[name].append(letter)
-        return letter
-
-    def _free(self, name: str) -> str:
-        """A point of a link at which nothing is joined to it yet; "" where there is none."""
-        alone = (k for k in self.links[name] if len(self._carriers[k]) == 1 and k not in self._guiding)
-        return next(alone, "")
+        return Attachment(self.link(name), point.strip(), toward.strip())
 
     def _write(self, pair: _GroupPair) -> str:
         """Write a pair: its letter, or the name of the slide."""
         if pair.code == REVOLUTE:
-            return self._share(pair.second, self._carry(pair.first, pair.point or self._free(pair.first)))
+            return self.share(pair.second, self.carry(pair.first, pair.point or self.free(pair.first)))
         block = self.links[pair.second]
-        at = block[0] if block else self._carry(pair.second, "")
-        through = self._carry(pair.first, pair.point or self._free(pair.first))
-        toward = self._carry(pair.first, pair.toward)
+        at = block[0] if block else self.carry(pair.second, "")
+        through = self.carry(pair.first, pair.point or self.free(pair.first))
+        toward = self.carry(pair.first, pair.toward)
         self._slides.append({"link": pair.second, "on": pair.first, "at": at, "through": through, "toward": toward})
         for letter in (at, through, toward):
-            self._guiding[letter] = self._guiding.get(letter, 0) + 1
-        if len(block) == 1 and self._guiding[at] > 1:
+            self.guiding[letter] = self.guiding.get(letter, 0) + 1
+        if len(block) == 1 and self.guiding[at] > 1:
             # one point shows no direction, which a block with two guides needs
-            self._carry(pair.second, "")
+            self.carry(pair.second, "")
         return f"{pair.second}/{pair.first}"
-
-    def _placed(self) -> dict[str, complex]:
-        """The places of all points: those that were given, and for the others generic ones around them."""
-        letters = list(dict.fromkeys(letter for carried in self.links.values() for letter in carried))
-        number = {letter: k for k, letter in enumerate(letters)}
-        generic = layout(len(letters), [[number[k] for k in carried] for carried in self.links.values()])
-        given = np.array(list(self.places.values()))
-        middle = complex(np.mean(given)) if given.size else 0j
-        size = float(np.max(np.abs(given - middle))) if given.size > 1 else 1.0
-        return {letter: self.places.get(letter, middle + (size or 1.0) * generic[number[letter]]) for letter in letters}
 
     def _driver(self, words: dict[str, Any], places: dict[str, complex]) -> dict[str, Any]:
         """The words of a driver; a slide without values stays as it is drawn."""
@@ -251,6 +164,14 @@ class Composer:
         at, through, toward = (places[written[key]] for key in ("at", "through", "toward"))
         along = (toward - through) / abs(toward - through)
         return {**words, "values": ((at - through) * along.conjugate()).real}
+
+
+def pairs_of(group: str | AssurGroup) -> tuple[list[tuple[str, int | None, int]], int, int]:
+    """Return the pairs of a group as code, first body (None for what is known) and second; outer pairs, links."""
+    if isinstance(group, str) and group in DYADS:
+        return [(group[0], None, 0), (group[1], 0, 1), (group[2], None, 1)], 2, 2
+    found = assur_group(group, [*DYADS]) if isinstance(group, str) else group
+    return [(REVOLUTE, *ends) for ends in found.joined], found.outer, found.links
 
 
 def random_mechanism(
@@ -273,14 +194,15 @@ def random_mechanism(
     known = [FRAME, "crank"]
     for k in range(groups):
         kind = chosen.choice(list(kinds))
-        pairs, outer, size = composer._pairs(kind)
+        pairs, outer, size = pairs_of(kind)
         links = [f"{k}-{n}" for n in range(size)]
         around = chosen.sample(known, outer) if len(known) >= outer else chosen.choices(known, k=outer)
         codes = [code for code, first, _ in pairs if first is None]
         to = [_entry(composer, chosen, code, on, multiple) for code, on in zip(codes, around, strict=True)]
         composer.attach(kind, links, to if len(set(to)) == outer else around)
         known += links
-    composer.places.update(_scattered(composer, chosen))
+    # random places, in a square that does not grow with their number
+    composer.place(**{letter: (chosen.uniform(-3.0, 3.0), chosen.uniform(-3.0, 3.0)) for letter in composer.carriers})
     mechanism = composer.mechanism()
     angle = float(mechanism.geometry.drawn["crank"].angle.c[0])
     return mechanism.replace(drive("crank", pair=composer.links["crank"][0], values=angle))
@@ -289,21 +211,10 @@ def random_mechanism(
 def _entry(composer: Composer, chosen: random.Random, code: str, on: str, multiple: float) -> str:
     """Where an outer pair goes: on a link, or now and then on a pin that it has."""
     if code == REVOLUTE and composer.links[on] and chosen.random() < multiple:
-        return f"{chosen.choice(composer.links[on])}{_ON}{on}"
+        return f"{chosen.choice(composer.links[on])}{ON}{on}"
     return on
-
-
-def _scattered(composer: Composer, chosen: random.Random) -> dict[str, complex]:
-    """Random places for all points, in a square that does not grow with their number."""
-    return {letter: complex(chosen.uniform(-3.0, 3.0), chosen.uniform(-3.0, 3.0)) for letter in composer._carriers}
 
 
 def _fits(where: str, given: int, wanted: int, what: str) -> None:
     if given != wanted:
         raise InvalidInput(Problem(where, f"there are {wanted} {what}, but {given} given", f"give {wanted} entries"))
-
-
-def _endless() -> Iterator[str]:
-    """A, B, ..., Z, A2, ..."""
-    for turn in count(1):
-        yield from (letter if turn == 1 else f"{letter}{turn}" for letter in lettered(26))

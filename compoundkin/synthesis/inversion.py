@@ -6,7 +6,6 @@ Source: F. Reuleaux, The Kinematics of Machinery, 1876, section 3: inversion cha
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -21,6 +20,7 @@ from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, L
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure import Structure, decompose
+from compoundkin.synthesis.driver_places import renamed
 
 OLD_FRAME = "old frame"
 # Which of the poses is drawn, as a part of them: links are often in line, and modes meet, at the ends or half way.
@@ -48,7 +48,7 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
         return mechanism
     names = _renamed(mechanism, link)
     points = _seen_from(mechanism, link)
-    items = [_new(item, names) for item in mechanism.items if not isinstance(item, Mode | Drawn | Expectation)]
+    items = [renamed(item, names) for item in mechanism.items if not isinstance(item, Mode | Drawn | Expectation)]
     items = [_with_axes(mechanism, item) if isinstance(item, Link) and item.name == names[FRAME] else item
              for item in items]  # fmt: skip
     if points:
@@ -139,29 +139,6 @@ def _renamed(mechanism: Mechanism, link: str) -> dict[str, str]:
     taken = (*mechanism.links, *mechanism.carriers)
     number = next(k for k in range(1, len(taken) + 2) if f"{OLD_FRAME}{k if k > 1 else ''}" not in taken)
     return {link: FRAME, FRAME: f"{OLD_FRAME}{number if number > 1 else ''}"}
-
-
-def _new(item: Item, names: Mapping[str, str]) -> Item:
-    """A word with links renamed; drivers and pairs keep their own names."""
-    if isinstance(item, Link):
-        return replace(item, name=names.get(item.name, item.name))
-    if isinstance(item, Drive):
-        return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
-    return renamed_pair(item, names) if isinstance(item, Pair) else item
-
-
-def renamed_pair(pair: Pair, names: Mapping[str, str]) -> Pair:
-    """A written pair between renamed links, under its own name.
-
-    >>> from compoundkin.model.pairs import slide
-    >>> renamed_pair(slide("block", on="frame", at="C", through="F"), {"frame": "bar"}).members
-    ('bar', 'block')
-    """
-    fields = [key.name for key in pair.keys if key.kind == "name" and key.name != "name"]
-    told = {field: getattr(pair, field) for field in fields}
-    changed = {field: names[name] for field, name in told.items() if name in pair.members and name in names}
-    renamed: Pair = replace(pair, **changed)  # type: ignore[type-var]
-    return renamed
 
 
 def _with_axes(mechanism: Mechanism, link: Link) -> Link:

@@ -10,8 +10,9 @@ import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.kinematics.assembly.mode_count import laman_number
-from compoundkin.synthesis.alternatives import alternatives, group_count
+from compoundkin.synthesis.alternatives import alternatives
 from compoundkin.synthesis.chains import chains, mechanism_from, structure_name
+from compoundkin.synthesis.chains.structure_names import group_count
 from compoundkin.synthesis.inversion import with_driver, with_frame
 from compoundkin.view.report.alternatives_section import alternatives_section
 from tests import catalog

@@ -10,77 +10,19 @@ A. Piperno, Practical graph isomorphism II, J. Symbolic Computation 60 (2014) 94
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias
 
-# Cells of vertices, each cell the bits of an integer; an ordering of the vertices where all cells are single.
-_Cells: TypeAlias = list[int]
-Permutation: TypeAlias = tuple[int, ...]
-
-
-@dataclass(frozen=True)
-class Coloured:
-    """A graph with coloured vertices 0, 1, ...: the colour of each, and its neighbours as the bits of an integer."""
-
-    colours: tuple[str, ...]
-    masks: tuple[int, ...]
-
-    @classmethod
-    def of(cls, colours: Iterable[str], edges: Iterable[tuple[int, int]]) -> Coloured:
-        """The graph with these colours and edges; no edge may be there twice.
-
-        >>> Coloured.of("aab", [(0, 1), (1, 2)]).masks
-        (2, 5, 2)
-        """
-        names = tuple(colours)
-        masks = [0] * len(names)
-        for first, second in edges:
-            masks[first] |= 1 << second
-            masks[second] |= 1 << first
-        return cls(names, tuple(masks))
-
-
-@dataclass(frozen=True)
-class Canonical:
-    """The canonical form of a graph: its code, the vertices in canonical order, and its symmetries.
-
-    `adjacency` is the adjacency matrix in canonical order above its diagonal, column by column, as one number;
-    `code` puts the colours with their numbers of vertices before it. A generator g moves vertex v to g[v];
-    `symmetries` is the order of the automorphism group.
-    """
-
-    code: str
-    adjacency: int
-    order: Permutation
-    generators: tuple[Permutation, ...]
-    symmetries: int
-
-    @property
-    def orbits(self) -> tuple[tuple[int, ...], ...]:
-        """The vertices that symmetries carry into each other, together.
-
-        >>> canonical(Coloured.of("aaa", [(0, 1), (1, 2)])).orbits
-        ((0, 2), (1,))
-        """
-        return orbits(len(self.order), self.generators)
-
-
-def orbits(size: int, generators: Sequence[Sequence[int]]) -> tuple[tuple[int, ...], ...]:
-    """The classes into which permutations of 0, 1, ... part their points, in the order of their least.
-
-    >>> orbits(4, [(1, 0, 2, 3), (0, 1, 3, 2)])
-    ((0, 1), (2, 3))
-    """
-    leader = list(range(size))
-    for generator in generators:
-        for point, image in enumerate(generator):
-            first, second = _top(leader, point), _top(leader, image)
-            leader[max(first, second)] = min(first, second)
-    classes: dict[int, list[int]] = {}
-    for point in range(size):
-        classes.setdefault(_top(leader, point), []).append(point)
-    return tuple(tuple(members) for members in classes.values())
+from compoundkin.synthesis.chains.coloured_graphs import (
+    Canonical,
+    Cells,
+    Coloured,
+    Permutation,
+    bits_of,
+    orbits,
+    refined,
+    vertices_of,
+)
 
 
 def canonical(graph: Coloured) -> Canonical:
@@ -93,36 +35,14 @@ def canonical(graph: Coloured) -> Canonical:
     2
     >>> canonical(Coloured.of("aaab", path)).symmetries
     1
+    >>> canonical(Coloured.of("aaa", [(0, 1), (1, 2)])).orbits
+    ((0, 2), (1,))
     """
-    cells = [_bits(members) for _, members in _by_colour(graph.colours)]
+    cells = [bits_of(members) for _, members in _by_colour(graph.colours)]
     search = _Search(graph.masks)
     search.visit(refined(graph.masks, cells, cells), (), ())
     code = f"{_colour_text(graph.colours)}:{search.best.adjacency:x}"
     return Canonical(code, search.best.adjacency, search.best.order, tuple(search.generators), search.symmetries())
-
-
-def refined(masks: Sequence[int], cells: _Cells, splitters: Sequence[int]) -> _Cells:
-    """The coarsest splitting of cells in which all vertices of one have equally many neighbours in each other."""
-    cells, waiting = list(cells), list(splitters)
-    while waiting:
-        splitter = waiting.pop(0)
-        parted: _Cells = []
-        for cell in cells:
-            parts = _parts(masks, cell, splitter) if cell & (cell - 1) else [cell]
-            parted += parts
-            if len(parts) > 1:
-                waiting += parts
-        cells = parted
-    return cells
-
-
-def _parts(masks: Sequence[int], cell: int, splitter: int) -> list[int]:
-    """A cell's vertices by their number of neighbours among the splitter's, fewest first."""
-    parts: dict[int, int] = {}
-    for vertex in _vertices(cell):
-        count = (masks[vertex] & splitter).bit_count()
-        parts[count] = parts.get(count, 0) | 1 << vertex
-    return [parts[count] for count in sorted(parts)]
 
 
 @dataclass(frozen=True)
@@ -151,7 +71,7 @@ class _Search:
     def best(self) -> _Leaf:
         return self.leaves[-1]
 
-    def visit(self, cells: _Cells, prefix: tuple[int, ...], trace: tuple[tuple[int, ...], ...]) -> bool:
+    def visit(self, cells: Cells, prefix: tuple[int, ...], trace: tuple[tuple[int, ...], ...]) -> bool:
         """Go through a node where the vertices of `prefix` are singled out; whether the first leaf came up again.
 
         It came up as the image of a symmetry that carries the whole way from the first path to here: nothing
@@ -164,7 +84,7 @@ class _Search:
         if not target:
             return self._leaf(_Leaf(trace, _adjacency(self.masks, cells), tuple(c.bit_length() - 1 for c in cells)))
         tried: list[int] = []
-        for vertex in _vertices(target):
+        for vertex in vertices_of(target):
             if tried and self._alike(prefix, vertex, tried):
                 continue
             if not self.leaves:
@@ -207,13 +127,13 @@ class _Search:
         return total
 
 
-def _profile(masks: Sequence[int], cells: _Cells) -> tuple[int, ...]:
+def _profile(masks: Sequence[int], cells: Cells) -> tuple[int, ...]:
     """What two nodes of the tree must share for a symmetry between them: sizes of cells, and how they are joined."""
     firsts = [masks[cell.bit_length() - 1] for cell in cells]
     return (*(cell.bit_count() for cell in cells), *((mask & cell).bit_count() for mask in firsts for cell in cells))
 
 
-def _adjacency(masks: Sequence[int], cells: _Cells) -> int:
+def _adjacency(masks: Sequence[int], cells: Cells) -> int:
     """The adjacency matrix above its diagonal, column by column, as one number."""
     number = 0
     for column, cell in enumerate(cells):
@@ -232,22 +152,3 @@ def _by_colour(colours: Sequence[str]) -> list[tuple[str, list[int]]]:
 
 def _colour_text(colours: Sequence[str]) -> str:
     return ",".join(f"{len(members)} {colour!r}" for colour, members in _by_colour(colours))
-
-
-def _vertices(bits: int) -> list[int]:
-    found = []
-    while bits:
-        low = bits & -bits
-        found.append(low.bit_length() - 1)
-        bits ^= low
-    return found
-
-
-def _bits(vertices: Iterable[int]) -> int:
-    return sum(1 << vertex for vertex in vertices)
-
-
-def _top(leader: list[int], point: int) -> int:
-    while leader[point] != point:
-        point = leader[point]
-    return point

@@ -11,14 +11,20 @@ from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from compoundkin.synthesis.chains.canonical_code import Canonical, Coloured, Permutation, canonical, orbits
+from compoundkin.synthesis.chains.canonical_code import canonical
+from compoundkin.synthesis.chains.coloured_graphs import (
+    Canonical,
+    Coloured,
+    Permutation,
+    assorted,
+    graph6_text,
+    is_connected,
+    orbits,
+    read_graph6,
+)
 
 if TYPE_CHECKING:
     import networkx as nx
-
-# graph6 writes numbers of up to six bits as printable characters (B. D. McKay, the formats graph6 and sparse6).
-_SIX, _PRINTABLE = 6, 63
-_ORDINALS = ("", "singular", "binary", "ternary", "quaternary", "quinary", "senary", "septenary", "octonary")
 
 
 @dataclass(frozen=True)
@@ -45,10 +51,7 @@ class Chain:
         >>> Chain.from_code("Bw").pairs
         ((0, 1), (0, 2), (1, 2))
         """
-        links = ord(code[0]) - _PRINTABLE
-        bits = "".join(f"{ord(letter) - _PRINTABLE:06b}" for letter in code[1:])
-        places = ((row, column) for column in range(links) for row in range(column))
-        return cls.of(links, (place for place, bit in zip(places, bits, strict=False) if bit == "1"))
+        return cls.of(*read_graph6(code))
 
     @property
     def mobility(self) -> int:
@@ -68,12 +71,7 @@ class Chain:
     @cached_property
     def is_connected(self) -> bool:
         """Whether every link can be reached from every other."""
-        reached, waiting = {0}, [0]
-        while waiting:
-            onward = [link for link in self.neighbours[waiting.pop()] if link not in reached]
-            reached.update(onward)
-            waiting += onward
-        return len(reached) == self.links
+        return is_connected(self.links, self.pairs)
 
     @cached_property
     def degrees(self) -> tuple[int, ...]:
@@ -96,8 +94,7 @@ class Chain:
         >>> Chain.from_code("DFw").assortment_text
         '3 binary, 2 ternary'
         """
-        numbers = ((degree, self.degrees.count(degree)) for degree in sorted(set(self.degrees)))
-        return ", ".join(f"{number} {ordinal(degree)}" for degree, number in numbers)
+        return assorted(self.degrees)
 
     @cached_property
     def neighbours(self) -> tuple[tuple[int, ...], ...]:
@@ -120,7 +117,7 @@ class Chain:
         >>> Chain.of(3, [(0, 1), (1, 2)]).code == Chain.of(3, [(1, 0), (0, 2)]).code
         True
         """
-        return _graph6(self.links, self.canonical.adjacency)
+        return graph6_text(self.links, self.canonical.adjacency)
 
     @property
     def graph6(self) -> str:
@@ -130,7 +127,7 @@ class Chain:
         'Bg'
         """
         places = [(row, column) for column in range(self.links) for row in range(column)]
-        return _graph6(self.links, sum(1 << k for k, place in enumerate(reversed(places)) if place in self.pairs))
+        return graph6_text(self.links, sum(1 << k for k, place in enumerate(reversed(places)) if place in self.pairs))
 
     @property
     def symmetries(self) -> int:
@@ -216,21 +213,3 @@ class Chain:
         graph.add_nodes_from(range(self.links))
         graph.add_edges_from(self.pairs, code="R")
         return graph
-
-
-def _graph6(links: int, adjacency: int) -> str:
-    """The text for a number whose bits are the adjacency matrix above its diagonal, column by column."""
-    places = links * (links - 1) // 2
-    filled = places + -places % _SIX
-    number = adjacency << (filled - places)
-    shifts = range(filled - _SIX, -1, -_SIX)
-    return chr(_PRINTABLE + links) + "".join(chr(_PRINTABLE + (number >> shift) % 2**_SIX) for shift in shifts)
-
-
-def ordinal(degree: int) -> str:
-    """What a link with so many pairs is called.
-
-    >>> ordinal(3), ordinal(9)
-    ('ternary', 'of 9 pairs')
-    """
-    return _ORDINALS[degree] if degree < len(_ORDINALS) else f"of {degree} pairs"

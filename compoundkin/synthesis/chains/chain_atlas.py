@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from compoundkin.base.errors import Problem, UnknownName, nearest
-from compoundkin.synthesis.chains.canonical_code import Coloured, canonical
+from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.chain import Chain
+from compoundkin.synthesis.chains.coloured_graphs import Coloured
 from compoundkin.synthesis.chains.generation import chains_of
 
 if TYPE_CHECKING:
@@ -63,6 +64,14 @@ class AssurGroup:
         """A code equal exactly for groups that are the same but for the numbering of their links."""
         colours = ["outside" if link == self.removed else "link" for link in range(self.truss.links)]
         return canonical(Coloured.of(colours, self.truss.pairs)).code
+
+    @property
+    def joined(self) -> list[tuple[int | None, int]]:
+        """Its pairs by the links they join, the outer ones first: None stands for what it is attached to."""
+        left = [k for k in range(self.truss.links) if k != self.removed]
+        outside = self.truss.neighbours[self.removed]
+        inner = [(left.index(a), left.index(b)) for a, b in self.truss.pairs if self.removed not in (a, b)]
+        return [*((None, left.index(k)) for k in left if k in outside), *inner]
 
     def graph(self) -> nx.MultiGraph:
         """The group as NetworkX has it; the attribute `outer` of a link says how many outer pairs it has."""

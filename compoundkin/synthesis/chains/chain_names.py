@@ -1,4 +1,4 @@
-"""Names of chains of revolute pairs between two links, and of their inversions.
+"""Names of chains of revolute pairs between two links, of their inversions, and of what derives from them.
 
 The six-bar chains are those of Watt (the ternary links are joined) and Stephenson (they are not); their
 inversions are counted as in K. H. Hunt, Kinematic Geometry of Mechanisms, 1978, and J. M. McCarthy,
@@ -8,12 +8,18 @@ names by D. E. Foster and G. R. Pennock, J. Mechanical Design, 2003 and 2005. Ot
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from itertools import product
+
 from compoundkin.synthesis.chains.chain import Chain
-from compoundkin.synthesis.chains.chain_atlas import number_of
+from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS, number_of
+from compoundkin.synthesis.chains.joints import Joints
 
 _BARS = {3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight", 9: "nine", 10: "ten"}
 _OWN_NAMES = {"G?LTMO": "double butterfly", "G?DlU_": "single flier"}
 _SIX, _TERNARY = 6, 3
+# A pin of five links alone stands for 125 chains; above this number they are not told one by one.
+MOST_CHAINS = 2000
 
 
 def chain_name(chain: Chain, frame: int | None = None) -> str:
@@ -64,3 +70,87 @@ def _six_bar(chain: Chain, frame: int | None) -> str:
     if joined or {first, second} == set(chain.neighbours[frame]):
         return f"{name} I"
     return f"{name} II"
+
+
+def number_of_derived_chains(joints: Joints) -> int:
+    """Count the simple-jointed chains that the multiple pins stand for, isomorphic ones apart.
+
+    Source: A. Cayley, A theorem on trees, Quarterly J. Pure and Applied Mathematics 23 (1889) 376.
+    """
+    number = 1
+    for joint in joints.multiple:
+        number *= len(joint.links) ** (len(joint.links) - 2)
+    return number
+
+
+def derived_chains(joints: Joints) -> Iterator[Chain]:
+    """Yield the chains of revolute pairs it derives from; links keep their numbers, new ones come after them.
+
+    Chains in which two links would be joined twice are left out.
+
+    >>> from compoundkin.synthesis.chains.joints import Joint
+    >>> joints = Joints(("a", "b", "c", "d"), (Joint((0, 1, 2)), Joint((0, 3))))
+    >>> [chain.pairs for chain in derived_chains(joints)]
+    [((0, 1), (0, 2), (0, 3)), ((0, 1), (0, 3), (1, 2)), ((0, 2), (0, 3), (1, 2))]
+    """
+    links, simple = len(joints.links), []
+    for joint in joints.joints:
+        first, second = joint.links[0], joint.links[-1]
+        if joint.pairs == 1 and joint.is_higher:
+            simple += [(first, links), (links, second)]
+            links += 1
+        elif joint.pairs == 1:
+            simple.append((first, second))
+    for chosen in product(*(tuple(trees(joint.links)) for joint in joints.multiple)):
+        chain = Chain.of(links, [*simple, *(pair for tree in chosen for pair in tree)])
+        if len(set(chain.pairs)) == len(chain.pairs):
+            yield chain
+
+
+def trees(links: Sequence[int]) -> Iterator[tuple[tuple[int, int], ...]]:
+    """All trees on some links, by their Pruefer sequences.
+
+    >>> len(list(trees(range(4))))
+    16
+    """
+    for sequence in product(links, repeat=len(links) - 2):
+        yield _tree(list(links), sequence)
+
+
+def _tree(links: list[int], sequence: Sequence[int]) -> tuple[tuple[int, int], ...]:
+    left = {link: 1 + sequence.count(link) for link in links}
+    pairs = []
+    for inner in sequence:
+        leaf = next(link for link in links if left[link] == 1)
+        pairs.append((leaf, inner))
+        left[leaf] -= 1
+        left[inner] -= 1
+    first, second = (link for link in links if left[link] == 1)
+    return (*pairs, (first, second))
+
+
+def derived_names(joints: Joints, frame: int | None) -> tuple[str, ...]:
+    """The names of the chains it derives from, each once, in alphabetical order, numbers by their value."""
+    if number_of_derived_chains(joints) > MOST_CHAINS or 1 in joints.degrees or joints.pieces > 1:
+        return ()
+    names = {chain_name(chain, frame): None for chain in derived_chains(joints) if chain.links}
+    return tuple(sorted((name for name in names if name), key=_by_number))
+
+
+def variety_of(joints: Joints) -> int | None:
+    """The degree of variety of the one chain that it is or derives from; None where there is none or several."""
+    if joints.mobility < 1 or number_of_derived_chains(joints) > 1 or joints.has_loop_of_slides:
+        return None
+    chains = [chain for chain in derived_chains(joints) if chain.links <= MOST_LINKS and chain.is_connected]
+    return chains[0].variety if chains else None
+
+
+def has_rigid_part(joints: Joints) -> bool:
+    """Whether a movable mechanism, small enough to look, is rigid in a part whatever chain its pins are taken for."""
+    if joints.mobility < 1 or len(joints.links) > MOST_LINKS or number_of_derived_chains(joints) > MOST_CHAINS:
+        return False
+    return all(chain.has_rigid_part for chain in derived_chains(joints))
+
+
+def _by_number(name: str) -> list[tuple[int, str]]:
+    return [(int(word), "") if word.isdigit() else (0, word) for word in name.replace(",", " ").split()]

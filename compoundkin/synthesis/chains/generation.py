@@ -23,8 +23,9 @@ from itertools import combinations, combinations_with_replacement, pairwise
 import numpy as np
 import numpy.typing as npt
 
-from compoundkin.synthesis.chains.canonical_code import Canonical, Coloured, Permutation, canonical
+from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.chain import Chain
+from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, Permutation, is_connected
 
 Integers = npt.NDArray[np.int64]
 
@@ -95,14 +96,9 @@ class Contracted:
         return np.array(_closure(len(self.strings), generators))
 
     @property
-    def is_connected(self) -> bool:
-        """Whether every link can be reached from every other."""
-        return _connected(self.links, self.strings)
-
-    @property
     def is_closed(self) -> bool:
         """Whether it is connected and stays so when any one string is cut."""
-        return all(_connected(self.links, self.strings[:k] + self.strings[k + 1 :]) for k in range(len(self.strings)))
+        return all(is_connected(self.links, self.strings[:k] + self.strings[k + 1 :]) for k in range(len(self.strings)))
 
     def expanded(self, numbers: Sequence[int]) -> Chain:
         """The chain with these numbers of binary links on the strings."""
@@ -123,7 +119,7 @@ def contracted_chains(degrees: Sequence[int], looped: bool = True) -> tuple[Cont
     found: dict[str, Contracted] = {}
     for strings in _multigraphs(degrees, [True] * len(degrees), looped):
         contracted = Contracted(len(degrees), strings)
-        if contracted.is_connected:
+        if is_connected(len(degrees), strings):
             found.setdefault(contracted.canonical.code, contracted)
     return tuple(found.values())
 
@@ -213,11 +209,3 @@ def _closure(size: int, generators: Sequence[Permutation]) -> list[Permutation]:
                 group[product] = None
                 waiting.append(product)
     return [*group]
-
-
-def _connected(links: int, strings: Sequence[tuple[int, int]]) -> bool:
-    reached, count = {0}, 0
-    while len(reached) > count:
-        count = len(reached)
-        reached |= {end for string in strings for end in string if not reached.isdisjoint(string)}
-    return count == links

@@ -1,4 +1,4 @@
-"""A mechanism's graph as links and joints, and the chains of revolute pairs between two links it derives from.
+"""A mechanism's graph as links and joints, which say from what chains of revolute pairs it derives.
 
 A slide counts as a revolute pair at infinity, a higher pair as a binary link between two revolute pairs, and
 a pin of k links as k - 1 pairs: one of the trees of pairs on its links, each of which is a chain of its own.
@@ -8,23 +8,21 @@ Congress of Applied Mechanics (1964) 420.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from compoundkin.model.pairs import KINDS
-from compoundkin.synthesis.chains.canonical_code import Canonical, Coloured, canonical
-from compoundkin.synthesis.chains.chain import Chain
+from compoundkin.structure.cycles import find
+from compoundkin.synthesis.chains.canonical_code import canonical
+from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured
 
 if TYPE_CHECKING:
-    import networkx as nx
+    pass
 
 REVOLUTE, SLIDE = (next(k.code for k in KINDS if k.is_simple and k.free_is_angle is turns) for turns in (True, False))
-_LOWER_HOLDS = 2
-# A pin of five links alone stands for 125 chains; above this number they are not told one by one.
-MOST_CHAINS = 2000
+LOWER_HOLDS = 2
 
 
 @dataclass(frozen=True)
@@ -37,7 +35,7 @@ class Joint:
 
     links: tuple[int, ...]
     code: str = REVOLUTE
-    held: int = _LOWER_HOLDS
+    held: int = LOWER_HOLDS
     guide: int | None = None
     kind: str = ""
 
@@ -49,41 +47,15 @@ class Joint:
     @property
     def is_higher(self) -> bool:
         """Whether it holds less than a revolute or a prismatic pair."""
-        return self.held < _LOWER_HOLDS
+        return self.held < LOWER_HOLDS
 
 
 @dataclass(frozen=True)
 class Joints:
-    """The links of a mechanism by name, and its joints.
-
-    >>> import networkx
-    >>> graph = networkx.MultiGraph([("frame", "crank", {"pin": "A"}), ("frame", "rod", {"pin": "A"})])
-    >>> [joint.links for joint in Joints.of(graph).joints]
-    [(0, 1, 2)]
-    """
+    """The links of a mechanism by name, and its joints."""
 
     links: tuple[str, ...]
     joints: tuple[Joint, ...]
-
-    @classmethod
-    def of(cls, graph: nx.MultiGraph) -> Joints:
-        """Read a graph of links and pairs; edges of one pin have one attribute `pin`, or pairs with one letter.
-
-        Of the edges' other attributes `code` is read ("R" where it is missing), and the `pair` where there is
-        one, or else `held`: how much the pair holds (2 where it is missing).
-        """
-        number = {link: k for k, link in enumerate(graph)}
-        pins: dict[object, list[int]] = {}
-        joints: list[Joint] = []
-        for first, second, data in graph.edges(data=True):
-            ends = [number[first], number[second]]
-            pin = _pin(data)
-            if pin is None:
-                joints.append(_joint(ends, data, number))
-            else:
-                pins.setdefault(pin, []).extend(ends)
-        pinned = [Joint(tuple(sorted(set(ends)))) for ends in pins.values()]
-        return cls(tuple(str(link) for link in graph), (*pinned, *joints))
 
     @property
     def mobility(self) -> int:
@@ -109,39 +81,6 @@ class Joints:
         links = [(marks or {}).get(link, "link") for link in range(len(self.links))]
         ends = [(link, len(links) + k) for k, joint in enumerate(self.joints) for link in joint.links]
         return canonical(Coloured.of([*links, *(f"pair {joint.code}" for joint in self.joints)], ends))
-
-    @property
-    def number_of_chains(self) -> int:
-        """How many simple-jointed chains the multiple pins stand for, isomorphic ones counted apart.
-
-        Source: A. Cayley, A theorem on trees, Quarterly J. Pure and Applied Mathematics 23 (1889) 376.
-        """
-        number = 1
-        for joint in self.multiple:
-            number *= len(joint.links) ** (len(joint.links) - 2)
-        return number
-
-    def chains(self) -> Iterator[Chain]:
-        """The chains of revolute pairs it derives from; the links keep their numbers, new ones come after them.
-
-        Chains in which two links would be joined twice are left out.
-
-        >>> pin = Joint((0, 1, 2))
-        >>> [chain.pairs for chain in Joints(("a", "b", "c", "d"), (pin, Joint((0, 3)))).chains()]
-        [((0, 1), (0, 2), (0, 3)), ((0, 1), (0, 3), (1, 2)), ((0, 2), (0, 3), (1, 2))]
-        """
-        links, simple = len(self.links), []
-        for joint in self.joints:
-            first, second = joint.links[0], joint.links[-1]
-            if joint.pairs == 1 and joint.is_higher:
-                simple += [(first, links), (links, second)]
-                links += 1
-            elif joint.pairs == 1:
-                simple.append((first, second))
-        for chosen in product(*(tuple(trees(joint.links)) for joint in self.multiple)):
-            chain = Chain.of(links, [*simple, *(pair for tree in chosen for pair in tree)])
-            if len(set(chain.pairs)) == len(chain.pairs):
-                yield chain
 
     def merged(self, link: str, into: str) -> Joints:
         """The same with one link taken for a part of another: what joins the two is gone.
@@ -171,7 +110,7 @@ class Joints:
         for joint in self.joints:
             first, *others = joint.links
             for other in others:
-                one, two = self._leader(leader, first), self._leader(leader, other)
+                one, two = find(leader, first), find(leader, other)
                 pieces -= one != two
                 leader[two] = one
         return pieces
@@ -186,18 +125,11 @@ class Joints:
         leader = list(range(len(self.links)))
         for joint in self.joints:
             if joint.code == SLIDE:
-                first, second = (self._leader(leader, link) for link in joint.links)
+                first, second = (find(leader, link) for link in joint.links)
                 if first == second:
                     return True
                 leader[second] = first
         return False
-
-    @staticmethod
-    def _leader(leader: list[int], link: int) -> int:
-        while leader[link] != link:
-            leader[link] = leader[leader[link]]
-            link = leader[link]
-        return link
 
     def distances(self, start: int) -> list[int]:
         """How many joints each link is away from one of them; links that cannot be reached are farthest.
@@ -244,45 +176,6 @@ class Joints:
             if len(links) > 1 and len(nodes) > 2:
                 found.append(links)
         return tuple(sorted(found))
-
-
-def trees(links: Sequence[int]) -> Iterator[tuple[tuple[int, int], ...]]:
-    """All trees on some links, by their Pruefer sequences.
-
-    >>> len(list(trees(range(4))))
-    16
-    """
-    for sequence in product(links, repeat=len(links) - 2):
-        yield _tree(list(links), sequence)
-
-
-def _tree(links: list[int], sequence: Sequence[int]) -> tuple[tuple[int, int], ...]:
-    left = {link: 1 + sequence.count(link) for link in links}
-    pairs = []
-    for inner in sequence:
-        leaf = next(link for link in links if left[link] == 1)
-        pairs.append((leaf, inner))
-        left[leaf] -= 1
-        left[inner] -= 1
-    first, second = (link for link in links if left[link] == 1)
-    return (*pairs, (first, second))
-
-
-def _pin(data: Mapping[str, Any]) -> object:
-    """What edges of one pin have in common; None for a pair of its own."""
-    if data.get("code", REVOLUTE) != REVOLUTE:
-        return None
-    pair = data.get("pair")
-    return data.get("pin", pair.letters[0] if pair is not None else None)
-
-
-def _joint(ends: Sequence[int], data: Mapping[str, Any], number: Mapping[str, int]) -> Joint:
-    pair = data.get("pair")
-    code = data.get("code", REVOLUTE)
-    if pair is None:
-        return Joint(tuple(ends), code, data.get("held", _LOWER_HOLDS))
-    # the contract of pairs: the member that carries the reference comes first
-    return Joint(tuple(ends), code, pair.held, number[pair.members[0]], pair.title)
 
 
 def _blocks(links: int, joints: Sequence[Joint]) -> list[set[int]]:

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from compoundkin.base.errors import Problem, UnknownName, nearest
-from compoundkin.synthesis.chains.chain import ordinal
-from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS
-from compoundkin.synthesis.chains.chain_names import chain_name
-from compoundkin.synthesis.chains.joints import MOST_CHAINS, REVOLUTE, SLIDE, Joint, Joints
+from compoundkin.synthesis.chains.chain_names import derived_names, has_rigid_part, variety_of
+from compoundkin.synthesis.chains.coloured_graphs import assorted, ordinal
+from compoundkin.synthesis.chains.joints import REVOLUTE, SLIDE, Joint, Joints
 from compoundkin.synthesis.chains.slide_names import slider_name
-
-if TYPE_CHECKING:
-    import networkx as nx
 
 _PINS = {2: "double pin", 3: "triple pin"}
 # The fewest links that slides alone can join into a loop that moves.
@@ -61,24 +56,8 @@ class ChainName:
         return self.title
 
 
-def name_of(graph: nx.MultiGraph, frame: str | None = None, driver: str | Iterable[str] | None = None) -> ChainName:
-    """The name of a mechanism, given its kinematic graph, the link that is its frame and the one or ones driven.
-
-    Edges are read as `Joints.of` has it. Raises UnknownName for a frame or driver that is not in the graph.
-
-    >>> import networkx
-    >>> stephenson = networkx.MultiGraph()
-    >>> networkx.add_cycle(stephenson, ["frame", "crank", "plate", "rocker"])
-    >>> networkx.add_path(stephenson, ["frame", "arm", "rod", "plate"])
-    >>> name = name_of(stephenson, "frame", "crank")
-    >>> name.title, name.assortment, name.equivalent_links
-    ('Stephenson III', '4 binary, 2 ternary', (('frame', 'plate'), ('crank', 'rocker'), ('arm', 'rod')))
-    """
-    return named(Joints.of(graph), frame, driver)
-
-
 def named(joints: Joints, frame: str | None = None, driver: str | Iterable[str] | None = None) -> ChainName:
-    """The name of a mechanism given by its links and joints, as `name_of` has it.
+    """The name of a mechanism given by its links and joints, as `name_of` reads them off a graph.
 
     >>> named(Joints(("frame", "crank", "rod"), (Joint((0, 1)), Joint((1, 2)), Joint((0, 2))))).title
     '3-link truss 1'
@@ -100,7 +79,7 @@ def _compared(name: ChainName, joints: Joints, frame: int | None, drivers: Seque
         parts=tuple(_part_name(joints, block, frame) for block in parts),
         fractionated_at=joints.names(_shared(joints, parts)),
         symmetries=form.symmetries,
-        variety=_variety(joints),
+        variety=variety_of(joints),
         equivalent_links=tuple(joints.names(orbit) for orbit in form.orbits if orbit[0] < links),
         equivalent_pairs=tuple(joints.names(orbit) for orbit in form.orbits if orbit[0] >= links),
         code=joints.canonical(marks).code,
@@ -116,20 +95,12 @@ def titled(joints: Joints, frame: int | None = None, driver: int | None = None) 
     return _titled(joints, frame, driver).title
 
 
-def _variety(joints: Joints) -> int | None:
-    """The degree of variety of the one chain that it is or derives from; None where there is none or several."""
-    if joints.mobility < 1 or joints.number_of_chains > 1 or joints.has_loop_of_slides:
-        return None
-    chains = [chain for chain in joints.chains() if chain.links <= MOST_LINKS and chain.is_connected]
-    return chains[0].variety if chains else None
-
-
 def _titled(joints: Joints, frame: int | None, driver: int | None) -> ChainName:
     """The name with what counting and looking up give."""
     if joints.has_loop_of_slides:
         return _with_loop_of_slides(joints)
-    derived, chains, changed = _derived(joints, frame), _derived(joints, None), _changes(joints)
-    plain = ChainName(_described(joints), joints.mobility, _assortment(joints), _described(joints))
+    derived, chains, changed = derived_names(joints, frame), derived_names(joints, None), _changes(joints)
+    plain = ChainName(_described(joints), joints.mobility, assorted(joints.degrees), _described(joints))
     if not changed:
         plain = replace(plain, title=plain.title.rstrip(","), chain=plain.chain.rstrip(","))
         return replace(plain, title=derived[0], chain=chains[0]) if derived else plain
@@ -150,15 +121,7 @@ def _with_loop_of_slides(joints: Joints) -> ChainName:
         title = "wedge mechanism (3 slides)"
     else:
         title = f"{len(joints.links)}-link chain with {_changes(joints)}, some of them a loop of slides alone"
-    return ChainName(title, joints.mobility, _assortment(joints), title)
-
-
-def _derived(joints: Joints, frame: int | None) -> tuple[str, ...]:
-    """The names of the chains it derives from, each once, in alphabetical order, numbers by their value."""
-    if joints.number_of_chains > MOST_CHAINS or 1 in joints.degrees or joints.pieces > 1:
-        return ()
-    names = {chain_name(chain, frame): None for chain in joints.chains() if chain.links}
-    return tuple(sorted((name for name in names if name), key=_by_number))
+    return ChainName(title, joints.mobility, assorted(joints.degrees), title)
 
 
 def _changes(joints: Joints) -> str:
@@ -190,15 +153,8 @@ def _described(joints: Joints) -> str:
     kind = "chain" if joints.mobility > 0 else "structure"
     fractionated = "fractionated " if len(blocks) > 1 else ""
     mobility = f" of mobility {joints.mobility}" if joints.mobility != 1 else ""
-    rigid = " with a rigid part" if _has_rigid_part(joints) else ""
+    rigid = " with a rigid part" if has_rigid_part(joints) else ""
     return f"{fractionated}{len(joints.links)}-link {kind}{mobility}{rigid}{open_}"
-
-
-def _has_rigid_part(joints: Joints) -> bool:
-    """Whether a movable mechanism, small enough to look, is rigid in a part whatever chain its pins are taken for."""
-    if joints.mobility < 1 or len(joints.links) > MOST_LINKS or joints.number_of_chains > MOST_CHAINS:
-        return False
-    return all(chain.has_rigid_part for chain in joints.chains())
 
 
 def _part_name(joints: Joints, block: tuple[int, ...], frame: int | None) -> str:
@@ -225,11 +181,6 @@ def _driven(joints: Joints, frame: int | None, driver: int) -> str:
     return f"{kind} {'next to' if joined else 'away from'} the frame"
 
 
-def _assortment(joints: Joints) -> str:
-    numbers = sorted(set(joints.degrees))
-    return ", ".join(f"{joints.degrees.count(degree)} {ordinal(degree)}" for degree in numbers)
-
-
 def _number(joints: Joints, link: str) -> int:
     if link not in joints.links:
         raise UnknownName(Problem(link, "the graph has no such link", nearest(link, joints.links)))
@@ -240,10 +191,6 @@ def _derivation(names: tuple[str, ...]) -> str:
     if len(names) > _MANY:
         return f"derived from {len(names)} inversions of simple-jointed chains"
     return f"derived from {' or '.join(names)}"
-
-
-def _by_number(name: str) -> list[tuple[int, str]]:
-    return [(int(word), "") if word.isdigit() else (0, word) for word in name.replace(",", " ").split()]
 
 
 def _counted(number: int, word: str) -> str:

@@ -1,0 +1,116 @@
+"""Where drivers may be, and the outline of a mechanism that has another frame, and drivers there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+from compoundkin.model.elements import FRAME, Drive, Item, Link
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.synthesis.chains.joints import Joints
+
+# What the old frame is called while another link is the frame.
+OTHER = "other frame"
+
+
+@dataclass(frozen=True)
+class DriverPlace:
+    """Where a driver is: the link that it drives, on which one, and the pin or pair between them."""
+
+    link: str
+    on: str
+    pair: str
+
+    def __str__(self) -> str:
+        return f"{self.link} on {self.on} ({self.pair})"
+
+
+class Outline(Mechanism):
+    """A mechanism of which only the structure counts: it is not checked, and has no drawing."""
+
+    def __init__(self, title: str, items: tuple[Item, ...]) -> None:
+        self.title, self.items = title, items
+        self.unit = self.source = self.description = ""
+        self.outputs, self.time = (), None
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, frame: str) -> Outline:
+        """One with another frame, and no drivers."""
+        names = swapped_names(frame)
+        links = [replace(item, name=names.get(name, name), points=mechanism.geometry.points[name])
+                 for name, item in mechanism.links.items()]  # fmt: skip
+        pairs = [renamed_pair(pair, names) for pair in mechanism.written_pairs]
+        return cls(mechanism.title, (*links, *pairs))
+
+    def driven(self, drives: tuple[Drive, ...]) -> Outline:
+        """With drivers."""
+        return Outline(self.title, (*self.items, *drives))
+
+
+def swapped_names(frame: str) -> dict[str, str]:
+    """Return new names for the frame and the link that takes its place."""
+    return {} if frame == FRAME else {frame: FRAME, FRAME: OTHER}
+
+
+def driver_places(mechanism: Mechanism) -> Iterator[DriverPlace]:
+    """Yield every place for a driver: at pins between each two of their links, then at the written pairs."""
+    for letter, links in mechanism.pins.items():
+        yield from (DriverPlace(second, first, letter) for first, second in combinations(links, 2))
+    for pair in mechanism.written_pairs:
+        if pair.is_drivable and len(pair.members) == 2:
+            yield DriverPlace(pair.members[1], pair.members[0], pair.name)
+
+
+def means(item: Drive, place: DriverPlace) -> bool:
+    """Whether a driver is at a place."""
+    return {item.link, item.on} == {place.link, place.on} and item.pair in ("", place.pair)
+
+
+def driver_at(names: Mapping[str, str], place: DriverPlace) -> Drive:
+    """Return the driver at a place, its links renamed for another frame."""
+    link, on = (names.get(name, name) for name in (place.link, place.on))
+    return Drive(str(place), link, on, place.pair)
+
+
+def outward(place: DriverPlace, frame: str, joints: Joints) -> DriverPlace:
+    """The place with the link that is nearer to the frame as the one that is not driven."""
+    if place.link == frame or (place.on != frame and _near(joints, place.link, frame) < _near(joints, place.on, frame)):
+        return DriverPlace(place.on, place.link, place.pair)
+    return place
+
+
+def _near(joints: Joints, link: str, frame: str) -> int:
+    if link not in joints.links or frame not in joints.links:
+        return 0
+    return joints.distances(joints.links.index(frame))[joints.links.index(link)]
+
+
+def readable(text: str, names: Mapping[str, str]) -> str:
+    """A fault with the links' own names; whole words only."""
+    new = names.get(FRAME)
+    return text if new is None else text.replace(OTHER, "\0").replace(FRAME, new).replace("\0", FRAME)
+
+
+def renamed(item: Item, names: Mapping[str, str]) -> Item:
+    """A word with links renamed; drivers and pairs keep their own names."""
+    if isinstance(item, Link):
+        return replace(item, name=names.get(item.name, item.name))
+    if isinstance(item, Drive):
+        return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
+    return renamed_pair(item, names) if isinstance(item, Pair) else item
+
+
+def renamed_pair(pair: Pair, names: Mapping[str, str]) -> Pair:
+    """A written pair between renamed links, under its own name.
+
+    >>> from compoundkin.model.pairs import slide
+    >>> renamed_pair(slide("block", on="frame", at="C", through="F"), {"frame": "bar"}).members
+    ('bar', 'block')
+    """
+    fields = [key.name for key in pair.keys if key.kind == "name" and key.name != "name"]
+    told = {field: getattr(pair, field) for field in fields}
+    changed = {field: names[name] for field, name in told.items() if name in pair.members and name in names}
+    renamed: Pair = replace(pair, **changed)  # type: ignore[type-var]
+    return renamed
