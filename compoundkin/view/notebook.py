@@ -26,7 +26,7 @@ from compoundkin.view.report.centres_section import centre_blocks
 from compoundkin.view.report.configurations_section import circuits_report, configurations_section
 from compoundkin.view.report.links_and_pairs import links_section
 from compoundkin.view.report.mobility_section import analysis_blocks
-from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, Table
+from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, TableBlock
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import counted, listed
@@ -120,7 +120,7 @@ def _(what: Structure) -> Iterator[str]:
     yield table_html(_groups(what), "Groups in solving order")
 
 
-def _groups(structure: Structure) -> Table:
+def _groups(structure: Structure) -> TableBlock:
     """The frame with its driven links, then each group: what it is, its links, what it is attached to."""
     columns = (Column("no.", style="each"), Column("group"), Column("class"), Column("order", style="each"),
                Column("links"), Column("uses"))  # fmt: skip
@@ -129,7 +129,7 @@ def _groups(structure: Structure) -> Table:
     rows: list[tuple[Cell, ...]] = [first]
     for k, group in enumerate(structure.groups, start=1):
         rows.append((k, group.name, roman(group.class_), group.order, ", ".join(group.links), ", ".join(group.uses)))
-    return Table(columns, tuple(rows))
+    return TableBlock(columns, tuple(rows))
 
 
 @_parts.register
@@ -153,7 +153,7 @@ def _(what: Check) -> Iterator[str]:
     failed = [finding.name for finding in what.findings if not finding.passed]
     verdict = f"failed: {listed(failed)}" if failed else "all passed" if what.passed else "nothing to check"
     singular = f", {what.singular} of them without rates" if what.singular else ""
-    yield table_html(Table(columns, rows), f"Checks of {counted(what.poses, 'pose')}{singular}: {verdict}")
+    yield table_html(TableBlock(columns, rows), f"Checks of {counted(what.poses, 'pose')}{singular}: {verdict}")
 
 
 def _where(name: str, pose: tuple[int, ...]) -> str:
@@ -180,7 +180,7 @@ def _(what: Configuration) -> Iterator[str]:
         yield f"<p>{caption}</p>"
     columns = Column("link"), Column("angle", "deg", "fixed", floor=1e-9)
     rows = tuple((name, float(degrees(angle))) for name, angle in what.angles.items())
-    yield table_html(Table(columns, rows), "Angles of the links")
+    yield table_html(TableBlock(columns, rows), "Angles of the links")
 
 
 @_parts.register

@@ -164,6 +164,17 @@ def test_short_texts_stand_where_no_page_is_shown(motion: ck.Motion) -> None:
     assert repr(ck.decompose(loose())).startswith("Structure('Loose': mobility 2, no groups, ")
 
 
+def test_what_is_made_to_be_seen_says_in_short_what_it_is() -> None:
+    mechanism = load_named("crank-rocker")
+    motion = ck.solve(mechanism)
+    title = repr(mechanism.title)
+    assert repr(ck.draw(motion)).startswith(f"Picture({title}, ")
+    assert repr(ck.animate(motion)) == f"Animation({title}, 72 frames, 4.32 s)"
+    assert repr(ck.plot(motion, "rocker.angle")) == "Plot('rocker.angle [deg]')"
+    assert repr(ck.page(motion)).startswith(f"Page({title}, ")
+    assert repr(ck.report(motion)).startswith(f"Report({title}: about, links, ")
+
+
 def test_a_mechanism_shows_its_picture_and_what_it_is(motion: ck.Motion) -> None:
     mechanism = motion.mechanism
     page = page_of(mechanism)

@@ -19,7 +19,7 @@ from compoundkin.view.animation.mp4 import mp4, require_ffmpeg
 from compoundkin.view.animation.overlays import Arrows, MovingCentre
 from compoundkin.view.animation.pixels import pixel_size, pixels, require_cairo
 from compoundkin.view.animation.smil import smil
-from compoundkin.view.animation.timeline import Course
+from compoundkin.view.animation.timeline import Timeline
 from compoundkin.view.sketch.moving_sketch import MovingSketch
 from compoundkin.view.sketch.picture import PAGE, Picture
 from compoundkin.view.sketch.shapes import Shape
@@ -33,13 +33,13 @@ Progress = Callable[[int, int], None]
 class Animation(Savable):
     """A motion as frames, `len(animation)` of them, shown for `seconds`; made by `animate`.
 
-    `course` says which poses they show, in which order and when; `sketch` holds the parts that move.
+    `timeline` says which poses they show, in which order and when; `sketch` holds the parts that move.
     """
 
     saved_as: ClassVar[Kind] = "animation"
 
     sketch: MovingSketch
-    course: Course
+    timeline: Timeline
     caption: Caption
     arrows: tuple[Arrows, ...] = ()
     centres: tuple[MovingCentre, ...] = ()
@@ -47,23 +47,23 @@ class Animation(Savable):
 
     def __len__(self) -> int:
         """How many frames there are."""
-        return len(self.course.frames)
+        return len(self.timeline.frames)
 
     @property
     def seconds(self) -> float:
         """How long it takes."""
-        return self.course.seconds
+        return self.timeline.seconds
 
     def frame(self, k: int) -> Picture:
         """The k-th frame; raises InvalidInput where there is none."""
         if isinstance(k, bool) or not isinstance(k, int) or not -len(self) <= k < len(self):
             raise InvalidInput(Problem("frame", f"there is no frame {k!r}", f"0 to {len(self) - 1}"))
-        place = self.course.frames[k]
-        pose, way = int(self.course.poses[place]), int(self.course.ways[place])
+        place = self.timeline.frames[k]
+        pose, way = int(self.timeline.poses[place]), int(self.timeline.ways[place])
         shapes = self._shapes(pose, way)
         texts, height = self.caption.shapes(pose)
         window, mechanism = self.sketch.window, self.sketch.scene.mechanism
-        said = "; ".join([self.description, *self.caption.notes(pose)])
+        said = "; ".join([self.caption.description, *self.caption.notes(pose)])
         shown = (self.caption.paper(height), *shapes, *texts)
         return Picture(shown, window.width, height, mechanism.title, said, self.size, window)
 
@@ -76,16 +76,11 @@ class Animation(Savable):
         end = len(shapes) - labels
         return [*shapes[:end], *arrows, *centres, *shapes[end:]]
 
-    @property
-    def description(self) -> str:
-        """What there is to be seen."""
-        mechanism = self.sketch.scene.mechanism
-        return f"Motion of {mechanism.title}: {len(mechanism.links)} links"
-
     @cached_property
     def svg(self) -> str:
         """Its source as SVG that moves by itself; the first pose where that is not supported."""
-        return smil(self)
+        scale = self.shown_size / self.longer
+        return smil(self.timeline, self.caption, self.arrows, self.centres, scale)
 
     def save(self, path: str | os.PathLike[str], progress: Progress | None = None) -> None:
         """Write it to a .gif, .mp4 or .svg file, whole or not at all; `progress(done, total)` is told of every frame.
@@ -103,7 +98,7 @@ class Animation(Savable):
             return self.svg.encode("utf-8")
         size = pixel_size(self.sketch.window.width, self.frame(0).height, self.shown_size)
         write = {"gif": gif, "mp4": mp4}[form]
-        return write(lambda k: pixels(self.frame(k), *size), len(self), self.course.hold, size, progress or _untold)
+        return write(lambda k: pixels(self.frame(k), *size), len(self), self.timeline.hold, size, progress or _untold)
 
     @cached_property
     def longer(self) -> float:
@@ -117,6 +112,9 @@ class Animation(Savable):
 
     def _repr_svg_(self) -> str:
         return self.svg
+
+    def __repr__(self) -> str:
+        return f"Animation({self.sketch.scene.mechanism.title!r}, {len(self)} frames, {self.seconds:.3g} s)"
 
 
 def ready_for(path: str | os.PathLike[str]) -> str:

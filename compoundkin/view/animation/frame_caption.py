@@ -10,9 +10,9 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.view.animation.timeline import times_of
-from compoundkin.view.sketch.arrows import Scale, scale_shapes
+from compoundkin.view.sketch.arrows import VectorScale, scale_shapes
 from compoundkin.view.sketch.moving_sketch import MovingSketch
-from compoundkin.view.sketch.shapes import Circle, Polygon, Polyline, Shape, Text
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, Text
 from compoundkin.view.sketch.shown_pose import pose_notes
 from compoundkin.view.sketch.sketch_labels import BELOW, below, lines_of_text
 from compoundkin.view.sketch.sketch_style import LINE
@@ -42,9 +42,9 @@ class Gauge:
         return Polyline((self.start, stop), "edge"), Text(stop + 10.0, self.text, "note", "start")
 
     @property
-    def dot(self) -> Circle:
+    def dot(self) -> CircleShape:
         """The dot, as seen from where it is."""
-        return Circle(0j, 3.2, "dot")
+        return CircleShape(0j, 3.2, "dot")
 
     @property
     def places(self) -> Number:
@@ -60,13 +60,19 @@ class Caption:
     sketch: MovingSketch
     poses: Number  # those that are ever shown as frames
     names: tuple[str, ...]
-    scales: tuple[Scale, ...]
+    scales: tuple[VectorScale, ...]
     is_told: bool = True  # else there are scales only
 
     @property
     def window(self) -> Window:
         """The window of the sketch."""
         return self.sketch.window
+
+    @property
+    def description(self) -> str:
+        """What is shown, in a sentence for those who do not see it."""
+        mechanism = self.sketch.scene.mechanism
+        return f"Motion of {mechanism.title}: {len(mechanism.links)} links"
 
     def notes(self, k: int) -> list[str]:
         """The time and the drivers' values at the k-th assembled pose."""

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.view.animation.timeline import Course
+from compoundkin.view.animation.timeline import Timeline
 from compoundkin.view.sketch.sketch_layers import BETWEEN, MOST_PLACES, smooth
 
 # What is between keyframes may be off by this much, picture units: with two of them and rounding less than 0.2.
@@ -37,23 +37,23 @@ class Keys:
 
 
 def keys_of(
-    course: Course,
+    timeline: Timeline,
     values: Number,
     deviation: float,
     one_by_one: bool = False,
     shown: Number | None = None,
     away: complex = 0j,
 ) -> Keys:
-    """The keyframes of values at the poses of a course, (poses,) or (poses, columns), complex or real.
+    """The keyframes of values at the poses of a timeline, (poses,) or (poses, columns), complex or real.
 
     Where they are not `shown` they are `away`; poses may be shown `one_by_one`.
     """
     columns = np.asarray(values).reshape(len(values), -1)
     seen = np.ones(len(columns), dtype=bool) if shown is None else np.asarray(shown)
     if one_by_one:
-        return _one_by_one(course, np.where(seen[:, None], columns, away) if shown is not None else columns)
-    parts = [part for leg in course.slices for part in _parted(leg, seen)]
-    runs = [_run(course.times[part], columns[part], bool(seen[part].all()), away) for part in parts]
+        return _one_by_one(timeline, np.where(seen[:, None], columns, away) if shown is not None else columns)
+    parts = [part for leg in timeline.slices for part in _parted(leg, seen)]
+    runs = [_run(timeline.times[part], columns[part], bool(seen[part].all()), away) for part in parts]
     thin = [(t[keep], v[keep]) for t, v in runs for keep in [_needed(t, v, deviation)]]
     found = _distinct(*_joined(thin))
     even = _even(*_joined(runs), deviation, CHEAPER * len(found.times))
@@ -88,9 +88,9 @@ def _parted(leg: slice, seen: Number) -> list[slice]:
     return [slice(a, b) if seen[a] else slice(max(a - 1, leg.start), min(b + 1, leg.stop)) for a, b in parts]
 
 
-def are_far_apart(course: Course, values: Number) -> bool:
-    """Whether a smooth line through values at the poses of a course, (poses, columns), is much off between them."""
-    return any(_off(values[leg]) > FAR_APART for leg in course.slices if leg.stop - leg.start > 1)
+def are_far_apart(timeline: Timeline, values: Number) -> bool:
+    """Whether a smooth line through values at the poses of a timeline, (poses, columns), is much off between them."""
+    return any(_off(values[leg]) > FAR_APART for leg in timeline.slices if leg.stop - leg.start > 1)
 
 
 def _off(values: Number) -> float:
@@ -146,11 +146,11 @@ def _needed(times: Number, values: Number, deviation: float) -> Number:
     return keep
 
 
-def _one_by_one(course: Course, values: Number) -> Keys:
+def _one_by_one(timeline: Timeline, values: Number) -> Keys:
     """Every pose until the next one; the end of what returns is its beginning."""
-    times = course.times
-    kept = times < 1.0 if course.returns else np.ones(len(times), dtype=bool)
-    if not course.returns and len(times) > 1:
+    times = timeline.times
+    kept = times < 1.0 if timeline.returns else np.ones(len(times), dtype=bool)
+    if not timeline.returns and len(times) > 1:
         # the last pose is shown as long as the others
         times = times * (1.0 - 1.0 / len(times))
     keys = _distinct(times[kept], values[kept])

@@ -15,7 +15,7 @@ from compoundkin.structure import Structure
 from compoundkin.view.animation.animation import Animation
 from compoundkin.view.animation.frame_caption import Caption
 from compoundkin.view.animation.overlays import moving_centres, with_arrows
-from compoundkin.view.animation.timeline import course_of
+from compoundkin.view.animation.timeline import timeline_of
 from compoundkin.view.sketch.arrows import wanted
 from compoundkin.view.sketch.moving_sketch import moving_sketch
 from compoundkin.view.sketch.picture import checked_size
@@ -60,12 +60,12 @@ def animate(
     motion = _motion(what)
     scene = scene_in(motion, None, None, design)
     sketch = moving_sketch(motion, design, paths=asked_paths(scene, paths), labels=asked)
-    course = course_of(sketch.scene, motion, design, back, seconds, fps)
-    sketch, arrows = with_arrows(sketch, kinds, bool((course.ways < 0).any()))
+    timeline = timeline_of(sketch.scene, motion, design, back, seconds, fps)
+    sketch, arrows = with_arrows(sketch, kinds, bool((timeline.ways < 0).any()))
     names = [f"{number} {name}" for name, number in scene.numbers.items()] if "links" in asked else []
-    shown = course.poses[course.frames]
+    shown = timeline.poses[timeline.frames]
     caption = Caption(sketch, shown, tuple(names), tuple(one.scale for one in arrows), bool(asked))
-    return Animation(sketch, course, caption, arrows, moving_centres(sketch) if centres else (), shown_size)
+    return Animation(sketch, timeline, caption, arrows, moving_centres(sketch) if centres else (), shown_size)
 
 
 def _motion(what: Motion | Mechanism | Structure) -> Motion:

@@ -9,10 +9,10 @@ import numpy as np
 
 from compoundkin.analysis.centres import instant_centres
 from compoundkin.base.series import Number
-from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, Scale, vector_shapes
+from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, VectorScale, vector_shapes
 from compoundkin.view.sketch.label_places import Label, around, placed, text_half
 from compoundkin.view.sketch.moving_sketch import MovingSketch
-from compoundkin.view.sketch.shapes import Circle, Shape, Text, leaves
+from compoundkin.view.sketch.shapes import CircleShape, Shape, Text, leaves
 from compoundkin.view.sketch.shifted_shapes import moved
 from compoundkin.view.sketch.sketch_centres import DOT, TOGETHER, centre_name
 from compoundkin.view.sketch.sketch_style import LETTER, SMALL
@@ -29,7 +29,7 @@ FAR = 22.0
 class Arrows:
     """Vectors of one kind at all points over the assembled poses; `places` on the picture."""
 
-    scale: Scale
+    scale: VectorScale
     places: dict[str, Number]
     rates: dict[str, Number]
 
@@ -56,7 +56,7 @@ class MovingCentre:
     def marks(self) -> tuple[Shape, ...]:
         """A dot with its name, as seen from the centre."""
         halo, name = (Text(self.beside, self.name, style) for style in ("centre-name halo", "centre-name"))
-        return Circle(0j, DOT, "centre"), halo, name
+        return CircleShape(0j, DOT, "centre"), halo, name
 
     def shapes(self, k: int) -> list[Shape]:
         """It at the k-th assembled pose; nothing where it is not on the picture."""

@@ -4,46 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.view.animation.frame_caption import Gauge
+from compoundkin.view.animation.frame_caption import Caption, Gauge
 from compoundkin.view.animation.keyframes import are_far_apart, short
 from compoundkin.view.animation.overlays import Arrows, MovingCentre, places_of
 from compoundkin.view.animation.svg_keyframes import AWAY, Writer
 from compoundkin.view.animation.svg_parts import part_lines
+from compoundkin.view.animation.timeline import Timeline
+from compoundkin.view.sketch.moving_sketch import MovingSketch
 from compoundkin.view.sketch.shapes import Polygon, Shape
 from compoundkin.view.sketch.strokes import arrow
 from compoundkin.view.sketch.svg import document, elements
 
-if TYPE_CHECKING:
-    from compoundkin.view.animation.animation import Animation
 
-
-def smil(animation: Animation) -> str:
-    """The source of an animation as SVG; where animations are not shown, its first pose is."""
-    sketch, course = animation.sketch, animation.course
-    gauges, texts, height = animation.caption.gauges()
-    letters = [places_of(sketch, letter)[course.poses] for letter in sketch.scene.letters]
-    writer = Writer(course, bool(letters) and are_far_apart(course, np.stack(letters, axis=1)))
-    still: list[Shape] = [animation.caption.paper(height), *sketch.still[1:]]
-    lines = [*elements(still), *_moving(writer, animation), *_gauges(writer, gauges), *elements(texts)]
-    size = animation.shown_size * max(sketch.window.width, height) / animation.longer
-    styled = [*still, *_styled(animation), *(shape for gauge in gauges for shape in (*gauge.shapes, gauge.dot)), *texts]
+def smil(
+    timeline: Timeline, caption: Caption, arrows: Sequence[Arrows], centres: Sequence[MovingCentre], scale: float
+) -> str:
+    """Write an animation as SVG, `scale` pixels for a picture unit; where it cannot move, its first pose is shown."""
+    sketch = caption.sketch
+    gauges, texts, height = caption.gauges()
+    letters = [places_of(sketch, letter)[timeline.poses] for letter in sketch.scene.letters]
+    writer = Writer(timeline, bool(letters) and are_far_apart(timeline, np.stack(letters, axis=1)))
+    still: list[Shape] = [caption.paper(height), *sketch.still[1:]]
+    moving = _moving(writer, sketch, arrows, centres)
+    lines = [*elements(still), *moving, *_gauges(writer, gauges), *elements(texts)]
+    styled = [*still, *_styled(sketch, arrows, centres), *texts]
+    styled += [shape for gauge in gauges for shape in (*gauge.shapes, gauge.dot)]
     title = sketch.scene.mechanism.title
-    return document(lines, styled, sketch.window.width, height, size, title, animation.description)
+    size = scale * max(sketch.window.width, height)
+    return document(lines, styled, sketch.window.width, height, size, title, caption.description)
 
 
-def _moving(writer: Writer, animation: Animation) -> Iterator[str]:
+def _moving(
+    writer: Writer, sketch: MovingSketch, arrows: Sequence[Arrows], centres: Sequence[MovingCentre]
+) -> Iterator[str]:
     """All that moves: bodies and pins, then arrows and centres, then letters and numbers."""
-    sketch = animation.sketch
     for part in (part for part in sketch.parts if not part.is_label):
         yield from part_lines(writer, sketch, part)
-    for arrows in animation.arrows:
-        yield from _arrows(writer, arrows)
-    for centre in animation.centres:
+    for vectors in arrows:
+        yield from _arrows(writer, vectors)
+    for centre in centres:
         yield from _centre(writer, centre)
     for part in (part for part in sketch.parts if part.is_label):
         yield from part_lines(writer, sketch, part)
@@ -51,26 +54,26 @@ def _moving(writer: Writer, animation: Animation) -> Iterator[str]:
 
 def _gauges(writer: Writer, gauges: Sequence[Gauge]) -> Iterator[str]:
     """Lines with dots for drivers and the time, which leap where a turn begins anew."""
-    leaping = replace(writer, one_by_one=writer.one_by_one or writer.course.has_seam)
+    leaping = replace(writer, one_by_one=writer.one_by_one or writer.timeline.has_seam)
     for gauge in gauges:
         yield from elements(gauge.shapes)
-        yield from leaping.translated(gauge.places[writer.course.poses], list(elements([gauge.dot])))
+        yield from leaping.translated(gauge.places[writer.timeline.poses], list(elements([gauge.dot])))
 
 
-def _styled(animation: Animation) -> Iterator[Shape]:
+def _styled(sketch: MovingSketch, arrows: Sequence[Arrows], centres: Sequence[MovingCentre]) -> Iterator[Shape]:
     """Shapes of every class that is needed for what moves."""
-    yield from (shape for part in animation.sketch.parts for shape in part.shapes)
-    yield from (shape for centre in animation.centres for shape in centre.marks)
-    yield from (shape for arrows in animation.arrows for shape in arrow(0j, 1 + 0j, arrows.scale.kind))
+    yield from (shape for part in sketch.parts for shape in part.shapes)
+    yield from (shape for centre in centres for shape in centre.marks)
+    yield from (shape for one in arrows for shape in arrow(0j, 1 + 0j, one.scale.kind))
 
 
 def _arrows(writer: Writer, arrows: Arrows) -> Iterator[str]:
     """The arrows of vectors, whose outlines change; a vector that is not known is a point."""
-    course, scale = writer.course, arrows.scale
-    signs = np.where(course.ways > 0, 1, arrows.sign(-1))
+    timeline, scale = writer.timeline, arrows.scale
+    signs = np.where(timeline.ways > 0, 1, arrows.sign(-1))
     for letter, rates in arrows.rates.items():
-        start = arrows.places[letter][course.poses]
-        rate = np.where(np.isfinite(rates), rates, 0.0)[course.poses] * signs
+        start = arrows.places[letter][timeline.poses]
+        rate = np.where(np.isfinite(rates), rates, 0.0)[timeline.poses] * signs
         keys = writer.keys(np.stack([start, start + np.conjugate(rate) * scale.per_unit], axis=1))
         drawn = [arrow(complex(a), complex(b), scale.kind) for a, b in keys.values]
         for n, shape in enumerate(drawn[0]):
@@ -83,8 +86,8 @@ def _arrows(writer: Writer, arrows: Arrows) -> Iterator[str]:
 
 def _centre(writer: Writer, centre: MovingCentre) -> list[str]:
     """An instant centre, which waits elsewhere while it is not on the picture."""
-    shown = centre.shown[writer.course.poses]
-    places = np.where(shown, centre.places[writer.course.poses], AWAY)
+    shown = centre.shown[writer.timeline.poses]
+    places = np.where(shown, centre.places[writer.timeline.poses], AWAY)
     return writer.translated(places, list(elements(centre.marks)), shown)
 
 

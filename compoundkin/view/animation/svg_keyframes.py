@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.view.animation.keyframes import DEVIATION, Keys, keys_of, short
-from compoundkin.view.animation.timeline import Course
+from compoundkin.view.animation.timeline import Timeline
 
 # Digits after the point: of times in parts of the whole, of places, of degrees.
 OF_TIMES, OF_PLACES, OF_DEGREES = 5, 2, 2
@@ -19,18 +19,18 @@ AWAY = -1000.0 - 1000.0j
 
 @dataclass(frozen=True, eq=False)
 class Writer:
-    """Writes keyframes of a course; `one_by_one` where poses are shown so."""
+    """Writes keyframes of a timeline; `one_by_one` where poses are shown so."""
 
-    course: Course
+    timeline: Timeline
     one_by_one: bool
 
     def keys(self, values: Number, deviation: float = DEVIATION, shown: Number | None = None) -> Keys:
-        """The keyframes of values at the poses of the course."""
-        return keys_of(self.course, values, deviation, self.one_by_one, shown, AWAY)
+        """The keyframes of values at the poses of the timeline."""
+        return keys_of(self.timeline, values, deviation, self.one_by_one, shown, AWAY)
 
     def timing(self, keys: Keys, written: Callable[[Number], str]) -> str:
         """The attributes that say which values there are when."""
-        words = [f'dur="{short(self.course.seconds, 3)}s" repeatCount="indefinite"']
+        words = [f'dur="{short(self.timeline.seconds, 3)}s" repeatCount="indefinite"']
         words += ['calcMode="discrete"'] if keys.is_steady else []
         words += [] if keys.is_even else [f'keyTimes="{";".join(short(float(t), OF_TIMES) for t in keys.times)}"']
         return " ".join([*words, f'values="{";".join(map(written, keys.values))}"'])
@@ -44,7 +44,7 @@ class Writer:
         return [f'<g transform="{kind}({first})">', how, *inside, "</g>"]
 
     def translated(self, places: Number, inside: list[str], shown: Number | None = None) -> list[str]:
-        """Elements moved along places at the poses of the course."""
+        """Elements moved along places at the poses of the timeline."""
         return self.moving("translate", self.keys(places, shown=shown), place, inside)
 
     def turned(self, angles: Number, deviation: float, inside: list[str]) -> list[str]:
@@ -53,7 +53,7 @@ class Writer:
 
     def turns(self, angles: Number, deviation: float) -> Keys:
         """The keyframes of those angles, in degrees."""
-        shown = np.rad2deg(self.course.turning(angles))
+        shown = np.rad2deg(self.timeline.turning(angles))
         return self.keys(shown - 360.0 * np.round(shown[0] / 360.0), np.rad2deg(deviation))
 
 

@@ -11,7 +11,7 @@ from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
 from compoundkin.view.animation.keyframes import DEVIATION
 from compoundkin.view.animation.svg_keyframes import Writer
-from compoundkin.view.sketch.moving_sketch import MovingSketch, Part
+from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch
 from compoundkin.view.sketch.shapes import Text, corners, leaves
 from compoundkin.view.sketch.shifted_shapes import moved
 from compoundkin.view.sketch.svg import elements
@@ -24,7 +24,7 @@ SHORT = 400
 FEW = 12
 
 
-def part_lines(writer: Writer, sketch: MovingSketch, part: Part) -> list[str]:
+def part_lines(writer: Writer, sketch: MovingSketch, part: MovingPart) -> list[str]:
     """The elements of a part: moved with its point, and turned about it; the shortest of several ways to say so."""
     if part.link == FRAME:
         return list(elements(moved(part.shapes, complex(sketch.places(part)[0]))))
@@ -32,19 +32,19 @@ def part_lines(writer: Writer, sketch: MovingSketch, part: Part) -> list[str]:
         part = _about_calm_point(sketch, part)
     inside, angles = list(elements(part.shapes)), _angles(sketch, part.link) if part.turns else None
     turned = inside if angles is None else writer.turned(angles, DEVIATION / _reach(part), inside)
-    straight = writer.translated(sketch.places(part)[writer.course.poses], turned)
+    straight = writer.translated(sketch.places(part)[writer.timeline.poses], turned)
     if writer.one_by_one or sum(map(len, straight)) - sum(map(len, turned)) < SHORT:
         return straight
     return min([straight, *_led_round(writer, sketch, part, angles, inside)], key=lambda lines: sum(map(len, lines)))
 
 
 def _led_round(
-    writer: Writer, sketch: MovingSketch, part: Part, angles: Number | None, inside: list[str]
+    writer: Writer, sketch: MovingSketch, part: MovingPart, angles: Number | None, inside: list[str]
 ) -> Iterator[list[str]]:
     """The same part led round fixed points by links that turn about these, as a coupler by a crank, and turned back."""
-    scene, poses = sketch.scene, writer.course.poses
+    scene, poses = sketch.scene, writer.timeline.poses
     for link, at in _carriers(sketch, part):
-        pivot = _about_calm_point(sketch, Part(link, at, ()))
+        pivot = _about_calm_point(sketch, MovingPart(link, at, ()))
         centres = sketch.places(pivot)
         if link == FRAME or np.max(np.abs(centres - centres[0])) > STILL:
             continue
@@ -59,7 +59,7 @@ def _led_round(
         yield writer.translated(centres[poses], writer.turned(led, fine, arm_end))
 
 
-def _carriers(sketch: MovingSketch, part: Part) -> list[tuple[str, complex]]:
+def _carriers(sketch: MovingSketch, part: MovingPart) -> list[tuple[str, complex]]:
     """The links that have the point of a part, and where it is on them."""
     own = sketch.scene.points
     letters = [letter for letter, p in own[part.link].items() if p == part.at]
@@ -67,7 +67,7 @@ def _carriers(sketch: MovingSketch, part: Part) -> list[tuple[str, complex]]:
     return list(dict.fromkeys([(part.link, part.at), *others]))
 
 
-def _about_calm_point(sketch: MovingSketch, part: Part) -> Part:
+def _about_calm_point(sketch: MovingSketch, part: MovingPart) -> MovingPart:
     """The same part as seen from that point of its link which moves least, as a crank from its pivot."""
     points = [part.at, *sketch.scene.points[part.link].values()]
     ways = [float(np.sum(np.abs(np.diff(sketch.places(replace(part, at=p)))))) for p in points]
@@ -76,7 +76,7 @@ def _about_calm_point(sketch: MovingSketch, part: Part) -> Part:
     return replace(part, at=at, shapes=tuple(moved(part.shapes, -complex(off))))
 
 
-def _reach(part: Part) -> float:
+def _reach(part: MovingPart) -> float:
     """How far the farthest corner of a part is from its point, picture units."""
     texts = [shape.at for shape in leaves(part.shapes) if isinstance(shape, Text)]
     return max([1.0, *(abs(corner) for corner in (*corners(part.shapes), *texts))])

@@ -27,7 +27,7 @@ EVEN = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class Leg:
+class TimelineLeg:
     """Poses that follow one another without a leap: places among the assembled ones, with their times from 0 to 1.
 
     `way` is 1 where the motion goes on, -1 where it goes back.
@@ -39,13 +39,13 @@ class Leg:
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class Timeline:
     """The legs of an animation in their order; `returns` where it ends as it begins, and `seconds` how long it takes.
 
     `hold` is for how long a frame is shown, `frames` the places of the frames in `poses` and `ways`.
     """
 
-    legs: tuple[Leg, ...]
+    legs: tuple[TimelineLeg, ...]
     returns: bool
     seconds: float
     frames: Number
@@ -93,10 +93,10 @@ class Course:
         return np.concatenate(found)
 
 
-def course_of(
+def timeline_of(
     scene: Scene, motion: Motion, design: int, back: bool | None, seconds: float | None, fps: float | None
-) -> Course:
-    """The course of an animation: through all poses, and back where the last of them is not the first one again.
+) -> Timeline:
+    """The timeline of an animation: through all poses, and back where the last of them is not the first one again.
 
     Poses that cannot be assembled are left out; each interval between them is a way there and back of its own. A motion
     in time is shown as fast as it is, any other one in about four seconds, unless `seconds` says how long.
@@ -111,10 +111,10 @@ def course_of(
     length = float(legs[-1].times[-1])
     if asked is None and motion.time is not None:
         asked = length
-    legs = [Leg(leg.poses, leg.times / (length or 1.0), leg.way) for leg in legs]
+    legs = [TimelineLeg(leg.poses, leg.times / (length or 1.0), leg.way) for leg in legs]
     usual = CYCLE * min(max(_turns(motion), 1.0), MOST_CYCLES)
     frames = _frames(legs, returns, (asked or usual) * rate)
-    return Course(tuple(legs), returns, _lasting(asked, usual, len(frames), rate), frames)
+    return Timeline(tuple(legs), returns, _lasting(asked, usual, len(frames), rate), frames)
 
 
 def _lasting(asked: float | None, usual: float, count: int, rate: float) -> float:
@@ -173,9 +173,9 @@ def _pieces(scene: Scene, poses: int) -> tuple[list[Number], bool]:
     return [np.concatenate([pieces[-1], pieces[0][1:]]), *pieces[1:-1]], False
 
 
-def _legs(pieces: list[Number], clock: Number, back: bool) -> list[Leg]:
+def _legs(pieces: list[Number], clock: Number, back: bool) -> list[TimelineLeg]:
     """The legs one after another, with times as the clock has them."""
-    legs: list[Leg] = []
+    legs: list[TimelineLeg] = []
     start = 0.0
     for piece in pieces:
         # where a piece goes on beyond the end of the turn, the clock starts anew
@@ -183,14 +183,14 @@ def _legs(pieces: list[Number], clock: Number, back: bool) -> list[Leg]:
         seam = np.flatnonzero(np.diff(piece) < 0)
         steps[seam] = clock[piece[seam + 1]] - clock[0]
         times = start + np.concatenate([[0.0], np.cumsum(steps)])
-        legs.append(Leg(piece, times))
+        legs.append(TimelineLeg(piece, times))
         if back and len(piece) > 1:
-            legs.append(Leg(piece[::-1], times[-1] + (times[-1] - times[::-1]), -1))
+            legs.append(TimelineLeg(piece[::-1], times[-1] + (times[-1] - times[::-1]), -1))
         start = float(legs[-1].times[-1])
     return legs
 
 
-def _frames(legs: list[Leg], returns: bool, most: float) -> Number:
+def _frames(legs: list[TimelineLeg], returns: bool, most: float) -> Number:
     """The places of the frames among the poses of all legs: evenly in time, on poses if they can be."""
     if most > MOST_FRAMES:
         raise InvalidInput(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from compoundkin.kinematics import Motion
 from compoundkin.view.report.outputs_section import chosen_outputs, outputs_section
-from compoundkin.view.report.report_data import Section, Table
+from compoundkin.view.report.report_data import Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 
 OUTPUTS = "outputs"
@@ -48,7 +48,7 @@ def all_poses(
     return tuple(changed if one is section else one for one in sections), tuple(range(sample.poses))
 
 
-def _table(section: Section | None) -> Table | None:
+def _table(section: Section | None) -> TableBlock | None:
     """The first table of a section."""
     blocks = section.blocks if section else ()
-    return next((block for block in blocks if isinstance(block, Table)), None)
+    return next((block for block in blocks if isinstance(block, TableBlock)), None)

@@ -7,11 +7,11 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import singledispatchmethod
 
-from compoundkin.view.page.html_tables import Shown, table_html
+from compoundkin.view.page.html_tables import ShownTable, table_html
 from compoundkin.view.page.link_names import Names
 from compoundkin.view.page.markup import element, hidden, lines, safe
 from compoundkin.view.page.mathml import Unread, mathml
-from compoundkin.view.report.report_data import Alert, Block, Formula, Paragraph, Section, Step, Table
+from compoundkin.view.report.report_data import Alert, Block, FormulaBlock, Paragraph, Section, StepBlock, TableBlock
 from compoundkin.view.sketch.svg import link_names
 
 # The section that stands in the head of the page, and the one whose steps are the groups.
@@ -50,25 +50,25 @@ class Blocks:
     def _blocks(self, section: Section) -> Iterator[str]:
         tables = steps = 0
         for k, block in enumerate(section.blocks):
-            if isinstance(block, Table):
+            if isinstance(block, TableBlock):
                 tables += 1
                 yield self._table(section, block, k, tables)
-            elif isinstance(block, Step):
+            elif isinstance(block, StepBlock):
                 yield self._step(section, block, steps)
                 steps += 1
             else:
                 yield self._block(block)
 
-    def _table(self, section: Section, table: Table, k: int, number: int) -> str:
+    def _table(self, section: Section, table: TableBlock, k: int, number: int) -> str:
         """The table; what introduces it with a colon is its name, or else the section."""
         before = section.blocks[k - 1] if k else None
         caption = f"{section.title or 'Report'}{f', {number}' if number > 1 else ''}"
         if isinstance(before, Paragraph) and before.text.endswith(":"):
             caption = before.text.rpartition(". ")[2].removesuffix(":")
         poses = self.poses.get(section.key, ()) if number == 1 else ()
-        return table_html(Shown(table, f"{section.key}-table-{number}", caption, self.names, poses))
+        return table_html(ShownTable(table, f"{section.key}-table-{number}", caption, self.names, poses))
 
-    def _step(self, section: Section, step: Step, k: int) -> str:
+    def _step(self, section: Section, step: StepBlock, k: int) -> str:
         """A step; those in solving order are about the links of their groups."""
         links = self.names.members[k] if section.key == GROUPS and k < len(self.names.members) else ()
         title = safe(step.title)
@@ -88,7 +88,7 @@ class Blocks:
         return element("p", safe(block.text))
 
     @_block.register
-    def _(self, block: Formula) -> str:
+    def _(self, block: FormulaBlock) -> str:
         return _formula(block)
 
     @_block.register
@@ -99,7 +99,7 @@ class Blocks:
         )
 
 
-def _formula(block: Formula) -> str:
+def _formula(block: FormulaBlock) -> str:
     """A formula as mathematics where it comes as such, read out as its text; else as it is written."""
     written = element("code", safe(block.text))
     if block.latex:

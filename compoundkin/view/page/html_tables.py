@@ -9,7 +9,7 @@ from math import isfinite
 from compoundkin.view.page.link_names import Names
 from compoundkin.view.page.markup import broken, element, hidden, lines, safe
 from compoundkin.view.report.digits import written
-from compoundkin.view.report.report_data import Cell, Column, Table
+from compoundkin.view.report.report_data import Cell, Column, TableBlock
 from compoundkin.view.sketch.svg import link_names
 
 RESULTS = {True: ("good", "✓", "pass"), False: ("bad", "✗", "FAIL")}
@@ -18,25 +18,25 @@ LONG = 24
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownTable:
     """A table with its name on the page, what it is called, and the poses of its rows, if they are poses."""
 
-    table: Table
+    table: TableBlock
     key: str
     caption: str
     names: Names
     poses: Sequence[int] = ()
 
 
-def table_html(shown: Shown) -> str:
+def table_html(shown: ShownTable) -> str:
     """The table in a box of its own that scrolls, with its buttons."""
     parts = [element("caption", safe(shown.caption), class_="unseen"), _head(shown), _body(shown)]
     grid = element("table", lines(parts), class_="sortable asc n-last", id=shown.key)
-    box = element("div", grid, class_="scroll", role="region", aria_label=f"Table: {shown.caption}", tabindex="0")
+    box = element("div", grid, class_="scroll", role="region", aria_label=f"TableBlock: {shown.caption}", tabindex="0")
     return element("div", f"{_tools(shown)}\n{box}", class_="grid")
 
 
-def _tools(shown: Shown) -> str:
+def _tools(shown: ShownTable) -> str:
     """The buttons of a table; those that only scripts serve are shown by scripts."""
     total, folded = len(shown.table.rows), shown.table.shown is not None
     buttons = []
@@ -49,12 +49,12 @@ def _tools(shown: Shown) -> str:
     return element("div", lines(buttons), class_="tools")
 
 
-def _button(kind: str, text: str, shown: Shown, **more: str) -> str:
+def _button(kind: str, text: str, shown: ShownTable, **more: str) -> str:
     inside = f"{safe(text)} {hidden(f'table {shown.caption}')}" if kind == "copy" else safe(text)
     return element("button", inside, type="button", class_=kind, aria_controls=shown.key, **more)
 
 
-def _head(shown: Shown) -> str:
+def _head(shown: ShownTable) -> str:
     return element("thead", element("tr", lines(_heading(column, shown.names) for column in shown.table.columns)))
 
 
@@ -66,7 +66,7 @@ def _heading(column: Column, names: Names) -> str:
     return f'<th scope="col"{_of(kind)}{_links(names.about(column.name))}>{button}</th>'
 
 
-def _body(shown: Shown) -> str:
+def _body(shown: ShownTable) -> str:
     table = shown.table
     texts = [written(column, [row[k] for row in table.rows], "\n") for k, column in enumerate(table.columns)]
     needed = None if table.shown is None else set(table.shown)
@@ -74,7 +74,7 @@ def _body(shown: Shown) -> str:
     return element("tbody", lines(rows))
 
 
-def _row(shown: Shown, k: int, texts: Sequence[str], needed: set[int] | None) -> str:
+def _row(shown: ShownTable, k: int, texts: Sequence[str], needed: set[int] | None) -> str:
     table, row = shown.table, shown.table.rows[k]
     links = _of_row(shown, row)
     kind = "more" if needed is not None and k not in needed else None
@@ -84,7 +84,7 @@ def _row(shown: Shown, k: int, texts: Sequence[str], needed: set[int] | None) ->
     return f"<tr{_of(kind)}{_links(links)}{pose}>{''.join(cells)}</tr>"
 
 
-def _of_row(shown: Shown, row: Sequence[Cell]) -> tuple[str, ...]:
+def _of_row(shown: ShownTable, row: Sequence[Cell]) -> tuple[str, ...]:
     """The links that a row is about: what its first words name."""
     for cell in row:
         if isinstance(cell, str) and (links := shown.names.about(cell)):
@@ -94,7 +94,7 @@ def _of_row(shown: Shown, row: Sequence[Cell]) -> tuple[str, ...]:
     return ()
 
 
-def _first(shown: Shown, cell: Cell, text: str, links: tuple[str, ...]) -> str:
+def _first(shown: ShownTable, cell: Cell, text: str, links: tuple[str, ...]) -> str:
     """The head of a row: the cell of its name, a button where it names links."""
     if not isinstance(cell, str) or not cell:
         return ""

@@ -31,7 +31,7 @@ CYCLE, QUICKEST, SLOWEST = 4.0, 1.0, 30.0
 
 
 @dataclass(frozen=True, eq=False)
-class Moving:
+class MotionData:
     """One design of a motion with its sketch, and which of its poses a page holds.
 
     It holds `most` of them, fewer where there are many links. Raises NotAssembled where no pose is assembled,

@@ -7,7 +7,16 @@ from functools import singledispatch
 
 from compoundkin.view.page.markup import element, lines, safe
 from compoundkin.view.report.digits import written
-from compoundkin.view.report.report_data import Alert, Block, Column, Formula, Paragraph, Section, Step, Table
+from compoundkin.view.report.report_data import (
+    Alert,
+    Block,
+    Column,
+    FormulaBlock,
+    Paragraph,
+    Section,
+    StepBlock,
+    TableBlock,
+)
 from compoundkin.view.report.wording import counted
 
 # A notebook shows so many rows of a table; reports and the objects themselves have all.
@@ -27,7 +36,7 @@ def sections_html(sections: Iterable[Section]) -> Iterator[str]:
         yield from map(block_html, section.blocks)
 
 
-def table_html(table: Table, caption: str = "") -> str:
+def table_html(table: TableBlock, caption: str = "") -> str:
     """A table whose first column names its rows; in a box of its own that scrolls where it is wider than the page."""
     rows = table.shown_rows
     cells = [written(column, [row[k] for row in rows[:MOST_ROWS]]) for k, column in enumerate(table.columns)]
@@ -68,7 +77,7 @@ def _(block: Paragraph) -> str:
 
 
 @block_html.register
-def _(block: Formula) -> str:
+def _(block: FormulaBlock) -> str:
     return element("pre", safe(block.text))
 
 
@@ -79,11 +88,11 @@ def _(block: Alert) -> str:
 
 
 @block_html.register
-def _(block: Step) -> str:
+def _(block: StepBlock) -> str:
     facts = "".join(element("dt", safe(term)) + element("dd", safe(text)) for term, text in block.facts)
     return element("h5", safe(block.title)) + element("dl", facts)
 
 
 @block_html.register
-def _(block: Table) -> str:
+def _(block: TableBlock) -> str:
     return table_html(block)

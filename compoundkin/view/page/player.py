@@ -6,7 +6,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.view.page.asset_files import asset
 from compoundkin.view.page.html_document import POLICY
 from compoundkin.view.page.markup import data_script, element, lines, safe
-from compoundkin.view.page.moving_data import Moving
+from compoundkin.view.page.moving_data import MotionData
 from compoundkin.view.page.page_palette import palette
 from compoundkin.view.page.viewer import player_html
 from compoundkin.view.report.shown_poses import Sample
@@ -29,11 +29,11 @@ def player(motion: Motion, design: int = 0) -> str:
     >>> player(solve(load_named("crank-rocker"))).splitlines()[0]
     '<!DOCTYPE html>'
     """
-    moving = Moving(Sample(motion, design), most=MOST_POSES, with_centres=False)
+    moving = MotionData(Sample(motion, design), most=MOST_POSES, with_centres=False)
     return _document(moving)
 
 
-def _document(moving: Moving) -> str:
+def _document(moving: MotionData) -> str:
     data = moving.data
     styles = palette(), page_css(), asset("page.css"), asset("player.css"), STYLE
     head = [
@@ -54,7 +54,7 @@ def _document(moving: Moving) -> str:
 
 def framed(motion: Motion) -> str:
     """The player of a motion's first design in a frame, for notebooks; raises what `player` does."""
-    moving = Moving(Sample(motion), most=MOST_POSES, with_centres=False)
+    moving = MotionData(Sample(motion), most=MOST_POSES, with_centres=False)
     document = _document(moving)
     window = moving.sketch.window
     height = min(HIGHEST, WIDTH * window.height / window.width, window.height * 1.1) + CONTROLS

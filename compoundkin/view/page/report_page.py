@@ -46,6 +46,9 @@ class Page:
         shown_in_browser(path)
         return path
 
+    def __repr__(self) -> str:
+        return f"Page({self.title!r}, {len(self.html) / 1000:.0f} kB)"
+
 
 def page_of(
     title: str,

@@ -12,10 +12,10 @@ from compoundkin.base.errors import InvalidInput, NotAssembled
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 from compoundkin.view.page.markup import element, hidden, lines, safe
-from compoundkin.view.page.moving_data import Moving
+from compoundkin.view.page.moving_data import MotionData
 from compoundkin.view.report.outputs_section import chosen_outputs
 from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.sketch.moving_sketch import MovingSketch, Part
+from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch
 from compoundkin.view.sketch.svg import FONT, NATURAL, elements, link_names, number
 
 # So many names below the sketch are stops of the keyboard.
@@ -59,12 +59,12 @@ def viewer(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> View
 
     Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
     """
-    moving = Moving(Sample(motion, design), tuple(outputs))
+    moving = MotionData(Sample(motion, design), tuple(outputs))
     data = moving.data
     return Viewer(player_html(moving, data), _plots(moving) if len(moving.chosen) > 1 else "", data)
 
 
-def player_html(moving: Moving, data: dict[str, Any]) -> str:
+def player_html(moving: MotionData, data: dict[str, Any]) -> str:
     """The sketch with its slider and switches."""
     return element(
         "div",
@@ -86,10 +86,10 @@ def _unseen_caption(text: str) -> str:
     return element("caption", safe(text), class_="unseen")
 
 
-def _sketch(moving: Moving) -> str:
+def _sketch(moving: MotionData) -> str:
     """The sketch at the pose shown first; every part is an element with its own place."""
     sketch = moving.sketch
-    title = f"Moving kinematic sketch of {moving.motion.mechanism.title}"
+    title = f"MotionData kinematic sketch of {moving.motion.mechanism.title}"
     size = f"0 0 {number(sketch.window.width)} {number(sketch.window.height)}"
     parts = [*_parts(sketch)]
     inside = [
@@ -111,13 +111,13 @@ def _parts(sketch: MovingSketch) -> Iterator[str]:
         yield f'<g data-links="{link_names([part.link])}"{_kind(part)} transform="{place}">{shapes}</g>'
 
 
-def _kind(part: Part) -> str:
+def _kind(part: MovingPart) -> str:
     """What else is to be known of a part: the letter of its point; that it is a name."""
     letter = f' data-letter="{safe(part.letter)}"' if part.letter else ""
     return letter + (' class="name"' if part.is_label else "")
 
 
-def _legend(moving: Moving) -> str:
+def _legend(moving: MotionData) -> str:
     """The numbers of the links, each in a place of its own that lights up with its link."""
     scene = moving.sketch.scene
     # by keyboard many names would be a long way; tables have them too, as one stop
@@ -129,7 +129,7 @@ def _legend(moving: Moving) -> str:
     return element("figcaption", " ".join(named))
 
 
-def _transport(moving: Moving) -> str:
+def _transport(moving: MotionData) -> str:
     """Play, slider, one pose back and forth, speed."""
     last = len(moving.chosen) - 1
     slider = (
@@ -147,7 +147,7 @@ def _transport(moving: Moving) -> str:
     return element("div", lines([slider, row]), class_="transport", role="group", aria_label="Motion")
 
 
-def _switches(moving: Moving, data: dict[str, Any]) -> str:
+def _switches(moving: MotionData, data: dict[str, Any]) -> str:
     """What may be shown or not; only what the motion has."""
     has = {"velocity": "velocity" in data["vectors"], "acceleration": "acceleration" in data["vectors"],
            "centres": bool(data["centres"]), "names": True}  # fmt: skip
@@ -167,7 +167,7 @@ def _box(key: str, word: str, told: str, on: bool) -> str:
     return f'<label title="{safe(told)}"><input type="checkbox" data-show="{safe(key)}"{checked}> {safe(word)}</label>'
 
 
-def _notes(moving: Moving) -> Iterator[str]:
+def _notes(moving: MotionData) -> Iterator[str]:
     """Where what is seen is not all there is, or not as quick."""
     shown, poses, slowness = len(moving.chosen), moving.sample.poses, moving.slowness
     if shown < poses:
@@ -178,7 +178,7 @@ def _notes(moving: Moving) -> Iterator[str]:
         yield element("p", f"At 1&times; it plays {text} than it runs.", class_="note")
 
 
-def _plots(moving: Moving) -> str:
+def _plots(moving: MotionData) -> str:
     """The place of the plots, and what else may be plotted."""
     mechanism, order = moving.motion.mechanism, moving.motion.order
     of_points = ("position", "velocity", "acceleration")[: order + 1]

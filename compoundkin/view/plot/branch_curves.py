@@ -21,7 +21,7 @@ from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.branch_lines import (
     OF_ANGLES,
     OF_DRIVERS,
-    Curve,
+    BranchCurve,
     Positions,
     curve_of,
     seam,
@@ -31,7 +31,7 @@ from compoundkin.view.plot.branch_lines import (
     wrapped,
 )
 from compoundkin.view.plot.plotted_rows import TURN, Plotted
-from compoundkin.view.plot.point_labels import Label
+from compoundkin.view.plot.point_labels import PointLabel
 
 # Branches of one circuit one after another, and again from the first.
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1, 1.2)))
@@ -54,7 +54,7 @@ START: Mapping[str, Any] = MappingProxyType({"linestyle": "none", "marker": "D",
 
 
 @dataclass(frozen=True, eq=False)
-class Drawing:
+class BranchDrawing:
     """What all panels share: the circuits, the horizontal axis, and where the one turn of a periodic driver begins."""
 
     positions: Positions
@@ -62,7 +62,7 @@ class Drawing:
     low: float | None
 
     @classmethod
-    def of(cls, positions: Positions, quantity: Plotted) -> Drawing:
+    def of(cls, positions: Positions, quantity: Plotted) -> BranchDrawing:
         """The drawing of circuits."""
         found = positions.found
         is_angle = positions.drives[found.driver].is_angle
@@ -110,7 +110,7 @@ class Drawing:
             return plot_style.COLOURS[0] if circuit.number == self.own else FAINT
         return plot_style.COLOURS[circuit.number - 1]
 
-    def panel(self, axes: Any, quantity: Plotted, labels: list[Label]) -> None:
+    def panel(self, axes: Any, quantity: Plotted, labels: list[PointLabel]) -> None:
         """All branches in one panel, their limit positions and change points."""
         branches = [(circuit, branch) for circuit in self.found.circuits for branch in circuit.branches]
         curves = [curve_of(self.positions, branch, quantity) for _, branch in branches]
@@ -129,7 +129,9 @@ class Drawing:
             x, y = wrapped(x, y, self.low)
         return (x, y) if low is None else wrapped(y, x, low)[::-1]
 
-    def _marked(self, axes: Any, curve: Curve, at: Sequence[int], low: float | None, look: Mapping[str, Any]) -> None:
+    def _marked(
+        self, axes: Any, curve: BranchCurve, at: Sequence[int], low: float | None, look: Mapping[str, Any]
+    ) -> None:
         """Marks at places of a curve; one at an end of a turn is at its other end too."""
         if not at:
             return
@@ -150,19 +152,19 @@ class Drawing:
         x = x if self.low is None else x - turns(x, self.low)
         return x, (y if low is None else y - turns(y, low))
 
-    def _marks(self, axes: Any, curve: Curve, low: float | None, colour: str) -> None:
+    def _marks(self, axes: Any, curve: BranchCurve, low: float | None, colour: str) -> None:
         dot = {"linestyle": "none", "marker": "o", "markersize": DOT, "color": colour}
         self._marked(axes, curve, [k for k, _ in curve.limits], low, dot)
         self._marked(axes, curve, curve.changes, low, {**canvas.RING, "color": plot_style.INK})
 
-    def _names(self, axes: Any, curves: Sequence[Curve], low: float | None) -> list[Label]:
+    def _names(self, axes: Any, curves: Sequence[BranchCurve], low: float | None) -> list[PointLabel]:
         """The groups responsible, each limit position once."""
-        found: dict[int, Label] = {}
+        found: dict[int, PointLabel] = {}
         for curve in curves:
             for k, limit in curve.limits:
                 x, y = self._at(curve.x[k], curve.y[k], low)
                 text = label(self.found.structure, limit.group)
-                one = Label(axes, float(x), float(y), text, 1.0 if limit.greatest else -1.0, plot_style.INK)
+                one = PointLabel(axes, float(x), float(y), text, 1.0 if limit.greatest else -1.0, plot_style.INK)
                 found.setdefault(id(limit), one)
         return list(found.values())
 
@@ -175,7 +177,7 @@ class Drawing:
             at = self._at(np.ravel(x), np.ravel(y), low)
             axes.plot(*at, **START, color=plot_style.INK, zorder=6, clip_on=False)
 
-    def _frame(self, axes: Any, curves: Sequence[Curve], low: float | None, quantity: Plotted) -> None:
+    def _frame(self, axes: Any, curves: Sequence[BranchCurve], low: float | None, quantity: Plotted) -> None:
         """The ranges of both axes: a whole turn where a curve is cut at its ends."""
         if self.low is not None and any(np.ptp(turns(curve.x, self.low)) for curve in curves):
             axes.set_xlim(self.low, self.low + TURN)

@@ -149,7 +149,7 @@ def shown(positions: Positions, name: str) -> tuple[Plotted, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class BranchCurve:
     """A quantity along a branch, in the order of its circuit: the driver `x`, the quantity `y`, and special places.
 
     `limits` are the indices of its ends that are limit positions, with these; `changes` those of change points.
@@ -162,7 +162,7 @@ class Curve:
     changes: tuple[int, ...]
 
 
-def curve_of(positions: Positions, branch: Branch, one: Plotted) -> Curve:
+def curve_of(positions: Positions, branch: Branch, one: Plotted) -> BranchCurve:
     """The curve of a branch."""
     found, visits = positions.found, branch.visits
     x = np.concatenate([positions.values[v.row][:: v.sense] + v.periods * found.period for v in visits])
@@ -173,7 +173,7 @@ def curve_of(positions: Positions, branch: Branch, one: Plotted) -> Curve:
     count = positions.values.shape[1]
     changes = tuple(count * (i + 1) - 1 for i, v in enumerate(visits) if kinds[v.row, v.left] == CHANGE)
     driver = degrees(x) if positions.drives[found.driver].is_angle else x
-    return Curve(branch, driver, _joined(y) if one.is_angle else y, limits, changes)
+    return BranchCurve(branch, driver, _joined(y) if one.is_angle else y, limits, changes)
 
 
 def _joined(angles: Number) -> Number:

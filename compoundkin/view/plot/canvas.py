@@ -14,7 +14,7 @@ from compoundkin.view.plot.extremes import CONSTANT
 from compoundkin.view.plot.plot_picture import Plot
 from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, colours
 from compoundkin.view.plot.plotted_rows import Plotted
-from compoundkin.view.plot.point_labels import Label, place
+from compoundkin.view.plot.point_labels import PointLabel, place
 
 WIDTH = 7.0
 # Characters of a title in a line.
@@ -45,7 +45,7 @@ def panels(rows: int, title: str, size: tuple[float, float], columns: int = 1, *
     return figure, list(grid.ravel())
 
 
-def finished(figure: Any, labels: Sequence[Label]) -> Plot:
+def finished(figure: Any, labels: Sequence[PointLabel]) -> Plot:
     """The picture, its labels placed after everything else has its place."""
     place(figure, labels)
     return Plot(figure)

@@ -15,7 +15,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.view.plot import canvas, planar, plot_style
 from compoundkin.view.plot.coupler_plot import fixed_points
 from compoundkin.view.plot.plot_picture import Plot
-from compoundkin.view.plot.point_labels import Label
+from compoundkin.view.plot.point_labels import PointLabel
 
 SIZE = (6.4, 5.8)
 # Poles farther from a link than this many lengths of the mechanism are not drawn: centrodes run to infinity.
@@ -59,7 +59,7 @@ def centrodes(
         fixed_points(one, motion, on, shared)
         for letter, z in body.items():
             one.plot([z.real], [z.imag], marker="x", markersize=6, color=shades[1], linestyle="none", zorder=6)
-            shared.labels.append(Label(one, z.real, z.imag, letter, 1j, shades[1]))
+            shared.labels.append(PointLabel(one, z.real, z.imag, letter, 1j, shades[1]))
         unit = motion.mechanism.unit or "length"
         canvas.plane(one, f"x [{unit}]", f"y [{unit}]")
         canvas.legend(one)
@@ -107,7 +107,7 @@ def _near(curve: Number, points: dict[str, complex], size: float) -> Number:
     return np.where(near, curve, complex(np.nan, np.nan))
 
 
-def _pole(axes: Any, shared: planar.Drawing, z: complex) -> None:
+def _pole(axes: Any, shared: planar.SharedCurves, z: complex) -> None:
     if np.isfinite(z):
         canvas.dot(axes, [z.real], [z.imag], plot_style.INK, 6.0)
-        shared.labels.insert(0, Label(axes, z.real, z.imag, "pole", 1 - 1j))
+        shared.labels.insert(0, PointLabel(axes, z.real, z.imag, "pole", 1 - 1j))

@@ -14,10 +14,10 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Group, Structure
 from compoundkin.view.plot import canvas, plot_style
-from compoundkin.view.plot.branch_curves import Drawing
+from compoundkin.view.plot.branch_curves import BranchDrawing
 from compoundkin.view.plot.branch_lines import Positions, all_positions, shown
 from compoundkin.view.plot.plot_picture import Plot
-from compoundkin.view.plot.point_labels import Label, number
+from compoundkin.view.plot.point_labels import PointLabel, number
 
 # So many groups have a panel where no quantity is named.
 MOST_PANELS = 3
@@ -60,12 +60,12 @@ def circuits(
     positions = all_positions(found)
     quantities = [one for name in names or _default(found) for one in shown(positions, name)]
     quantities = quantities if names else quantities[:MOST_PANELS]
-    drawn = Drawing.of(positions, quantities[0])
+    drawn = BranchDrawing.of(positions, quantities[0])
     with plot_style.styled():
         text = _title(positions) if title is None else title
         wide = size or (WIDTH, FIRST + EACH * len(quantities))
         figure, axes = canvas.panels(len(quantities), text, wide, sharex=True)
-        labels: list[Label] = []
+        labels: list[PointLabel] = []
         for one, quantity in zip(axes, quantities, strict=True):
             drawn.panel(one, quantity, labels)
             canvas.axis_labels(one, drawn.across if one is axes[-1] else None, quantity, canvas.PANEL)

@@ -13,7 +13,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 from compoundkin.view.plot import canvas, planar, plot_style
 from compoundkin.view.plot.plot_picture import Plot
-from compoundkin.view.plot.point_labels import Label, number
+from compoundkin.view.plot.point_labels import PointLabel, number
 
 SIZE = (6.4, 5.8)
 # A letter of the mechanism, or a link and a place (complex or x, y) in its own frame.
@@ -59,12 +59,12 @@ def paths(
         return canvas.finished(figure, shared.labels)
 
 
-def fixed_points(axes: Any, motion: Motion, on: str, shared: planar.Drawing) -> None:
+def fixed_points(axes: Any, motion: Motion, on: str, shared: planar.SharedCurves) -> None:
     """The points of the observing link, as crosses with their letters; those of the first design."""
     for letter, place in motion.mechanism.geometry.points[on].items():
         z = complex(np.ravel(place)[0])
         axes.plot([z.real], [z.imag], marker="x", markersize=6, color=plot_style.INK, linestyle="none", zorder=6)
-        shared.labels.insert(0, Label(axes, z.real, z.imag, letter, -1j))
+        shared.labels.insert(0, PointLabel(axes, z.real, z.imag, letter, -1j))
 
 
 def _moving(motion: Motion, on: str) -> list[str]:

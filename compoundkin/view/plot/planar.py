@@ -14,7 +14,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.events import Events, events
 from compoundkin.view.plot.plotted_rows import Plotted, along
-from compoundkin.view.plot.point_labels import Label, number
+from compoundkin.view.plot.point_labels import PointLabel, number
 
 # About so many marks along a curve, where it is not said after how many poses they come.
 MARKS = 12
@@ -23,14 +23,14 @@ SAME = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Drawing:
+class SharedCurves:
     """What all curves of a plot share: the driver or time, events, names of designs, labels to be placed."""
 
     x: Plotted
     happened: Events
     called: Sequence[str]
     every: int
-    labels: list[Label]
+    labels: list[PointLabel]
 
     @property
     def designs(self) -> int:
@@ -38,17 +38,17 @@ class Drawing:
         return len(self.x.values)
 
 
-def drawing(motion: Motion, designs: Sequence[str], every: int | None) -> Drawing:
+def drawing(motion: Motion, designs: Sequence[str], every: int | None) -> SharedCurves:
     """What the curves of a plot share; raises InvalidInput for wrong names or distances of marks."""
     x, _ = along(motion, None)
     called = canvas.design_names(motion.shape, designs)
     if every is not None and every < 1:
         raise InvalidInput(Problem("every", f"{every} is no number of poses", "give 1 or more, or leave it out"))
     default = max(1, round((motion.inputs.poses - 1) / MARKS))
-    return Drawing(x, events(motion), called, every or default, [])
+    return SharedCurves(x, events(motion), called, every or default, [])
 
 
-def curve(axes: Any, shared: Drawing, d: int, z: Number, colour: Any, name: str) -> None:
+def curve(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, name: str) -> None:
     """One curve (complex, pose by pose) with an arrow, and rings next to limit positions."""
     axes.plot(z.real, z.imag, color=colour, label=name)
     canvas.arrow(axes, z.real, z.imag, colour)
@@ -56,7 +56,7 @@ def curve(axes: Any, shared: Drawing, d: int, z: Number, colour: Any, name: str)
     canvas.ring(axes, z.real[beside], z.imag[beside], colour)
 
 
-def marks(axes: Any, shared: Drawing, d: int, z: Number, colour: Any, labelled: bool = True) -> None:
+def marks(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, labelled: bool = True) -> None:
     """Dots at every so many poses, with the value of the driver or the time there; none on large families."""
     if shared.designs > canvas.LISTED:
         return
@@ -73,10 +73,10 @@ def marks(axes: Any, shared: Drawing, d: int, z: Number, colour: Any, labelled: 
     for k in index if labelled else ():
         away = complex(z[k]) - middle
         text = number(float(shared.x.values[d, k]), shared.x.scale) + unit
-        shared.labels.append(Label(axes, z[k].real, z[k].imag, text, away if away else 1j, plot_style.GREY))
+        shared.labels.append(PointLabel(axes, z[k].real, z[k].imag, text, away if away else 1j, plot_style.GREY))
 
 
-def finish(figure: Any, axes: Sequence[Any], shared: Drawing, marked: bool) -> None:
+def finish(figure: Any, axes: Sequence[Any], shared: SharedCurves, marked: bool) -> None:
     """The legends of curves, designs, rings and marks."""
     if shared.designs > 1:
         canvas.designs_legend(figure, axes, shared.called)

@@ -49,3 +49,7 @@ class Plot(Savable):
 
     def _repr_svg_(self) -> str:
         return self.content("svg").decode("utf-8")
+
+    def __repr__(self) -> str:
+        names = [axes.get_ylabel() or axes.get_xlabel() for axes in self.figure.axes]
+        return f"Plot({', '.join(map(repr, filter(None, names)))})"

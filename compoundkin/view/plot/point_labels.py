@@ -30,7 +30,7 @@ MANY_DIGITS, POWER_OF_TEN = 1e4, 1e6
 
 
 @dataclass(frozen=True, eq=False)
-class Label:
+class PointLabel:
     """A text that belongs to a point of an axes' plot; `towards` is the direction (complex) it is best put in."""
 
     axes: Any
@@ -53,7 +53,7 @@ def number(value: float, scale: float = 0.0) -> str:
     return format(value, form).replace("-", "−")
 
 
-def place(figure: Any, labels: Sequence[Label]) -> None:
+def place(figure: Any, labels: Sequence[PointLabel]) -> None:
     """Write the labels, each where it covers least; one that finds no free place is left out."""
     figure.draw_without_rendering()
     # settled now: the labels are placed for this layout, and writing a file need not find it again
@@ -79,9 +79,9 @@ def place(figure: Any, labels: Sequence[Label]) -> None:
         written.set_position(tuple((found - anchor) / scale))
 
 
-def _distinct(labels: Sequence[Label]) -> list[Label]:
+def _distinct(labels: Sequence[PointLabel]) -> list[PointLabel]:
     """The labels without those that say the same of the same place: of a component that is the whole length."""
-    found: list[Label] = []
+    found: list[PointLabel] = []
     for label in labels:
         place = label.axes.transData.transform((label.x, label.y))
         same = (one for one in found if (one.axes, one.text) == (label.axes, label.text))
@@ -90,7 +90,7 @@ def _distinct(labels: Sequence[Label]) -> list[Label]:
     return found
 
 
-def _written(label: Label) -> Any:
+def _written(label: PointLabel) -> Any:
     from matplotlib.patheffects import withStroke
 
     written = label.axes.annotate(

@@ -70,7 +70,7 @@ def _check(radii: Sequence[Plotted], angle: Plotted) -> None:
             raise InvalidInput(Problem(one.name, told, "draw them one by one"))
 
 
-def _line(axes: Any, shared: planar.Drawing, d: int, angle: Any, radius: Plotted, colour: Any) -> None:
+def _line(axes: Any, shared: planar.SharedCurves, d: int, angle: Any, radius: Plotted, colour: Any) -> None:
     axes.plot(angle, radius.values[d], color=colour, label=radius.name)
     beside = shared.happened.beside(d, len(angle))
     canvas.ring(axes, angle[beside], radius.values[d][beside], colour)

@@ -16,7 +16,7 @@ from compoundkin.view.plot.events import Events, at, events
 from compoundkin.view.plot.extremes import extremes as found_extremes
 from compoundkin.view.plot.plot_picture import Plot
 from compoundkin.view.plot.plotted_rows import Plotted, all_of, along
-from compoundkin.view.plot.point_labels import Label, number
+from compoundkin.view.plot.point_labels import PointLabel, number
 
 FIRST, EACH = 2.0, 2.0
 # More curves than this in a panel, and values beside their extremes would be a crowd.
@@ -79,7 +79,7 @@ def plot(
         height = FIRST + EACH * len(shown)
         text = motion.mechanism.title if title is None else title
         figure, axes = canvas.panels(len(shown), text, size or (canvas.WIDTH, height), sharex=True)
-        labels: list[Label] = []
+        labels: list[PointLabel] = []
         _across(axes, x, is_input)
         for one, panel in zip(axes, shown, strict=True):
             _draw(one, x, panel, happened, extremes, labels)
@@ -105,7 +105,7 @@ def arranged(shown: Sequence[Plotted], designs: int, stacked: bool) -> tuple[Pan
     return tuple(found)
 
 
-def _draw(axes: Any, x: Plotted, panel: Panel, happened: Events, marked: bool | None, labels: list[Label]) -> None:
+def _draw(axes: Any, x: Plotted, panel: Panel, happened: Events, marked: bool | None, labels: list[PointLabel]) -> None:
     """The curves of a panel, their extremes, and rings beside limit positions."""
     designs = len(x.values)
     shades = plot_style.colours(len(panel.curves), designs)
@@ -117,7 +117,7 @@ def _draw(axes: Any, x: Plotted, panel: Panel, happened: Events, marked: bool | 
         beside = happened.beside(d, x.values.shape[1])
         canvas.ring(axes, x.values[d][beside], curve.values[d][beside], shades[k])
     if marked or (marked is None and len(lines) <= MOST_MARKED):
-        found: list[Label] = []
+        found: list[PointLabel] = []
         for k, (curve, d) in enumerate(lines):
             _extremes(axes, x.values[d], curve, d, window, shades[k], found)
         # the outermost ones take their places first
@@ -140,13 +140,21 @@ def _upwards(axes: Any, panel: Panel, near_limits: bool) -> tuple[float, float] 
 
 
 def _extremes(
-    axes: Any, x: Number, curve: Plotted, d: int, window: tuple[float, float] | None, colour: Any, labels: list[Label]
+    axes: Any,
+    x: Number,
+    curve: Plotted,
+    d: int,
+    window: tuple[float, float] | None,
+    colour: Any,
+    labels: list[PointLabel],
 ) -> None:
     vector = None if curve.vector is None else curve.vector[d]
     for one in found_extremes(x, curve.values[d], curve.order > 0, curve.scale, vector):
         if window is None or window[0] < one.y < window[1]:
             canvas.dot(axes, one.x, one.y, colour)
-            labels.append(Label(axes, one.x, one.y, number(one.y, curve.scale), 1j if one.is_highest else -1j, colour))
+            labels.append(
+                PointLabel(axes, one.x, one.y, number(one.y, curve.scale), 1j if one.is_highest else -1j, colour)
+            )
 
 
 def _window(panel: Panel, values: Number, near_limits: bool) -> tuple[float, float] | None:

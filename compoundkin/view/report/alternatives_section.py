@@ -8,7 +8,7 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.model.elements import FRAME
 from compoundkin.structure import Structure, roman
 from compoundkin.synthesis.alternatives import MOST_CHOICES, Alternative, alternatives
-from compoundkin.view.report.report_data import Column, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import counted
 
 # Of more ways to the same end a reader needs the first only.
@@ -32,7 +32,7 @@ def _with_present_frame(structure: Structure) -> tuple[Alternative, ...]:
         return ()
 
 
-def _blocks(structure: Structure, found: Sequence[Alternative], about: str) -> Iterator[Paragraph | Table]:
+def _blocks(structure: Structure, found: Sequence[Alternative], about: str) -> Iterator[Paragraph | TableBlock]:
     if not found:
         many = f"There are more than {MOST_CHOICES} choices: too many for a table."
         yield Paragraph(_NONE if structure.mobility.freedoms < 1 else many)
@@ -44,7 +44,7 @@ def _blocks(structure: Structure, found: Sequence[Alternative], about: str) -> I
     columns = (Column("frame"), Column("driven"), Column("name"), Column("groups"), Column("class"),
                Column("configurations", style="each"), Column("closed form"),
                Column("alike", style="each"))  # fmt: skip
-    yield Table(columns, tuple(_row(choice) for choice in found))
+    yield TableBlock(columns, tuple(_row(choice) for choice in found))
 
 
 def _sentences(found: Sequence[Alternative]) -> Iterator[str]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.synthesis.chains import AssurGroup, Chain, assur_groups, chain_name, chains, inversions, trusses
 from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS
-from compoundkin.view.report.report_data import NOT_SOLVED, Block, Cell, Column, Paragraph, Section, Table
+from compoundkin.view.report.report_data import NOT_SOLVED, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted
 
@@ -76,12 +76,12 @@ def _trusses(links: int) -> Iterator[Block]:
     yield from _table(found)
 
 
-def _table(found: Sequence[Chain]) -> Iterator[Table]:
+def _table(found: Sequence[Chain]) -> Iterator[TableBlock]:
     if found:
         columns = (Column("number", style="each"), Column("name"), Column("links by pairs"),
                    Column("symmetry", style="each"), Column("inversions", style="each"), Column("graph6"),
                    Column("pairs"))  # fmt: skip
-        yield Table(columns, tuple(_row(k, chain) for k, chain in enumerate(found, 1)))
+        yield TableBlock(columns, tuple(_row(k, chain) for k, chain in enumerate(found, 1)))
 
 
 def _row(k: int, chain: Chain) -> tuple[Cell, ...]:
@@ -100,7 +100,7 @@ def _inversions(links: int, mobility: int) -> Iterator[Block]:
     rows = tuple((chain_name(one.chain, one.frame), one.chain.graph6, one.frame, one.chain.degrees[one.frame])
                  for one in found)  # fmt: skip
     if rows:
-        yield Table(columns, rows)
+        yield TableBlock(columns, rows)
 
 
 def _groups(links: int) -> Iterator[Block]:
@@ -111,7 +111,7 @@ def _groups(links: int) -> Iterator[Block]:
                Column("pairs; outer ones by their link"))  # fmt: skip
     rows = tuple(_group_row(k, group) for k, group in enumerate(found, 1))
     if rows:
-        yield Table(columns, rows)
+        yield TableBlock(columns, rows)
 
 
 def _group_row(k: int, group: AssurGroup) -> tuple[Cell, ...]:

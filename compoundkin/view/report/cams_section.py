@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.analysis.cam_analysis import CamAnalysis, cam_analysis, cam_pairs
 from compoundkin.view.report.digits import number
-from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 
 WAYS = {True: "oscillates about a pin", False: "translates on a slide", None: "has no guide of its own"}
@@ -37,7 +37,7 @@ def cam_blocks(sample: Sample, found: CamAnalysis) -> Iterator[Block]:
         Column("greatest", style="each"),
         at,
     )
-    yield Table(columns, tuple(_rows(sample, found)), keys=1)
+    yield TableBlock(columns, tuple(_rows(sample, found)), keys=1)
     yield from (Alert(warning) for warning in found.warnings)
 
 

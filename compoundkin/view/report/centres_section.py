@@ -16,7 +16,7 @@ from compoundkin.analysis.centres.derivation import derive
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.structure import Structure
 from compoundkin.view.report.digits import number
-from compoundkin.view.report.report_data import Block, Cell, Column, Formula, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import ROUNDING, Sample
 from compoundkin.view.report.wording import counted, listed
 
@@ -27,7 +27,7 @@ MOST_CENTRES = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
+class CentresSample:
     """The centres of one pose of a design, the first one, in the order of the derivation."""
 
     sample: Sample
@@ -77,7 +77,7 @@ def centres_sections(sample: Sample) -> tuple[Section, ...]:
 
     Raises NotDetermined where nothing moves, InvalidInput for a motion of order 0.
     """
-    shown = Shown(sample)
+    shown = CentresSample(sample)
     primary = Paragraph("Each is given by a pair."), _table(shown, shown.primary, "pair")
     secondary = (Paragraph(_rule(shown)), _table(shown, shown.secondary, "lines")) if shown.secondary else ()
     return (
@@ -93,7 +93,7 @@ def centre_blocks(found: Centres) -> tuple[Block, ...]:
     sample = Sample(found.motion)
     if len(found) * found.motion.inputs.designs * sample.poses > MOST_CENTRES:
         return derivation_section(found.motion.structure).blocks
-    shown = Shown(sample, found)
+    shown = CentresSample(sample, found)
     tables = _table(shown, shown.primary, "pair"), _table(shown, shown.secondary, "lines")
     return (Paragraph(_place(sample)), *_count(shown), *(table for table in tables if table.rows))
 
@@ -107,7 +107,7 @@ def derivation_section(structure: Structure) -> Section:
     columns = Column("step", style="each"), Column("centre"), Column("from")
     rows = tuple((k, _name(step.centre), _derived(step)) for k, step in enumerate(steps, 1))
     text = "The circle diagram, side by side, from links and pairs alone: it holds at every pose."
-    return Section("derivation", "Derivation of the centres", (Paragraph(text), Table(columns, rows)))
+    return Section("derivation", "Derivation of the centres", (Paragraph(text), TableBlock(columns, rows)))
 
 
 def _derived(step: DerivationStep) -> str:
@@ -120,20 +120,20 @@ def _place(sample: Sample) -> str:
     return f"At {listed(at)}. Coordinates in {unit}, in the frame's axes." if at else f"Coordinates in {unit}."
 
 
-def _rule(shown: Shown) -> str:
+def _rule(shown: CentresSample) -> str:
     text = "Three centres of three links lie on a line (Aronhold-Kennedy): each is where two such lines cross."
     if {"trial", "rates"} & set(shown.kinds.values()):
         text += " Where lines are lacking, trial positions or the drivers' rates help; the derivation has more."
     return text
 
 
-def _count(shown: Shown) -> Iterator[Block]:
+def _count(shown: CentresSample) -> Iterator[Block]:
     n, primary, secondary = len(shown.sample.motion.mechanism.links), len(shown.primary), len(shown.secondary)
-    yield Formula(f"N = n (n - 1) / 2 = {n} * {n - 1} / 2 = {len(shown.centres)}")
+    yield FormulaBlock(f"N = n (n - 1) / 2 = {n} * {n - 1} / 2 = {len(shown.centres)}")
     yield Paragraph(f"{primary} of the {counted(len(shown.centres), 'centre')} are primary, {secondary} secondary.")
 
 
-def _table(shown: Shown, found: Sequence[Centre], how: str) -> Table:
+def _table(shown: CentresSample, found: Sequence[Centre], how: str) -> TableBlock:
     """A row for each centre; directions and conditioning only where there is something to say."""
     unit = shown.sample.motion.mechanism.unit or "length"
     floor = ROUNDING * shown.sample.motion.size
@@ -148,16 +148,16 @@ def _table(shown: Shown, found: Sequence[Centre], how: str) -> Table:
         columns.append(Column("poor conditioning", style="brief"))
         values.append(poor)
     texts = [_at_pose(centre.how_at(*shown.pose)) for centre in found]
-    return Table((*columns, Column(how)), tuple(zip(*values, texts, strict=True)))
+    return TableBlock((*columns, Column(how)), tuple(zip(*values, texts, strict=True)))
 
 
-def _coordinates(shown: Shown, found: Sequence[Centre]) -> Iterator[list[Cell]]:
+def _coordinates(shown: CentresSample, found: Sequence[Centre]) -> Iterator[list[Cell]]:
     points = [complex(shown.of(centre.point)) for centre in found]
     for parts in ([p.real for p in points], [p.imag for p in points]):
         yield [float(v) if np.isfinite(p) else None for v, p in zip(parts, points, strict=True)]
 
 
-def _direction(shown: Shown, centre: Centre) -> float | None:
+def _direction(shown: CentresSample, centre: Centre) -> float | None:
     """The direction of a centre at infinity, from 0 to below 180 degrees: either way along it is the same."""
     if not shown.of(centre.at_infinity):
         return None
@@ -165,7 +165,7 @@ def _direction(shown: Shown, centre: Centre) -> float | None:
     return 0.0 if 180.0 - angle < NEARLY else angle
 
 
-def _poor(shown: Shown, centre: Centre) -> float | None:
+def _poor(shown: CentresSample, centre: Centre) -> float | None:
     value = float(shown.of(centre.conditioning))
     return value if shown.of(centre.found) and value < POOR else None
 
@@ -184,7 +184,7 @@ def _name(links: tuple[str, str]) -> str:
     return f"({links[0]} {links[1]})"
 
 
-def _velocities(shown: Shown) -> Section:
+def _velocities(shown: CentresSample) -> Section:
     """Angular velocities of the links by centres alone and as solved, as ratios to the driver's where it has one."""
     motion = shown.sample.motion
     text, unit, scale = _reference(shown)
@@ -196,10 +196,10 @@ def _velocities(shown: Shown) -> Section:
     floor = ROUNDING * max((abs(row[2]) for row in rows if np.isfinite(row[2])), default=0.0)
     columns = (Column("link"), Column("from centres", unit, "each", floor), Column("as solved", unit, "each", floor),
                Column("difference", unit, "brief"))  # fmt: skip
-    return Section("velocities", "Angular velocities", (Paragraph(text), Table(columns, tuple(rows))))
+    return Section("velocities", "Angular velocities", (Paragraph(text), TableBlock(columns, tuple(rows))))
 
 
-def _reference(shown: Shown) -> tuple[str, str, float]:
+def _reference(shown: CentresSample) -> tuple[str, str, float]:
     """What angular velocities are told in: the speed of the only driver, if it turns, else rad/s."""
     drivers = list(shown.sample.motion.drives.items())
     speeds = [float(shown.of(drive.rate)) for _, drive in drivers]

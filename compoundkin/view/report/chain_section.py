@@ -8,7 +8,7 @@ from compoundkin.structure import Group, Structure
 from compoundkin.synthesis.chains import ChainName, group_truss, structure_name
 from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS
 from compoundkin.synthesis.chains.mechanism_names import MOST_COMPARED
-from compoundkin.view.report.report_data import Section, Step
+from compoundkin.view.report.report_data import Section, StepBlock
 from compoundkin.view.report.wording import counted, listed
 
 # More classes of links or more names than these are counted instead of written out.
@@ -20,7 +20,7 @@ _LOWER = 2
 def chain_section(structure: Structure) -> Section:
     """The kinematic chain: its name, driven link, assortment, variety, symmetry, and the trusses of larger groups."""
     name = structure_name(structure)
-    return Section("chain", "Kinematic chain", (Step(name.title, tuple(_facts(structure, name))),))
+    return Section("chain", "Kinematic chain", (StepBlock(name.title, tuple(_facts(structure, name))),))
 
 
 def _facts(structure: Structure, name: ChainName) -> Iterator[tuple[str, str]]:

@@ -10,7 +10,7 @@ from compoundkin.analysis.checks import Check
 from compoundkin.kinematics.gaps import Gap
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.view.report.digits import number
-from compoundkin.view.report.report_data import Alert, Column, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Alert, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import counted, listed
 
@@ -61,7 +61,7 @@ def checks_section(sample: Sample, check: Check) -> Section:
         text += f" At {counted(check.singular, 'limit pose')} rates are infinite, and only the position is checked."
     if not check.poses:
         return Section("checks", "Checks", (Alert("No pose is assembled: there is nothing to check."),))
-    return Section("checks", "Checks", (Paragraph(text), Table(columns, rows)))
+    return Section("checks", "Checks", (Paragraph(text), TableBlock(columns, rows)))
 
 
 def finding_place(sample: Sample, name: str, pose: tuple[int, ...]) -> str:

@@ -17,7 +17,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.structure import Group, Structure
 from compoundkin.view.report.digits import number
-from compoundkin.view.report.report_data import NOT_SOLVED, Alert, Cell, Column, Outcome, Paragraph, Section, Table
+from compoundkin.view.report.report_data import NOT_SOLVED, Alert, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted, listed
 
@@ -219,5 +219,5 @@ class _Page:
             yield Section("toggles", "Toggle positions", (Paragraph(text), _table(columns, rows)))
 
 
-def _table(columns: tuple[Column, ...], rows: tuple[tuple[Cell, ...], ...], keys: int = 0) -> Table:
-    return Table(columns, rows, keys, tuple(range(MOST_ROWS)) if len(rows) > MOST_ROWS else None)
+def _table(columns: tuple[Column, ...], rows: tuple[tuple[Cell, ...], ...], keys: int = 0) -> TableBlock:
+    return TableBlock(columns, rows, keys, tuple(range(MOST_ROWS)) if len(rows) > MOST_ROWS else None)

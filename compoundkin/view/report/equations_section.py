@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.analysis.equations import Implicit, LoopEquations, Unknown, latex, loop_equations, text
 from compoundkin.structure import Structure
-from compoundkin.view.report.report_data import Block, Cell, Column, Formula, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import counted, joined
 
 NOTATION = (
@@ -35,20 +35,20 @@ def _blocks(found: LoopEquations) -> Iterator[Block]:
     yield Paragraph(NOTATION)
     for k, loop in enumerate(found.loops, 1):
         yield Paragraph(f"Loop {k}: {loop.loop}")
-        yield Formula(text(loop), latex(loop))
+        yield FormulaBlock(text(loop), latex(loop))
     for title, equations in (("Auxiliary equations:", found.auxiliary), ("Drivers:", found.drivers)):
         if equations:
             yield Paragraph(title)
         for equation in equations:
-            yield Formula(text(equation), latex(equation))
+            yield FormulaBlock(text(equation), latex(equation))
     unwritten = list(dict.fromkeys(one.pair for one in found.auxiliary if isinstance(one, Implicit)))
     if unwritten:
         yield Paragraph(FUNCTIONS.format(pairs=joined(unwritten)))
     yield Paragraph(_count(found))
-    yield Table((Column("unknown"), Column("what it is")), tuple(_unknown(one) for one in found.unknowns))
+    yield TableBlock((Column("unknown"), Column("what it is")), tuple(_unknown(one) for one in found.unknowns))
     known = tuple((symbol, _length(length)) for symbol, length in found.lengths.items())
     if known:
-        yield Table((Column("known"), Column("length", style="each")), known)
+        yield TableBlock((Column("known"), Column("length", style="each")), known)
 
 
 def _count(found: LoopEquations) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 from compoundkin.analysis.equivalents import replaced
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.structure import decompose, roman
-from compoundkin.view.report.report_data import Cell, Column, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import listed
 
@@ -36,7 +36,7 @@ def equivalent_section(sample: Sample) -> Section | None:
         " bar between the centres of curvature, or a block on a straight profile. "
         f"Its groups: {listed(groups) or 'none'}."
     )
-    return Section("equivalent", "Equivalent linkage", (Paragraph(text), Table(columns, rows)))
+    return Section("equivalent", "Equivalent linkage", (Paragraph(text), TableBlock(columns, rows)))
 
 
 def _link(length: float | None) -> tuple[Cell, Cell]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.kinematics.groups import DYADS
 from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
-from compoundkin.view.report.report_data import Block, Paragraph, Section, Step
+from compoundkin.view.report.report_data import Block, Paragraph, Section, StepBlock
 from compoundkin.view.report.wording import counted, listed
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def solving_section(structure: Structure, motion: Motion | None, design: int = 0
         new = [letter for letter in _letters(structure, group.links) if letter not in known]
         known.update(dict.fromkeys(new))
         mode = _mode(motion, k, design) if motion else ()
-        steps.append(Step(f"{k + 1}  {_title(group)}", (*_facts(structure, group, new), *mode)))
+        steps.append(StepBlock(f"{k + 1}  {_title(group)}", (*_facts(structure, group, new), *mode)))
     blocks: tuple[Block, ...] = Paragraph(_summary(structure)), *_left_out(structure), *steps
     return Section("groups", "Groups in solving order", blocks)
 
@@ -65,10 +65,10 @@ def _title(group: Group) -> str:
     return f"{group.name} {'dyad' if group.name in DYADS else 'group'}: {listed(group.links)}"
 
 
-def _ground(ground: Body, letters: Iterable[str]) -> Step:
+def _ground(ground: Body, letters: Iterable[str]) -> StepBlock:
     driven = tuple(("driver", _driven(step)) for step in ground.driven if not step.is_passive)
     title = "0  The frame and its driven links" if driven else "0  The frame"
-    return Step(title, (*driven, ("yields", _yields(ground.links, letters))))
+    return StepBlock(title, (*driven, ("yields", _yields(ground.links, letters))))
 
 
 def _driven(step: DrivenPair) -> str:

@@ -9,7 +9,16 @@ from functools import singledispatch
 from math import isfinite
 from typing import Any
 
-from compoundkin.view.report.report_data import Alert, Cell, Formula, Outcome, Paragraph, Section, Step, Table
+from compoundkin.view.report.report_data import (
+    Alert,
+    Cell,
+    FormulaBlock,
+    Outcome,
+    Paragraph,
+    Section,
+    StepBlock,
+    TableBlock,
+)
 
 
 def json_text(title: str, sections: Sequence[Section], outcome: Outcome) -> str:
@@ -38,7 +47,7 @@ def _(block: Paragraph) -> dict[str, Any]:
 
 
 @_block.register
-def _(block: Formula) -> dict[str, Any]:
+def _(block: FormulaBlock) -> dict[str, Any]:
     return {"kind": "formula", "text": block.text, **({"latex": block.latex} if block.latex else {})}
 
 
@@ -48,12 +57,12 @@ def _(block: Alert) -> dict[str, Any]:
 
 
 @_block.register
-def _(block: Step) -> dict[str, Any]:
+def _(block: StepBlock) -> dict[str, Any]:
     return {"kind": "step", "title": block.title, "facts": [list(fact) for fact in block.facts]}
 
 
 @_block.register
-def _(block: Table) -> dict[str, Any]:
+def _(block: TableBlock) -> dict[str, Any]:
     columns = [{"name": column.name, "unit": column.unit} for column in block.columns]
     return {"kind": "table", "columns": columns, "rows": [[_cell(cell) for cell in row] for row in block.rows]}
 

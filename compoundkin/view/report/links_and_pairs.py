@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.structure import DrivenPair, Structure, links_by_pairs, pair_counts
 from compoundkin.view.report.digits import number
-from compoundkin.view.report.report_data import Alert, Block, Column, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Alert, Block, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import counted, joined, kind_of_link, listed
 
 # A coordinate below this part of the mechanism's size is the rounding of a zero.
@@ -24,7 +24,7 @@ def links_section(structure: Structure, design: int = 0) -> Section:
         for name, count in pair_counts(structure).items()
     )
     columns = (Column("link"), Column("kind"), Column("points, in the link's own frame"), Column("pairs"))
-    return Section("links", "Links", (Paragraph(_by_kind(structure)), Table(columns, rows)))
+    return Section("links", "Links", (Paragraph(_by_kind(structure)), TableBlock(columns, rows)))
 
 
 def _by_kind(structure: Structure) -> str:
@@ -66,7 +66,7 @@ def pairs_section(structure: Structure) -> Section:
         for pair in structure.pairs
     )  # fmt: skip
     columns = (Column("pair"), Column("kind"), Column("joins"), Column("at"), Column("driven by"))
-    return Section("pairs", "Pairs", (*_multiple_pins(structure), Table(columns, rows)))
+    return Section("pairs", "Pairs", (*_multiple_pins(structure), TableBlock(columns, rows)))
 
 
 def driven_pairs(structure: Structure) -> dict[str, DrivenPair]:

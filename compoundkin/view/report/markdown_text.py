@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import singledispatch
 
 from compoundkin.view.report.digits import written
-from compoundkin.view.report.report_data import Alert, Column, Formula, Paragraph, Section, Step, Table
+from compoundkin.view.report.report_data import Alert, Column, FormulaBlock, Paragraph, Section, StepBlock, TableBlock
 
 
 def markdown(title: str, sections: Sequence[Section]) -> str:
@@ -40,7 +40,7 @@ def _(block: Paragraph) -> str:
 
 
 @_block.register
-def _(block: Formula) -> str:
+def _(block: FormulaBlock) -> str:
     return f"$$\n{block.latex}\n$$" if block.latex else f"```text\n{block.text}\n```"
 
 
@@ -51,13 +51,13 @@ def _(block: Alert) -> str:
 
 
 @_block.register
-def _(block: Step) -> str:
+def _(block: StepBlock) -> str:
     facts = "\n".join(f"- *{_plain(term)}*: {_plain(text)}" for term, text in block.facts)
     return f"### {_plain(block.title)}\n\n{facts}"
 
 
 @_block.register
-def _(block: Table) -> str:
+def _(block: TableBlock) -> str:
     rows = block.shown_rows
     cells = [written(column, [row[k] for row in rows]) for k, column in enumerate(block.columns)]
     lines = [map(_heading, block.columns), ("---:" if column.is_number else "---" for column in block.columns)]

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.analysis.equations import pair_terms
 from compoundkin.structure import Structure, loop_count
-from compoundkin.view.report.report_data import Block, Column, Formula, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Block, Column, FormulaBlock, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import counted
 
 # Beyond these a report lists only the first: a reader has seen enough.
@@ -68,7 +68,7 @@ def loops_section(structure: Structure) -> Section:
     """The independent loops as chains, and the equations against the unknowns."""
     count = equation_count(structure)
     links, pairs, loops = len(structure.mechanism.links), len(structure.pairs), loop_count(structure)
-    euler = Formula(f"L = p - n + 1 = {pairs} - {links} + 1 = {pairs - links + 1}")
+    euler = FormulaBlock(f"L = p - n + 1 = {pairs} - {links} + 1 = {pairs - links + 1}")
     blocks: list[Block] = [euler]
     if loops != pairs - links + 1:
         text = f"The links fall into separate pieces, so that there are {counted(loops, 'loop')}."
@@ -78,7 +78,7 @@ def loops_section(structure: Structure) -> Section:
         blocks.append(Paragraph(f"Of these, {through} through gears or belts: an auxiliary equation of angles each."))
     rows = tuple((k, str(loop)) for k, loop in enumerate(structure.loops[:MOST_LOOPS], 1))
     if rows:
-        blocks.append(Table((Column("loop", style="each"), Column("chain: link -pair- link")), rows))
+        blocks.append(TableBlock((Column("loop", style="each"), Column("chain: link -pair- link")), rows))
     if loops > MOST_LOOPS:
         blocks.append(Paragraph(f"... and {loops - MOST_LOOPS} more."))
     blocks += _equations(count)
@@ -92,7 +92,7 @@ def _equations(count: EquationCount) -> tuple[Block, ...]:
     unknowns = f"unknowns:  {_sum(terms, count.unknowns)}"
     wanted = (2 * count.loops, "for loops (x and y)"), (count.auxiliary, "auxiliary"), (count.drivers, "for drivers")
     equations = f"equations: {_sum(wanted, count.equations)}"
-    return Formula(f"{unknowns}\n{equations}"), *_verdict(count)
+    return FormulaBlock(f"{unknowns}\n{equations}"), *_verdict(count)
 
 
 def _sum(terms: tuple[tuple[int, str], ...], total: int) -> str:

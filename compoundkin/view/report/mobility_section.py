@@ -11,7 +11,7 @@ from compoundkin.base.series import Number, constant
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
 from compoundkin.structure.redundancy import MobilityAnalysis, mobility_analysis
-from compoundkin.view.report.report_data import Block, Column, Formula, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Block, Column, FormulaBlock, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import counted, listed
 
 # A report names so many pairs.
@@ -29,7 +29,7 @@ def mobility_section(structure: Structure, motion: Motion | None = None) -> Sect
         text += " The count is right as a whole but not in every part: see below."
     if found.agrees:
         text += " General dimensions and these ones say the same."
-    blocks: list[Block] = [Formula(mobility.formula), Paragraph(text)]
+    blocks: list[Block] = [FormulaBlock(mobility.formula), Paragraph(text)]
     return Section("mobility", "Mobility", (*blocks, *([] if plain else analysis_blocks(found))))
 
 
@@ -60,7 +60,7 @@ def analysis_blocks(found: MobilityAnalysis) -> Iterator[Block]:
         rows += [("at these dimensions, as drawn", known, ""),
                  ("of these, motions and not infinitesimal", str(found.finite), str(found.redundant))]  # fmt: skip
     columns = Column("mobility"), Column("freedoms", style="each"), Column("redundant coordinates", style="each")
-    yield Table(columns, tuple(rows))
+    yield TableBlock(columns, tuple(rows))
     yield Paragraph(f"{found.verdict[:1].upper()}{found.verdict[1:]}.")
     yield from (Paragraph(text) for text in _remarks(found))
 

@@ -18,7 +18,7 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
 from compoundkin.view.report.laws_in_words import Wording
 from compoundkin.view.report.links_and_pairs import driven_pairs
-from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import ROUNDING, Sample
 from compoundkin.view.report.wording import counted, listed, ordinal
 
@@ -75,11 +75,11 @@ def _laws(structure: Structure) -> Iterator[Paragraph]:
             yield Paragraph(f"{drive.name} moves {Wording(is_angle, unit).law(drive.law)}.")
 
 
-def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, ...]]) -> Table:
+def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, ...]]) -> TableBlock:
     unit, rate = ("deg", "rad") if is_angle else (structure.mechanism.unit or "length",) * 2
     rates = Column("speed", rate + PER_SECOND[1], "each"), Column("acceleration", rate + PER_SECOND[2], "each")
     span = Column("from", unit, "each"), Column("to", unit, "each"), Column("poses", style="each")
-    return Table((Column("driver"), Column("drives"), *span, *rates), tuple(rows))
+    return TableBlock((Column("driver"), Column("drives"), *span, *rates), tuple(rows))
 
 
 def _span(drive: Drive, sample: Sample | None, is_angle: bool) -> tuple[Cell, ...]:
@@ -117,7 +117,7 @@ def outputs_section(sample: Sample, outputs: Sequence[str]) -> Section:
     first = drivers if len(drivers) == 1 and sample.times is None else [sample.places, *drivers]
     columns = [*first, *(column for one in found for column in _columns(sample, one))]
     rows = tuple(tuple(_cell(values[pose]) for _, values in columns) for pose in sample.rows)
-    table = Table(tuple(column for column, _ in columns), rows, keys=1)
+    table = TableBlock(tuple(column for column, _ in columns), rows, keys=1)
     blocks = (Paragraph(_introduction(sample)), table) if found else (Paragraph("No outputs are named."),)
     return Section("outputs", "Outputs over the cycle", (*blocks, *_extremes(sample, found)))
 
@@ -147,7 +147,7 @@ def _extremes(sample: Sample, found: Sequence[Quantity]) -> Iterator[Block]:
     ends = Column("least", style="each"), at, Column("greatest", style="each"), at
     columns = (Column("output"), Column("unit"), *ends)
     yield Paragraph(f"Extremes over the {counted(sample.poses, 'pose')} (not interpolated):")
-    yield Table(columns, tuple(row for one in found for row in _extreme_rows(sample, one)))
+    yield TableBlock(columns, tuple(row for one in found for row in _extreme_rows(sample, one)))
 
 
 def _extreme_rows(sample: Sample, found: Quantity) -> Iterator[tuple[Cell, ...]]:

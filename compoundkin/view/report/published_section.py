@@ -18,7 +18,7 @@ from compoundkin.model.attributes import HIGHEST_ORDER, TIME
 from compoundkin.model.elements import Expectation
 from compoundkin.structure import Structure
 from compoundkin.view.report.links_and_pairs import driven_pairs
-from compoundkin.view.report.report_data import Cell, Column, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import counted
 
 # Up to so many published numbers are listed one by one; of more, each quantity's nearest to its tolerance.
@@ -138,7 +138,7 @@ def published_section(structure: Structure, found: tuple[Comparison, ...]) -> Se
     text = f"{passed} of {counted(len(found), 'published number')} found to the tolerance that comes with them."
     if shown is not None:
         text += " Of each quantity, the one nearest to its tolerance:"
-    return Section("published", "Published numbers", (Paragraph(text), Table(columns, rows, 0, shown)))
+    return Section("published", "Published numbers", (Paragraph(text), TableBlock(columns, rows, 0, shown)))
 
 
 def _row(structure: Structure, keys: tuple[str, ...], one: Comparison) -> tuple[Cell, ...]:

@@ -24,7 +24,7 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class Formula:
+class FormulaBlock:
     """A line of mathematics, to be written as it is; `latex` where there is such, without dollar signs."""
 
     text: str
@@ -51,7 +51,7 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Table:
+class TableBlock:
     """Rows of cells. The first `keys` columns are repeated where a table is split for its width.
 
     `shown` are the indices of the rows that a reader needs, where those are not all: the JSON report has all.
@@ -66,14 +66,14 @@ class Table:
     def shown_rows(self) -> tuple[tuple[Cell, ...], ...]:
         """The rows that a reader needs.
 
-        >>> Table((Column("a"),), (("x",), ("y",)), shown=(1,)).shown_rows
+        >>> TableBlock((Column("a"),), (("x",), ("y",)), shown=(1,)).shown_rows
         (('y',),)
         """
         return self.rows if self.shown is None else tuple(self.rows[k] for k in self.shown)
 
 
 @dataclass(frozen=True)
-class Step:
+class StepBlock:
     """One step of several: a title, and what is to be said of it by keyword."""
 
     title: str
@@ -88,7 +88,7 @@ class Alert:
     remedy: str = ""
 
 
-Block: TypeAlias = Paragraph | Formula | Table | Step | Alert
+Block: TypeAlias = Paragraph | FormulaBlock | TableBlock | StepBlock | Alert
 
 
 @dataclass(frozen=True)

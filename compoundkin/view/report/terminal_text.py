@@ -14,7 +14,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from compoundkin.view.report.digits import written
-from compoundkin.view.report.report_data import Alert, Column, Formula, Paragraph, Section, Step, Table
+from compoundkin.view.report.report_data import Alert, Column, FormulaBlock, Paragraph, Section, StepBlock, TableBlock
 
 # Between two columns of a table.
 GAP = 2
@@ -62,7 +62,7 @@ def _(block: Paragraph, width: int) -> Iterator[RenderableType]:
 
 
 @_block.register
-def _(block: Formula, width: int) -> Iterator[RenderableType]:
+def _(block: FormulaBlock, width: int) -> Iterator[RenderableType]:
     yield Padding(Text(block.text), (0, 0, 0, 2))
 
 
@@ -73,7 +73,7 @@ def _(block: Alert, width: int) -> Iterator[RenderableType]:
 
 
 @_block.register
-def _(block: Step, width: int) -> Iterator[RenderableType]:
+def _(block: StepBlock, width: int) -> Iterator[RenderableType]:
     yield Text(block.title, "bold")
     grid = Grid.grid(padding=(0, GAP, 0, 0))
     grid.add_column(style="dim", no_wrap=True)
@@ -84,7 +84,7 @@ def _(block: Step, width: int) -> Iterator[RenderableType]:
 
 
 @_block.register
-def _(block: Table, width: int) -> Iterator[RenderableType]:
+def _(block: TableBlock, width: int) -> Iterator[RenderableType]:
     rows = block.shown_rows
     cells = [written(column, [row[k] for row in rows], between="\n") for k, column in enumerate(block.columns)]
     heads = [_heading(column) for column in block.columns]
@@ -94,7 +94,7 @@ def _(block: Table, width: int) -> Iterator[RenderableType]:
         yield _grid([block.columns[k] for k in panel], [heads[k] for k in panel], [cells[k] for k in panel])
 
 
-def _panels(block: Table, heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> list[list[int]]:
+def _panels(block: TableBlock, heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> list[list[int]]:
     """Which columns go side by side: a table of numbers too wide is split, its first columns repeated."""
     keys = list(range(block.keys))
     wide = [_width((head, *column)) + GAP for head, column in zip(heads, cells, strict=True)]
@@ -106,7 +106,7 @@ def _panels(block: Table, heads: Sequence[str], cells: Sequence[Sequence[str]], 
     return panels
 
 
-def _inseparable(block: Table) -> list[list[int]]:
+def _inseparable(block: TableBlock) -> list[list[int]]:
     """The columns after the first ones, those that follow one another together."""
     parts: list[list[int]] = []
     for k, column in enumerate(block.columns[block.keys :], block.keys):

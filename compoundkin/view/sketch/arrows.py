@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Group, Shape, Text
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text
 from compoundkin.view.sketch.strokes import arrow
 
 # The kinds of vectors: their derivative, and what they are per.
@@ -22,7 +22,7 @@ STEPS = (1.0, 2.0, 5.0)
 
 
 @dataclass(frozen=True)
-class Scale:
+class VectorScale:
     """How vectors are drawn: picture units for a unit of theirs, and a round amount to show beside the picture."""
 
     kind: str
@@ -57,14 +57,14 @@ def rates_of(scene: Scene, kind: str) -> dict[str, complex]:
     return {letter: v for letter, v in found.items() if np.isfinite(v)}
 
 
-def scale_of(kind: str, rates: Mapping[str, complex], length: float, unit: str) -> Scale | None:
+def scale_of(kind: str, rates: Mapping[str, complex], length: float, unit: str) -> VectorScale | None:
     """The scale at which the longest vector is at most so long, in picture units; None where nothing moves."""
     largest = max(map(abs, rates.values()), default=0.0)
     if largest <= 0:
         return None
     amount = round_below(largest)
     text = f"{amount:g} {unit or 'length'}{KINDS_OF_VECTOR[kind][1]}"
-    return Scale(kind, length / largest, amount, text)
+    return VectorScale(kind, length / largest, amount, text)
 
 
 def round_below(value: float) -> float:
@@ -78,18 +78,18 @@ def round_below(value: float) -> float:
     return float(f"{step * power:.1g}")
 
 
-def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], scale: Scale) -> list[Shape]:
+def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], scale: VectorScale) -> list[Shape]:
     """An arrow for each vector that is long enough to be seen."""
     found: list[Shape] = []
     for letter, rate in rates.items():
         way = complex(np.conjugate(rate)) * scale.per_unit
         if abs(way) >= SHORTEST:
             shapes = arrow(places[letter], places[letter] + way, scale.kind)
-            found.append(Group(shapes, title=f"{scale.kind} of {letter}: {abs(rate):.6g}"))
+            found.append(ShapeGroup(shapes, title=f"{scale.kind} of {letter}: {abs(rate):.6g}"))
     return found
 
 
-def scale_shapes(scale: Scale, height: float) -> list[Shape]:
+def scale_shapes(scale: VectorScale, height: float) -> list[Shape]:
     """What states the scale: an arrow of the round amount, at a height of the picture."""
     length = scale.amount * scale.per_unit
     line = arrow(complex(16.0, height), complex(16.0 + length, height), scale.kind)

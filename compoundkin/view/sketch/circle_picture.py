@@ -11,7 +11,7 @@ from compoundkin.analysis.centres.circle_diagram import diagram_of
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.structure import Structure
 from compoundkin.view.sketch.picture import Picture, checked_size
-from compoundkin.view.sketch.shapes import Circle, Group, Polyline, Shape, Text
+from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape, ShapeGroup, Text
 from compoundkin.view.sketch.sketch_style import LINE, NUMBER, SMALL
 from compoundkin.view.sketch.strokes import sheet
 
@@ -42,11 +42,13 @@ def circle_diagram(structure: Structure, numbers: Mapping[str, int], size: float
 
 def _chord(step: DerivationStep, places: Mapping[str, complex], numbers: Mapping[str, int]) -> Shape:
     line = Polyline(tuple(places[name] for name in step.centre), "ink" if step.kind == "primary" else "ray")
-    return Group((line,), title=_name(step.centre, numbers))
+    return ShapeGroup((line,), title=_name(step.centre, numbers))
 
 
 def _node(name: str, at: complex, number: int) -> Shape:
-    return Group((Circle(at, NUMBER + 1.5, "pin ink"), Text(at, str(number), "number")), title=name, links=(name,))
+    return ShapeGroup(
+        (CircleShape(at, NUMBER + 1.5, "pin ink"), Text(at, str(number), "number")), title=name, links=(name,)
+    )
 
 
 def _list(steps: Sequence[DerivationStep], numbers: Mapping[str, int]) -> tuple[list[Shape], float]:

@@ -12,7 +12,7 @@ from compoundkin.model.pairs import Pair
 from compoundkin.structure import Body, Structure
 from compoundkin.view.sketch.label_places import Label, placed, text_half
 from compoundkin.view.sketch.picture import Picture, checked_size
-from compoundkin.view.sketch.shapes import Circle, Group, Polygon, Polyline, Shape, Text
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text
 from compoundkin.view.sketch.sketch_labels import below, lines_of_text
 from compoundkin.view.sketch.sketch_style import SMALL, style_of
 from compoundkin.view.sketch.strokes import sheet
@@ -52,8 +52,8 @@ def node(name: str, at: complex, number: int, group: int) -> Shape:
     corner = (1 + 1j) * NODE * 0.9
     style = "pin frame" if name == FRAME else f"pin {style_of('ring', group)}"
     around = tuple(at + corner * turn for turn in (1, 1j, -1, -1j))
-    rim: Shape = Polygon(around, style) if name == FRAME else Circle(at, NODE, style)
-    return Group((rim, Text(at, str(number), "number")), title=name, links=(name,))
+    rim: Shape = Polygon(around, style) if name == FRAME else CircleShape(at, NODE, style)
+    return ShapeGroup((rim, Text(at, str(number), "number")), title=name, links=(name,))
 
 
 def _edges(pairs: Sequence[Pair], places: Mapping[str, complex], driven: set[str]) -> tuple[list[Shape], list[Label]]:
@@ -69,7 +69,7 @@ def _edges(pairs: Sequence[Pair], places: Mapping[str, complex], driven: set[str
         across = 1j * (second - first) / (abs(second - first) or 1.0)
         middle = (first + second) / 2.0 + across * bulge
         style = "bold" if pair.name in driven else "edge"
-        lines.append(Group((Polyline((first, middle, second), style),), title=f"{pair.name}, {pair.title}"))
+        lines.append(ShapeGroup((Polyline((first, middle, second), style),), title=f"{pair.name}, {pair.title}"))
         lines += [Polyline((middle, places[name]), "ray") for name in pair.members[2:]]
         named.append(_label(k, pair, first, middle, second, across))
     return lines, named

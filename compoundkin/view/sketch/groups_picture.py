@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from compoundkin.model.elements import FRAME
-from compoundkin.structure import Group as AssurGroup
-from compoundkin.structure import roman
+from compoundkin.structure import Group, roman
 from compoundkin.view.sketch.label_places import WIDE, Label, placed
 from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.picture import Picture, checked_size
-from compoundkin.view.sketch.rows import Part, in_rows
+from compoundkin.view.sketch.rows import PicturePart, in_rows
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Group, Text, corners
+from compoundkin.view.sketch.shapes import ShapeGroup, Text, corners
 from compoundkin.view.sketch.shifted_shapes import moved
 from compoundkin.view.sketch.sketch_labels import below, label_shapes, letters, lines_of_text, numbered
 from compoundkin.view.sketch.sketch_layers import by_links, in_layers, window_on
@@ -43,17 +42,19 @@ def groups_picture(scene: Scene, size: float | None) -> Picture:
     return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))
 
 
-def heading(group: AssurGroup) -> str:
+def heading(group: Group) -> str:
     """What a group is called: its class and the letters of its pairs."""
     return f"class {roman(group.class_)}: {group.name}"
 
 
-def outer_letters(group: AssurGroup) -> frozenset[str]:
+def outer_letters(group: Group) -> frozenset[str]:
     """The points of the pairs by which a group is attached to what stands before it."""
     return frozenset(letter for pair in group.outer for letter in pair.letters[:1])
 
 
-def _part(scene: Scene, whole: Window, links: frozenset[str], title: str, outer: frozenset[str] = frozenset()) -> Part:
+def _part(
+    scene: Scene, whole: Window, links: frozenset[str], title: str, outer: frozenset[str] = frozenset()
+) -> PicturePart:
     """The links of a part as they are in the mechanism, with their letters and numbers."""
     painter = Painter(scene, whole, links, outer)
     shapes = by_links(in_layers(painter))
@@ -69,7 +70,7 @@ def _part(scene: Scene, whole: Window, links: frozenset[str], title: str, outer:
     shapes += label_shapes(scene, placed(own, shapes, wide, tall))
     named_part = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")
     own_links = tuple(name for name in scene.numbers if name in links)
-    return Part((Group((named_part, *moved(shapes, HEADING * 1j)), links=own_links),), wide, tall + HEADING)
+    return PicturePart((ShapeGroup((named_part, *moved(shapes, HEADING * 1j)), links=own_links),), wide, tall + HEADING)
 
 
 def _shifted(label: Label, by: complex) -> Label:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.view.sketch.shapes import Arc, Circle, Group, Polygon, Polyline, Shape, Strokes
+from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes
 
 # Width of a letter in parts of its height, a little more than in the usual fonts.
 WIDE = 0.62
@@ -126,7 +126,7 @@ def obstacles(shapes: Iterable[Shape]) -> tuple[Number, Number]:
 
 def _lines(shapes: Iterable[Shape]) -> Iterator[tuple[complex, complex]]:
     for shape in shapes:
-        if isinstance(shape, Group):
+        if isinstance(shape, ShapeGroup):
             yield from _lines(shape.shapes)
         elif isinstance(shape, Polyline):
             yield from pairwise(shape.points)
@@ -134,9 +134,9 @@ def _lines(shapes: Iterable[Shape]) -> Iterator[tuple[complex, complex]]:
             yield from pairwise((*shape.points, shape.points[0]))
         elif isinstance(shape, Strokes):
             yield from (line for whole in shape.lines for line in pairwise(whole))
-        elif isinstance(shape, Arc):
+        elif isinstance(shape, ArcShape):
             yield shape.start, shape.stop
-        elif isinstance(shape, Circle) and shape.radius > BIG:
+        elif isinstance(shape, CircleShape) and shape.radius > BIG:
             rim = shape.centre + shape.radius * np.exp(2j * np.pi * np.arange(25) / 24)
             yield from pairwise(complex(p) for p in rim)
 
@@ -147,7 +147,7 @@ BIG = 12.0
 
 def _rounds(shapes: Iterable[Shape]) -> Iterator[tuple[complex, float]]:
     for shape in shapes:
-        if isinstance(shape, Group):
+        if isinstance(shape, ShapeGroup):
             yield from _rounds(shape.shapes)
-        elif isinstance(shape, Circle) and shape.radius <= BIG:
+        elif isinstance(shape, CircleShape) and shape.radius <= BIG:
             yield shape.centre, shape.radius

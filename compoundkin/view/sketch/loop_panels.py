@@ -10,8 +10,8 @@ import numpy as np
 
 from compoundkin.structure import Loop
 from compoundkin.view.sketch.label_places import Label, around, placed, text_half
-from compoundkin.view.sketch.rows import Part
-from compoundkin.view.sketch.shapes import Circle, Group, Polygon, Polyline, Shape, Strokes, Text, corners
+from compoundkin.view.sketch.rows import PicturePart
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text, corners
 from compoundkin.view.sketch.shifted_shapes import moved
 from compoundkin.view.sketch.sketch_labels import NARROW
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, PIN, SMALL, style_of
@@ -46,7 +46,7 @@ def chain(loop: Loop) -> str:
 
 
 @dataclass(frozen=True)
-class Panel:
+class LoopPanel:
     """One loop: its number, its corners, what is behind it, its vectors."""
 
     number: int
@@ -56,14 +56,14 @@ class Panel:
     vectors: tuple[Shape, ...]
 
 
-def panel_of(k: int, loop: Loop, behind: Sequence[Shape], found: Sequence[Corner], clear: float = 0.0) -> Panel:
+def panel_of(k: int, loop: Loop, behind: Sequence[Shape], found: Sequence[Corner], clear: float = 0.0) -> LoopPanel:
     """The panel of a loop; its corners are circles, or something behind it of a radius, which vectors keep `clear`."""
     vectors = _vectors(k, [corner.at for corner in found], clear or PIN)
-    circles = [] if clear else [Circle(corner.at, PIN, f"pin {style_of('ring', k)}") for corner in found]
-    return Panel(k, loop, tuple(behind), tuple(found), (*vectors, *circles))
+    circles = [] if clear else [CircleShape(corner.at, PIN, f"pin {style_of('ring', k)}") for corner in found]
+    return LoopPanel(k, loop, tuple(behind), tuple(found), (*vectors, *circles))
 
 
-def parts_of(panels: Sequence[Panel]) -> list[Part]:
+def parts_of(panels: Sequence[LoopPanel]) -> list[PicturePart]:
     """The panels with their headings, all of one size."""
     points = np.array([p for panel in panels for p in corners([*panel.behind, *panel.vectors])])
     low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
@@ -79,8 +79,8 @@ def parts_of(panels: Sequence[Panel]) -> list[Part]:
         heads += [Text(top + 1j * LINE * i, line, "note") for i, line in enumerate(lines, start=1)]
         shapes = moved([*panel.behind, *panel.vectors], -low)
         shapes += _texts(panel, low, complex(wide, size.imag))
-        part = Group((*heads, *moved(shapes, 1j * down)), links=panel.loop.links)
-        parts.append(Part((part,), wide, size.imag + down))
+        part = ShapeGroup((*heads, *moved(shapes, 1j * down)), links=panel.loop.links)
+        parts.append(PicturePart((part,), wide, size.imag + down))
     return parts
 
 
@@ -89,7 +89,7 @@ def _wrapped(text: str, wide: float) -> list[str]:
     return textwrap.wrap(text, int(wide / (SMALL * NARROW)), break_on_hyphens=False, break_long_words=False)
 
 
-def _texts(panel: Panel, low: complex, size: complex) -> list[Shape]:
+def _texts(panel: LoopPanel, low: complex, size: complex) -> list[Shape]:
     """The letters at the corners of a loop, and its number."""
     vectors = moved(panel.vectors, -low)
     ((_, middle),) = placed([_number(panel.number, panel.corners, low)], vectors, size.real, size.imag).items()
@@ -97,14 +97,14 @@ def _texts(panel: Panel, low: complex, size: complex) -> list[Shape]:
     turn = -1.0 if _area([corner.at for corner in panel.corners]) < -1.0 else 1.0
     turning = _turning(panel.number, middle, turn)
     faint = moved([shape for shape in panel.behind if not _is_thin(shape)], -low)
-    around_it = Circle(middle, ROUND, "pin")
+    around_it = CircleShape(middle, ROUND, "pin")
     found = placed(_named(panel.corners, low), [*faint, *vectors, around_it], size.real, size.imag)
     return [*turning, *(Text(at, key.partition(" ")[2], "letter") for key, at in found.items())]
 
 
 def _is_thin(shape: Shape) -> bool:
     """Whether it is a net of thin lines, on which texts may be."""
-    return isinstance(shape, Strokes) or (isinstance(shape, Group) and all(map(_is_thin, shape.shapes)))
+    return isinstance(shape, Strokes) or (isinstance(shape, ShapeGroup) and all(map(_is_thin, shape.shapes)))
 
 
 def _area(points: Sequence[complex]) -> float:

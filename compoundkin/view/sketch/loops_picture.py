@@ -13,12 +13,12 @@ from compoundkin.model.elements import FRAME
 from compoundkin.structure import Loop, Structure
 from compoundkin.view.sketch.graph_picture import APART, NODE, node, spread
 from compoundkin.view.sketch.link_shapes import edges, skeleton
-from compoundkin.view.sketch.loop_panels import Corner, Panel, chain, panel_of, parts_of
+from compoundkin.view.sketch.loop_panels import Corner, LoopPanel, chain, panel_of, parts_of
 from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.picture import Picture, checked_size
 from compoundkin.view.sketch.rows import in_rows
 from compoundkin.view.sketch.scene import Scene, groups_of, numbers_of
-from compoundkin.view.sketch.shapes import Group, Shape, Strokes
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Strokes
 from compoundkin.view.sketch.sketch_labels import below, lines_of_text
 from compoundkin.view.sketch.sketch_layers import ghost, layered, window_on
 from compoundkin.view.sketch.strokes import sheet
@@ -45,7 +45,7 @@ def loops(scene: Scene, size: float | None) -> Picture:
 
     def behind(loop: Loop) -> list[Shape]:
         own = [] if is_crowd else layered(Painter(scene, whole, frozenset(loop.links)))
-        return [every, Group(tuple(own), "ghost")]
+        return [every, ShapeGroup(tuple(own), "ghost")]
 
     def at(loop: Loop) -> list[Corner]:
         return [Corner(complex(whole.at(corner.at)), corner.letter) for corner in polygon(scene, loop)]
@@ -106,11 +106,11 @@ def _longest(structure: Structure) -> float:
     return TWO if len(structure.loops) <= FEW else THREE
 
 
-def _thin(scene: Scene, window: Window) -> Group:
+def _thin(scene: Scene, window: Window) -> ShapeGroup:
     """All links as faint thin lines."""
     links = [name for name in scene.mechanism.links if name != FRAME]
     lines = [line for name in links for line in edges(skeleton(scene, window, name))]
-    return Group((Strokes(tuple(lines), "thin0"),), "ghost")
+    return ShapeGroup((Strokes(tuple(lines), "thin0"),), "ghost")
 
 
 def _shown(structure: Structure) -> list[tuple[int, Loop]]:
@@ -121,7 +121,7 @@ def _shown(structure: Structure) -> list[tuple[int, Loop]]:
     return list(enumerate(structure.loops[:MOST], start=1))
 
 
-def _picture(structure: Structure, panels: Sequence[Panel], notes: Sequence[str], size: float | None) -> Picture:
+def _picture(structure: Structure, panels: Sequence[LoopPanel], notes: Sequence[str], size: float | None) -> Picture:
     found = structure.loops
     shapes, width, height = in_rows(parts_of(panels))
     notes = [*notes, *([f"and {len(found) - MOST} more loops"] if len(found) > MOST else [])]

@@ -14,11 +14,11 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import fit
 from compoundkin.model.elements import FRAME
-from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, LONGEST, Scale, scale_of
+from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, LONGEST, VectorScale, scale_of
 from compoundkin.view.sketch.label_places import ROOM, placed, text_half
 from compoundkin.view.sketch.painter import Laid, Painter
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Group, Shape, Text, corners, leaves
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, corners, leaves
 from compoundkin.view.sketch.shifted_shapes import moved
 from compoundkin.view.sketch.shown_pose import scene_in
 from compoundkin.view.sketch.sketch_labels import badge, letters, numbered
@@ -32,7 +32,7 @@ SAMPLED = 24
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class MovingPart:
     """Shapes that a link carries: in picture units as seen from its point `at` (in the link's own frame), y downward.
 
     They are turned as at the pose shown. A part that `turns` turns with the link; any other one stays upright, as
@@ -60,9 +60,9 @@ class MovingSketch:
     scene: Scene
     window: Window
     still: tuple[Shape, ...]
-    parts: tuple[Part, ...]
+    parts: tuple[MovingPart, ...]
 
-    def places(self, part: Part) -> Number:
+    def places(self, part: MovingPart) -> Number:
         """Where the point of a part is on the picture, complex (poses,)."""
         return np.broadcast_to(self.window.at(self.scene.whole[part.link].at(part.at).c[0]), (self.scene.count,))
 
@@ -93,7 +93,7 @@ class MovingSketch:
         found = list(self.still)
         for part, (places, turns) in zip(self.parts, self._moves, strict=True):
             turn = complex(turns[k]) if part.turns else 1 + 0j
-            found.append(Group(tuple(moved(part.shapes, complex(places[k]), turn)), links=(part.link,)))
+            found.append(ShapeGroup(tuple(moved(part.shapes, complex(places[k]), turn)), links=(part.link,)))
         return found
 
     def rates(self, kind: str) -> dict[str, Number]:
@@ -110,7 +110,7 @@ class MovingSketch:
             found[letter] = row[self.scene.known]
         return found
 
-    def scale(self, kind: str) -> Scale | None:
+    def scale(self, kind: str) -> VectorScale | None:
         """The scale of vectors, one for all poses, at which the longest of them has room; None where nothing moves."""
         longest = {k: float(np.max(np.abs(v), initial=0.0, where=np.isfinite(v))) for k, v in self.rates(kind).items()}
         return scale_of(kind, longest, LONGEST * self.window.diagonal, self.scene.mechanism.unit)
@@ -177,16 +177,16 @@ def _sample(scene: Scene) -> list[Scene]:
     return [scene.ghost(int(k)) for k in dict.fromkeys(places)]
 
 
-def _carried(painter: Painter, laid: Sequence[Laid]) -> Iterator[Part]:
+def _carried(painter: Painter, laid: Sequence[Laid]) -> Iterator[MovingPart]:
     """The shapes of the mechanism; those that one link carries and that follow each other are one part."""
     scene = painter.scene
     for (link, letter), run in groupby(laid, key=lambda one: (one.link, one.letter)):
         at = scene.points[link][letter] if letter else 0j
         shapes = moved((one.shape for one in run), -painter.place(link, at))
-        yield Part(link, complex(at), tuple(shapes), not letter, letter)
+        yield MovingPart(link, complex(at), tuple(shapes), not letter, letter)
 
 
-def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> Iterator[Part]:
+def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> Iterator[MovingPart]:
     """Numbers and letters, where they are in nobody's way at the pose shown."""
     scene, window = painter.scene, painter.window
     wanted = [*(numbered(painter) if "links" in labels else []), *(letters(painter) if "points" in labels else [])]
@@ -194,12 +194,12 @@ def _labelled(painter: Painter, laid: Sequence[Laid], labels: Sequence[str]) -> 
     for key, place in placed(wanted, drawn, window.width, window.height).items():
         kind, _, name = key.partition(" ")
         if kind == "link":
-            yield Part(name, _own(scene, window, name, place), (badge(scene, name, 0j),), False, "", True)
+            yield MovingPart(name, _own(scene, window, name, place), (badge(scene, name, 0j),), False, "", True)
         else:
             link = scene.mechanism.carriers[name][0]
             at = scene.points[link][name]
             off = place - painter.place(link, at)
-            yield Part(
+            yield MovingPart(
                 link, complex(at), (Text(off, name, "halo letter"), Text(off, name, "letter")), False, name, True
             )
 

@@ -61,6 +61,9 @@ class Picture(Savable):
     def _repr_svg_(self) -> str:
         return self.svg
 
+    def __repr__(self) -> str:
+        return f"Picture({self.title!r}, {self.width:g} x {self.height:g})"
+
 
 def checked_size(size: Any) -> float | None:
     """A number of pixels, or None; raises InvalidInput for anything else.

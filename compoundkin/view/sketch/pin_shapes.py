@@ -10,7 +10,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Pin, Sliding, Track
 from compoundkin.structure import DrivenPair
 from compoundkin.view.sketch.painter import Laid, Layer, Painter
-from compoundkin.view.sketch.shapes import Arc, Circle, Polygon, Polyline, Shape
+from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape
 from compoundkin.view.sketch.sketch_style import BLOCK, PIN
 from compoundkin.view.sketch.strokes import HEAD, arrow, arrow_head, direction, hatching
 
@@ -39,13 +39,13 @@ def pins(painter: Painter) -> Iterator[Laid]:
         if FRAME in carriers and joined:
             yield from pivot(painter, letter, at)
         if letter in painter.outer:
-            yield Laid(Layer.PIN, Circle(at, OUTER, "outer"), carriers[0], letter)
+            yield Laid(Layer.PIN, CircleShape(at, OUTER, "outer"), carriers[0], letter)
         if len(joined) > 1 and painter.only is None:
-            yield Laid(Layer.PIN, Circle(at, PIN + 3.5, "pin ink"), carriers[0], letter)
+            yield Laid(Layer.PIN, CircleShape(at, PIN + 3.5, "pin ink"), carriers[0], letter)
         if joined:
-            yield Laid(Layer.PIN, Circle(at, PIN, "pin ink"), carriers[0], letter)
+            yield Laid(Layer.PIN, CircleShape(at, PIN, "pin ink"), carriers[0], letter)
         elif letter not in gliding(painter):
-            yield Laid(Layer.PIN, Circle(at, 2.5, "dot"), carriers[0], letter)
+            yield Laid(Layer.PIN, CircleShape(at, 2.5, "dot"), carriers[0], letter)
 
 
 def joints(painter: Painter, letter: str) -> tuple[str, ...]:
@@ -121,7 +121,7 @@ def turning(painter: Painter, step: DrivenPair, at: complex, sense: float) -> tu
     back = HEAD / TURN_RADIUS
     end = at + stop * np.exp(-1j * way * back * 0.8) * TURN_RADIUS
     heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
-    arc = Arc(at + start * TURN_RADIUS, complex(end), TURN_RADIUS, way > 0, "drive")
+    arc = ArcShape(at + start * TURN_RADIUS, complex(end), TURN_RADIUS, way > 0, "drive")
     return arc, arrow_head(complex(tip), complex(heading), "drive-head")
 
 

@@ -17,7 +17,7 @@ GAP = 30.0
 
 
 @dataclass(frozen=True)
-class Part:
+class PicturePart:
     """A part with its size, its upper left corner at zero."""
 
     shapes: tuple[Shape, ...]
@@ -25,13 +25,13 @@ class Part:
     height: float
 
 
-def in_rows(parts: Sequence[Part], sign: str = "") -> tuple[list[Shape], float, float]:
+def in_rows(parts: Sequence[PicturePart], sign: str = "") -> tuple[list[Shape], float, float]:
     """The parts side by side, in rows, with a sign between them; and the size of them all.
 
-    >>> in_rows([Part((), 300.0, 100.0)] * 4)[1:]
+    >>> in_rows([PicturePart((), 300.0, 100.0)] * 4)[1:]
     (1016.0, 245.0)
     """
-    rows: list[list[Part]] = []
+    rows: list[list[PicturePart]] = []
     for part in parts:
         if rows and sum(p.width + GAP for p in rows[-1]) + part.width <= WIDEST:
             rows[-1].append(part)

@@ -32,7 +32,7 @@ class Strokes:
 
 
 @dataclass(frozen=True)
-class Circle:
+class CircleShape:
     """A circle."""
 
     centre: complex
@@ -41,7 +41,7 @@ class Circle:
 
 
 @dataclass(frozen=True)
-class Arc:
+class ArcShape:
     """An arc of a circle of at most half a turn, from `start` to `stop`; `sweep` where it is clockwise on paper."""
 
     start: complex
@@ -62,7 +62,7 @@ class Text:
 
 
 @dataclass(frozen=True)
-class Group:
+class ShapeGroup:
     """Shapes that belong together, with a title that a browser shows under the pointer.
 
     `links` are the names of the links that they show.
@@ -74,13 +74,13 @@ class Group:
     links: tuple[str, ...] = ()
 
 
-Shape: TypeAlias = Polyline | Polygon | Strokes | Circle | Arc | Text | Group
+Shape: TypeAlias = Polyline | Polygon | Strokes | CircleShape | ArcShape | Text | ShapeGroup
 
 
 def corners(shapes: Iterable[Shape]) -> list[complex]:
     """Points between which some shapes lie, their texts left out.
 
-    >>> corners([Circle(0j, 1.0, "pin")])
+    >>> corners([CircleShape(0j, 1.0, "pin")])
     [(-1-1j), (1+1j)]
     """
     found: list[complex] = []
@@ -89,10 +89,10 @@ def corners(shapes: Iterable[Shape]) -> list[complex]:
             found += shape.points
         elif isinstance(shape, Strokes):
             found += [point for line in shape.lines for point in line]
-        elif isinstance(shape, Circle):
+        elif isinstance(shape, CircleShape):
             reach = shape.radius * (1 + 1j)
             found += [shape.centre - reach, shape.centre + reach]
-        elif isinstance(shape, Arc):
+        elif isinstance(shape, ArcShape):
             # the middle of its bulge too
             chord = shape.stop - shape.start
             sag = shape.radius - (max(0.0, shape.radius**2 - abs(chord) ** 2 / 4.0)) ** 0.5
@@ -105,11 +105,11 @@ def corners(shapes: Iterable[Shape]) -> list[complex]:
 def leaves(shapes: Iterable[Shape]) -> Iterator[Shape]:
     """All shapes that are no groups, in the order in which they are drawn.
 
-    >>> list(leaves([Group((Circle(0j, 1.0, "pin"),))]))
-    [Circle(centre=0j, radius=1.0, style='pin')]
+    >>> list(leaves([ShapeGroup((CircleShape(0j, 1.0, "pin"),))]))
+    [CircleShape(centre=0j, radius=1.0, style='pin')]
     """
     for shape in shapes:
-        if isinstance(shape, Group):
+        if isinstance(shape, ShapeGroup):
             yield from leaves(shape.shapes)
         else:
             yield shape

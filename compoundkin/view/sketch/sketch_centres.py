@@ -12,7 +12,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.view.sketch.label_places import Label, around, text_half
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Circle, Polyline, Shape
+from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape
 from compoundkin.view.sketch.sketch_style import SMALL
 from compoundkin.view.sketch.window import Window
 
@@ -110,7 +110,7 @@ def _span(points: list[complex]) -> tuple[complex, complex]:
 def centre_shapes(found: ShownCentres) -> list[Shape]:
     """The lines and a dot for each centre."""
     dots = {(round(p.real), round(p.imag)): p for p in found.places.values()}
-    return [*(Polyline(line, "ray") for line in found.lines), *(Circle(p, DOT, "centre") for p in dots.values())]
+    return [*(Polyline(line, "ray") for line in found.lines), *(CircleShape(p, DOT, "centre") for p in dots.values())]
 
 
 def centre_labels(found: ShownCentres) -> list[Label]:

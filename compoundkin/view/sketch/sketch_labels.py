@@ -13,7 +13,7 @@ from compoundkin.view.sketch.link_shapes import edges, skeleton
 from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.pin_shapes import joints
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Circle, Group, Shape, Text
+from compoundkin.view.sketch.shapes import CircleShape, Shape, ShapeGroup, Text
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, NUMBER, PIN, SMALL, style_of
 from compoundkin.view.sketch.slide_shapes import guide_line, rod_line
 
@@ -115,8 +115,8 @@ def label_shapes(scene: Scene, found: dict[str, complex]) -> list[Shape]:
 
 def badge(scene: Scene, name: str, at: complex) -> Shape:
     """The number of a link in a circle of its colour."""
-    rim = Circle(at, NUMBER, f"pin {style_of('ring', scene.groups[name])}")
-    return Group((rim, Text(at, str(scene.numbers[name]), "number")), links=(name,))
+    rim = CircleShape(at, NUMBER, f"pin {style_of('ring', scene.groups[name])}")
+    return ShapeGroup((rim, Text(at, str(scene.numbers[name]), "number")), links=(name,))
 
 
 def lines_of_text(parts: Sequence[str], width: float) -> list[str]:

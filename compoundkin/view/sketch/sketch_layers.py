@@ -14,7 +14,7 @@ from compoundkin.view.sketch.link_shapes import body, edges, skeleton
 from compoundkin.view.sketch.painter import Laid, Layer, Painter
 from compoundkin.view.sketch.pin_shapes import drives, pins
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Group, Polygon, Polyline, Shape, corners
+from compoundkin.view.sketch.shapes import Polygon, Polyline, Shape, ShapeGroup, corners
 from compoundkin.view.sketch.symbol_shapes import marks
 from compoundkin.view.sketch.window import Window, fitted, window_of
 
@@ -88,12 +88,12 @@ def in_layers(painter: Painter, *, grounded: bool = True) -> list[Laid]:
 def by_links(laid: Iterable[Laid]) -> list[Shape]:
     """Shapes in their order, those of one link that follow each other as a group of that link."""
     runs = groupby(laid, key=lambda one: one.link)
-    return [Group(tuple(one.shape for one in run), links=(link,)) for link, run in runs]
+    return [ShapeGroup(tuple(one.shape for one in run), links=(link,)) for link, run in runs]
 
 
-def ghost(scene: Scene, window: Window) -> Group:
+def ghost(scene: Scene, window: Window) -> ShapeGroup:
     """A scene drawn faintly."""
-    return Group(tuple(layered(Painter(scene, window), grounded=False)), "ghost")
+    return ShapeGroup(tuple(layered(Painter(scene, window), grounded=False)), "ghost")
 
 
 def path(scene: Scene, window: Window, letter: str) -> list[Shape]:

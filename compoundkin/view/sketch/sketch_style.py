@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from compoundkin.view.sketch.shapes import Arc, Circle, Group, Polygon, Polyline, Shape, Strokes, Text
+from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text
 
 # Sizes that shapes are made with, in picture units.
 PIN = 4.5
@@ -130,8 +130,8 @@ def _rule(name: str, paper: int) -> str:
 
 def _styles(shapes: Iterable[Shape]) -> Iterable[str]:
     for shape in shapes:
-        if isinstance(shape, Group):
+        if isinstance(shape, ShapeGroup):
             yield shape.style
             yield from _styles(shape.shapes)
-        elif isinstance(shape, Polyline | Polygon | Strokes | Circle | Arc | Text):
+        elif isinstance(shape, Polyline | Polygon | Strokes | CircleShape | ArcShape | Text):
             yield shape.style

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.view.sketch.arrows import LONGEST, Scale, rates_of, scale_of, scale_shapes, vector_shapes, wanted
+from compoundkin.view.sketch.arrows import LONGEST, VectorScale, rates_of, scale_of, scale_shapes, vector_shapes, wanted
 from compoundkin.view.sketch.label_places import placed
 from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.picture import Picture, checked_size
@@ -52,7 +52,7 @@ def sketch(what: Drawable, wishes: Wishes) -> Picture:
     return _finished(scene, window, [*faint, *sketch, *names], notes, scales, checked_size(wishes.size))
 
 
-def _scaled(scene: Scene, window: Window, kinds: Sequence[str]) -> tuple[Window, list[Scale]]:
+def _scaled(scene: Scene, window: Window, kinds: Sequence[str]) -> tuple[Window, list[VectorScale]]:
     """The scales of vectors, and the window made large enough for them."""
     unit, length = scene.mechanism.unit, LONGEST * window.diagonal
     found = [scale_of(kind, rates_of(scene, kind), length, unit) for kind in kinds]
@@ -63,14 +63,19 @@ def _scaled(scene: Scene, window: Window, kinds: Sequence[str]) -> tuple[Window,
     return (fitted(window, np.array([*inner, *tips])) if tips else window), scales
 
 
-def _arrows(scene: Scene, window: Window, scales: Sequence[Scale]) -> list[Shape]:
+def _arrows(scene: Scene, window: Window, scales: Sequence[VectorScale]) -> list[Shape]:
     """The vectors of all points."""
     places = {letter: complex(window.at(place)) for letter, place in scene.letters.items()}
     return [shape for scale in scales for shape in vector_shapes(places, rates_of(scene, scale.kind), scale)]
 
 
 def _finished(
-    scene: Scene, window: Window, shapes: list[Shape], notes: list[str], scales: Sequence[Scale], size: float | None
+    scene: Scene,
+    window: Window,
+    shapes: list[Shape],
+    notes: list[str],
+    scales: Sequence[VectorScale],
+    size: float | None,
 ) -> Picture:
     """The picture with what stands below it: notes and the scales of vectors."""
     texts, height = below(lines_of_text(notes, window.width - 32.0), window.height)

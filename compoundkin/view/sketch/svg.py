@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 
-from compoundkin.view.sketch.shapes import Arc, Circle, Group, Polygon, Polyline, Shape, Strokes, Text
+from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text
 from compoundkin.view.sketch.sketch_style import css
 
 FONT = "font-family:Helvetica,Arial,sans-serif"
@@ -47,7 +47,7 @@ def document(
 def inline(shapes: Sequence[Shape], width: float, height: float, title: str, description: str = "") -> str:
     """A picture as part of a page: as wide as there is room, its style that of the page, its links told.
 
-    >>> inline((Group((), links=("bar", "block")),), 100, 50, "A").splitlines()[2]
+    >>> inline((ShapeGroup((), links=("bar", "block")),), 100, 50, "A").splitlines()[2]
     '<g data-links="bar,block">'
     """
     name = escape(f"{title}. {description}" if description else title)
@@ -81,7 +81,7 @@ def number(value: float) -> str:
 def elements(shapes: Iterable[Shape], *, tagged: bool = False) -> Iterator[str]:
     """The elements of shapes, line by line; `tagged` tells the links that groups of them show."""
     for shape in shapes:
-        if isinstance(shape, Group):
+        if isinstance(shape, ShapeGroup):
             tag = f' data-links="{link_names(shape.links)}"' if tagged and shape.links else ""
             if shape.style or shape.title or tag:
                 yield f"<g{_class(shape.style)}{tag}>"
@@ -94,16 +94,16 @@ def elements(shapes: Iterable[Shape], *, tagged: bool = False) -> Iterator[str]:
             yield _element(shape)
 
 
-def _element(shape: Polyline | Polygon | Strokes | Circle | Arc | Text) -> str:
+def _element(shape: Polyline | Polygon | Strokes | CircleShape | ArcShape | Text) -> str:
     style = _class(shape.style)
     if isinstance(shape, Text):
         x, y = number(shape.at.real), number(shape.at.imag)
         anchor = f' text-anchor="{shape.anchor}"' if shape.anchor != "start" else ""
         return f'<text{style} x="{x}" y="{y}" dy="{BASELINE:g}em"{anchor}>{escape(shape.text)}</text>'
-    if isinstance(shape, Circle):
+    if isinstance(shape, CircleShape):
         x, y = number(shape.centre.real), number(shape.centre.imag)
         return f'<circle{style} cx="{x}" cy="{y}" r="{number(shape.radius)}"/>'
-    if isinstance(shape, Arc):
+    if isinstance(shape, ArcShape):
         radius = number(shape.radius)
         way = f"M{_pair(shape.start)}A{radius} {radius} 0 0 {int(shape.sweep)} {_pair(shape.stop)}"
         return f'<path{style} d="{way}"/>'

@@ -11,7 +11,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Sliding, Strap, Stud, Track, Wheel
 from compoundkin.view.sketch.painter import Laid, Layer, Painter
 from compoundkin.view.sketch.scene import Seen
-from compoundkin.view.sketch.shapes import Circle, Polygon, Polyline, Strokes
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Strokes
 from compoundkin.view.sketch.sketch_style import PIN, STUD
 from compoundkin.view.sketch.slide_shapes import BEYOND, sliding
 from compoundkin.view.sketch.strokes import direction, hatching, ticks
@@ -57,7 +57,7 @@ def _groove(painter: Painter, seen: Seen, mark: Groove) -> Iterator[Laid]:
 
 def _stud(painter: Painter, seen: Seen, mark: Stud) -> Iterator[Laid]:
     link = seen.members[mark.member]
-    yield Laid(Layer.PIN, Circle(painter.place(link, mark.at), STUD, "dot"), link)
+    yield Laid(Layer.PIN, CircleShape(painter.place(link, mark.at), STUD, "dot"), link)
 
 
 def _disc(painter: Painter, seen: Seen, mark: Wheel) -> Iterator[Laid]:
@@ -65,8 +65,8 @@ def _disc(painter: Painter, seen: Seen, mark: Wheel) -> Iterator[Laid]:
     middle, radius = painter.place(link, mark.at), float(mark.radius * painter.window.scale)
     e = painter.along(link, 1 + 0j)
     if mark.is_ring:
-        yield Laid(Layer.WHEEL, Circle(middle, radius, painter.style("line", link)), link)
-        yield Laid(Layer.WHEEL, Circle(middle, radius + RIM, painter.style("line", link)), link)
+        yield Laid(Layer.WHEEL, CircleShape(middle, radius, painter.style("line", link)), link)
+        yield Laid(Layer.WHEEL, CircleShape(middle, radius + RIM, painter.style("line", link)), link)
         if link == FRAME:
             count = max(12, round(2.0 * np.pi * radius / (2.0 * CLOSEST)))
             lines = ticks(middle, radius + RIM, 0.0, count, 0.0, RIM / 1.5)
@@ -75,7 +75,7 @@ def _disc(painter: Painter, seen: Seen, mark: Wheel) -> Iterator[Laid]:
             spoke = Polyline((middle + e * radius, middle + e * (radius + RIM)), painter.style("bar", link))
             yield Laid(Layer.WHEEL, spoke, link)
     else:
-        yield Laid(Layer.WHEEL, Circle(middle, radius, painter.style("plate", link)), link)
+        yield Laid(Layer.WHEEL, CircleShape(middle, radius, painter.style("plate", link)), link)
         if radius > TINY and link != FRAME:
             hand = Polyline((middle + e * radius * 0.62, middle + e * radius), painter.style("line", link))
             yield Laid(Layer.WHEEL, hand, link)

@@ -8,12 +8,12 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.model.elements import FRAME
-from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, Scale, rates_of, scale_of, scale_shapes, wanted
+from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, VectorScale, rates_of, scale_of, scale_shapes, wanted
 from compoundkin.view.sketch.label_places import around, placed, text_half
 from compoundkin.view.sketch.link_shapes import outline
 from compoundkin.view.sketch.picture import Picture, checked_size
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Circle, Group, Polygon, Polyline, Shape, Text
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text
 from compoundkin.view.sketch.shown_pose import Drawable, pose_notes, scene_of
 from compoundkin.view.sketch.sketch_labels import SEPARATOR, below
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, STUD, style_of
@@ -65,16 +65,16 @@ def _images(scene: Scene, ends: Mapping[str, complex], pole: complex) -> list[Sh
     for link, points in scene.points.items():
         corners = outline([ends.get(letter, pole) for letter in points])
         if link != FRAME and len(corners) == 2:
-            shapes.append(Group((Polyline(tuple(corners), style_of("line", scene.groups[link])),), title=link))
+            shapes.append(ShapeGroup((Polyline(tuple(corners), style_of("line", scene.groups[link])),), title=link))
         elif link != FRAME and len(corners) > 2:
-            shapes.append(Group((Polygon(tuple(corners), style_of("plate", scene.groups[link])),), title=link))
+            shapes.append(ShapeGroup((Polygon(tuple(corners), style_of("plate", scene.groups[link])),), title=link))
     return shapes
 
 
 def _rays(ends: Mapping[str, complex], pole: complex, kind: str) -> list[Shape]:
     """An arrow from the pole to each image, and the pole."""
     far = [end for end in ends.values() if abs(end - pole) > SAME]
-    return [*(shape for end in far for shape in arrow(pole, end, kind)), Circle(pole, STUD, "dot")]
+    return [*(shape for end in far for shape in arrow(pole, end, kind)), CircleShape(pole, STUD, "dot")]
 
 
 def _names(ends: Mapping[str, complex], pole: complex, kind: str) -> list[tuple[str, complex]]:
@@ -90,7 +90,7 @@ def _names(ends: Mapping[str, complex], pole: complex, kind: str) -> list[tuple[
     return [(", ".join(dict.fromkeys(names)), place) for names, place in found]
 
 
-def _framed(scene: Scene, window: Window, shapes: list[Shape], scale: Scale, size: float | None) -> Picture:
+def _framed(scene: Scene, window: Window, shapes: list[Shape], scale: VectorScale, size: float | None) -> Picture:
     texts, height = below([SEPARATOR.join(pose_notes(scene))], window.height)
     texts += scale_shapes(scale, height)
     height += LINE

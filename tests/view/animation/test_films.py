@@ -17,7 +17,7 @@ from compoundkin.view.animation import gif as gif_module
 from compoundkin.view.animation import mp4 as mp4_module
 from compoundkin.view.animation.film_palette import APART, indices, nearest_table, palette
 from compoundkin.view.animation.pixels import pixel_size, pixels
-from compoundkin.view.sketch.shapes import Circle, Text, leaves
+from compoundkin.view.sketch.shapes import CircleShape, Text, leaves
 from compoundkin.view.sketch.sketch_style import NUMBER
 from tests import catalog
 
@@ -54,11 +54,11 @@ def gif_of(path: Path) -> tuple[list[np.ndarray], list[int], int]:
 def test_in_every_frame_pins_are_where_the_points_are(name: str) -> None:
     motion = catalog.motion(name)
     animation = motion.animate(paths=True, vectors="velocity", seconds=1)
-    poses = animation.sketch.scene.known[animation.course.poses[animation.course.frames]]
+    poses = animation.sketch.scene.known[animation.timeline.poses[animation.timeline.frames]]
     for k, pose in enumerate(poses):
         picture = animation.frame(k)
         assert picture.window is not None
-        circles = np.array([shape.centre for shape in leaves(picture.shapes) if isinstance(shape, Circle)])
+        circles = np.array([shape.centre for shape in leaves(picture.shapes) if isinstance(shape, CircleShape)])
         for letter, links in motion.mechanism.carriers.items():
             if len(links) > 1:
                 place = picture.window.at(motion.points[letter].position[pose])
@@ -266,6 +266,8 @@ def test_no_label_leaves_the_picture() -> None:
     animation = ck.animate(load_named("hydraulic-digger"))
     window = animation.sketch.window
     for k in range(0, len(animation), 8):
-        badges = [s.centre for s in leaves(animation.frame(k).shapes) if isinstance(s, Circle) and s.radius == NUMBER]
+        badges = [
+            s.centre for s in leaves(animation.frame(k).shapes) if isinstance(s, CircleShape) and s.radius == NUMBER
+        ]
         assert len(badges) == len(animation.sketch.scene.mechanism.links) - 1
         assert all(window.holds(place, NUMBER) for place in badges)

@@ -14,8 +14,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.view.animation.timeline import Course
-from compoundkin.view.sketch.shapes import Arc, Circle, Polygon, Polyline, Shape, Strokes
+from compoundkin.view.animation.timeline import Timeline
+from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, Strokes
 from compoundkin.view.sketch.shapes import leaves as shapes_in
 from compoundkin.view.sketch.sketch_centres import TOGETHER
 from tests import catalog
@@ -89,9 +89,9 @@ def made_of(shape: Shape) -> list[complex]:
         return list(shape.points)
     if isinstance(shape, Strokes):
         return [point for line in shape.lines for point in line]
-    if isinstance(shape, Arc):
+    if isinstance(shape, ArcShape):
         return [shape.start, shape.stop]
-    return [shape.centre if isinstance(shape, Circle) else shape.at]  # type: ignore[union-attr]
+    return [shape.centre if isinstance(shape, CircleShape) else shape.at]  # type: ignore[union-attr]
 
 
 def off(animation: ck.Animation, svg: ET.Element, share: float, pose: int) -> float:
@@ -132,23 +132,23 @@ def case(name: str) -> ck.Motion:
     return CASES[name]()
 
 
-def poses_alone(course: Course) -> np.ndarray:
+def poses_alone(timeline: Timeline) -> np.ndarray:
     """Some of the poses that are shown at a time of their own: where the picture leaps, two have one time."""
-    apart = np.diff(course.times) > 0
+    apart = np.diff(timeline.times) > 0
     alone = np.concatenate([[True], apart]) & np.concatenate([apart, [True]])
-    steps = np.flatnonzero(alone & ((course.times < 1.0) | (not course.returns)))
+    steps = np.flatnonzero(alone & ((timeline.times < 1.0) | (not timeline.returns)))
     return steps[:: max(1, len(steps) // 25)]
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_every_part_is_where_the_solver_puts_it(name: str) -> None:
     animation = case(name).animate()
-    course, svg = animation.course, ET.fromstring(animation.svg)
-    is_steady = "discrete" in animation.svg and not course.has_seam
+    timeline, svg = animation.timeline, ET.fromstring(animation.svg)
+    is_steady = "discrete" in animation.svg and not timeline.has_seam
     assert is_steady == (name == "far apart")
-    for k in poses_alone(course):
-        share = float(course.times[k]) + (1e-4 if is_steady else 0.0)
-        assert off(animation, svg, share, int(course.poses[k])) < NEAR + ROUNDED
+    for k in poses_alone(timeline):
+        share = float(timeline.times[k]) + (1e-4 if is_steady else 0.0)
+        assert off(animation, svg, share, int(timeline.poses[k])) < NEAR + ROUNDED
 
 
 def circles(svg: ET.Element, share: float) -> np.ndarray:
@@ -174,8 +174,12 @@ def test_arrows_are_those_of_the_solver_and_turn_round_on_the_way_back() -> None
     svg = ET.fromstring(animation.svg)
     assert {arrows.scale.kind for arrows in animation.arrows} == {"velocity", "acceleration"}
     parts = len(list(shapes_in(animation.sketch.shapes(0))))
-    for k in poses_alone(animation.course):
-        pose, way, share = int(animation.course.poses[k]), int(animation.course.ways[k]), animation.course.times[k]
+    for k in poses_alone(animation.timeline):
+        pose, way, share = (
+            int(animation.timeline.poses[k]),
+            int(animation.timeline.ways[k]),
+            animation.timeline.times[k],
+        )
         shown = list(drawn(svg, share))[parts:]
         for arrows, kinds in zip(animation.arrows, (shown, shown[2 * len(animation.arrows[0].rates) :]), strict=True):
             for n, letter in enumerate(arrows.rates):
@@ -195,7 +199,7 @@ def test_centres_are_those_of_the_circle_diagram_while_they_are_on_the_picture()
     seen = 0
     for pose in range(1, 72, 5):
         drawn_there = circles(svg, pose / 72.0)
-        framed = np.array([s.centre for s in shapes_in(animation.frame(pose).shapes) if isinstance(s, Circle)])
+        framed = np.array([s.centre for s in shapes_in(animation.frame(pose).shapes) if isinstance(s, CircleShape)])
         for pair in centres:
             point = complex(centres[pair].point[pose])
             place = complex(window.at(point)) if np.isfinite(point) else complex(np.inf)
@@ -228,7 +232,7 @@ def test_nothing_spins_the_wrong_way() -> None:
 def test_without_support_it_shows_the_first_pose() -> None:
     animation = case("turn").animate()
     bare = ET.fromstring(re.sub(r"<animate[^>]*>", "", animation.svg))
-    pose = int(animation.course.poses[0])
+    pose = int(animation.timeline.poses[0])
     assert off(animation, bare, 0.0, pose) < NEAR + ROUNDED
 
 
@@ -254,7 +258,7 @@ def test_every_mechanism_moves(name: str) -> None:
     root = ET.fromstring(animation.svg)
     assert root.iter(f"{SVG}animateTransform")
     assert len(animation.svg) < 400_000
-    assert off(animation, root, 1e-9, int(animation.course.poses[0])) < NEAR + ROUNDED
+    assert off(animation, root, 1e-9, int(animation.timeline.poses[0])) < NEAR + ROUNDED
 
 
 def test_the_arrow_of_a_rolling_wheel_does_not_turn_with_it() -> None:

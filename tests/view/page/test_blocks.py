@@ -24,7 +24,7 @@ from compoundkin.view.page.report_page import Page
 from compoundkin.view.report import Report, page, report
 from compoundkin.view.report.atlas_section import atlas_report
 from compoundkin.view.report.digits import written
-from compoundkin.view.report.report_data import Column, Outcome, Section, Table
+from compoundkin.view.report.report_data import Column, Outcome, Section, TableBlock
 from tests import catalog
 
 from .conftest import HOSTILE
@@ -122,14 +122,14 @@ def test_it_is_well_formed_and_holds_every_word_and_number_of_the_report(name: s
     assert all(after - before <= 1 for before, after in pairwise(reader.headings))
     for section in made.sections:
         assert section.title in reader.text
-        tables = [block for block in section.blocks if isinstance(block, Table)]
+        tables = [block for block in section.blocks if isinstance(block, TableBlock)]
         for k, table in enumerate(tables, 1):
             rows = reader.tables[f"{section.key}-table-{k}"][1:]
             whole = section.key == "outputs" and k == 1
             _holds(table, rows, whole)
 
 
-def _holds(table: Table, rows: list[list[str]], whole: bool) -> None:
+def _holds(table: TableBlock, rows: list[list[str]], whole: bool) -> None:
     """The rows are those of the table; with poses between them where it has only every third or so."""
     assert len(rows) >= len(table.rows) if whole else len(rows) == len(table.rows)
     for k, column in enumerate(table.columns):
@@ -195,7 +195,7 @@ def test_all_poses_of_the_outputs_are_there_and_those_of_the_report_shown(six_ba
     made, html = six_bar
     section = made.section("outputs")
     assert section is not None
-    table = next(block for block in section.blocks if isinstance(block, Table))
+    table = next(block for block in section.blocks if isinstance(block, TableBlock))
     body = html[html.index('id="outputs-table-1"') :]
     body = body[: body.index("</table>")]
     rows = re.findall(r'<tr( class="more")? data-pose="(\d+)">', body)
@@ -208,7 +208,7 @@ def test_numbers_are_sorted_and_copied_with_every_digit() -> None:
     value = 1.0 / 3.0
     columns = Column("name"), Column("x", "mm", "each"), Column("v", style="each"), Column("", style="passed")
     rows = ("a", value, (1.25, -2.0 / 3.0), True), ("b", None, (float("nan"),), False), ("c", 1e-20, (0.5,), None)
-    section = Section("s", "S", (Table(columns, rows),))
+    section = Section("s", "S", (TableBlock(columns, rows),))
     html = Report("R", (section,), Outcome(True, 0, 0, 0, 0, 0, 0)).html()
     assert f'data-sort="{value!r}">0.333333<' in html
     assert f'data-copy="1.25, {-2.0 / 3.0!r}">1.25<br>-0.666667<' in html
@@ -218,7 +218,7 @@ def test_numbers_are_sorted_and_copied_with_every_digit() -> None:
 
 
 def test_rounding_below_the_floor_of_a_column_is_zero_in_copies_too() -> None:
-    table = Table((Column("x", style="fixed", floor=1e-9),), ((1e-12,), (2.5,)))
+    table = TableBlock((Column("x", style="fixed", floor=1e-9),), ((1e-12,), (2.5,)))
     html = Report("R", (Section("s", "S", (table,)),), Outcome(True, 0, 0, 0, 0, 0, 0)).html()
     assert "1e-12" not in html
     assert re.search(r'<td class="number" data-sort="0">0\.0</td>', html)

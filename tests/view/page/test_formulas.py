@@ -12,7 +12,7 @@ from compoundkin.analysis.equations import latex, loop_equations, text
 from compoundkin.files import shipped_mechanisms
 from compoundkin.kinematics.solvable import solvable
 from compoundkin.view.page.mathml import Unread, mathml
-from compoundkin.view.report.report_data import Formula, Outcome, Section
+from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section
 from compoundkin.view.report.report_forms import Report
 
 # The names of elements that MathML Core has, of those that formulas need.
@@ -63,6 +63,6 @@ def test_names_come_through_as_they_are(name: str) -> None:
 def test_what_it_does_not_know_is_shown_as_text(formula: str) -> None:
     with pytest.raises(Unread):
         mathml(formula)
-    section = Section("s", "S", (Formula("a < b", formula),))
+    section = Section("s", "S", (FormulaBlock("a < b", formula),))
     html = Report("R", (section,), Outcome(True, 0, 0, 0, 0, 0, 0)).html()
     assert '<p class="formula"><code>a &lt; b</code></p>' in html

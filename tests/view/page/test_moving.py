@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.files.shipped_mechanisms import load_named, names
-from compoundkin.view.page.moving_data import FEWEST_POSES, MOST_POSES, Moving
+from compoundkin.view.page.moving_data import FEWEST_POSES, MOST_POSES, MotionData
 from compoundkin.view.page.packed_numbers import brief, exact
 from compoundkin.view.page.player import framed, player
 from compoundkin.view.page.viewer import viewer, viewer_of
@@ -44,7 +44,7 @@ def test_packing_is_exact_or_has_seven_digits() -> None:
 
 def test_points_from_the_data_are_those_of_the_solver() -> None:
     motion = six_bar()
-    data = Moving(Sample(motion)).data
+    data = MotionData(Sample(motion)).data
     count = data["poses"]
     assert count == 37
     for point in data["points"]:
@@ -61,7 +61,7 @@ def test_points_from_the_data_are_those_of_the_solver() -> None:
 
 def test_centres_from_the_data_are_the_instant_centres() -> None:
     motion = six_bar()
-    moving = Moving(Sample(motion))
+    moving = MotionData(Sample(motion))
     centres = ck.instant_centres(motion)
     for packed in moving.data["centres"]:
         x, y, w = (unpacked(part, 37) for part in packed["at"])
@@ -75,7 +75,7 @@ def test_centres_from_the_data_are_the_instant_centres() -> None:
 
 def test_lines_lead_through_three_centres_in_a_row() -> None:
     motion = six_bar()
-    data = Moving(Sample(motion)).data
+    data = MotionData(Sample(motion)).data
     at = np.array([[unpacked(part, 37) for part in centre["at"]] for centre in data["centres"]])
     assert data["lines"]
     for line in data["lines"]:
@@ -102,19 +102,19 @@ def test_many_links_have_fewer_poses() -> None:
     large = ck.random_mechanism(20, seed=3, kinds=("RRR",))
     drive = large.drives[0]
     motion = ck.solve(large, {drive.name: drive.values + np.linspace(0, 1e-3, 1000)})
-    moving = Moving(Sample(motion))
+    moving = MotionData(Sample(motion))
     assert FEWEST_POSES <= len(moving.chosen) < 400
     assert moving.data["centres"] == []
     assert len(json.dumps(moving.data)) < 1_300_000
 
 
 def test_what_plays_on_and_on() -> None:
-    assert Moving(Sample(six_bar())).closes
+    assert MotionData(Sample(six_bar())).closes
     part = ck.solve(load_named("six-bar"), {"crank": ck.deg(range(0, 181, 5))})
-    assert not Moving(Sample(part)).closes
+    assert not MotionData(Sample(part)).closes
     timed = ck.solve(load_named("six-bar"), {"crank": 0.0}, speed=2.0, time=np.linspace(0, 1.5, 11))
-    assert Moving(Sample(timed)).data["seconds"] == pytest.approx(1.5)
-    assert Moving(Sample(timed)).data["along"]["name"] == "time"
+    assert MotionData(Sample(timed)).data["seconds"] == pytest.approx(1.5)
+    assert MotionData(Sample(timed)).data["along"]["name"] == "time"
     quick = ck.solve(load_named("six-bar"), {"crank": 0.0}, speed=200.0, time=np.linspace(0, 0.02, 11))
     made = viewer(quick)
     assert made.data["seconds"] == pytest.approx(1.0)
@@ -126,7 +126,7 @@ def test_the_pose_shown_first_is_an_assembled_one() -> None:
     rocker = ck.with_driver(load_named("crank-rocker"), "rocker")
     with pytest.warns(ck.UnassembledPoses):
         motion = ck.solve(rocker, {rocker.drives[0].name: ck.deg(range(0, 360, 5))})
-    data = Moving(Sample(motion)).data
+    data = MotionData(Sample(motion)).data
     assembled = unpacked(data["assembled"], 72)
     np.testing.assert_array_equal(assembled == 1, motion.assembled)
     assert assembled[data["start"]] == 1

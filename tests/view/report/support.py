@@ -8,7 +8,7 @@ from typing import Any
 
 import compoundkin as ck
 from compoundkin.view.report import Report
-from compoundkin.view.report.report_data import Table
+from compoundkin.view.report.report_data import TableBlock
 
 
 def four_bar(frame: Any = 4.0, *more: Any, **words: Any) -> ck.Mechanism:
@@ -31,7 +31,7 @@ def assert_fits(made: Report) -> None:
     assert "…" not in whole
     assert all(line == line.rstrip() for line in lines)
     # every name of a link stands somewhere whole
-    links = next(block for block in made.section("links").blocks if isinstance(block, Table))  # type: ignore[union-attr]
+    links = next(block for block in made.section("links").blocks if isinstance(block, TableBlock))  # type: ignore[union-attr]
     assert all(str(row[0]) in whole for row in links.rows)
 
 

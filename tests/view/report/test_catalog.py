@@ -6,7 +6,7 @@ import pytest
 
 from compoundkin.synthesis.chains import structure_name
 from compoundkin.view.report import Report
-from compoundkin.view.report.report_data import Step
+from compoundkin.view.report.report_data import StepBlock
 from tests import catalog
 from tests.view.report.support import assert_fits, assert_well_formed, parsed
 
@@ -45,5 +45,5 @@ def points_yielded(made: Report) -> list[str]:
     """The points that its groups yield, one after another."""
     section = made.section("groups")
     assert section is not None
-    facts = [dict(block.facts)["yields"] for block in section.blocks if isinstance(block, Step)]
+    facts = [dict(block.facts)["yields"] for block in section.blocks if isinstance(block, StepBlock)]
     return [p for fact in facts if ";" in fact for p in fact.partition("; ")[2].split(" ", 1)[1].split(", ")]

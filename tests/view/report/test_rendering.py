@@ -11,7 +11,7 @@ import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.report import Report, report
 from compoundkin.view.report.digits import written
-from compoundkin.view.report.report_data import Column, Outcome, Paragraph, Section, Table
+from compoundkin.view.report.report_data import Column, Outcome, Paragraph, Section, TableBlock
 from tests.view.report.support import assert_fits, assert_well_formed, four_bar, parsed
 
 ESCAPE = "\x1b"
@@ -51,7 +51,7 @@ def test_the_same_report_is_the_same_text(six_bar: ck.Motion) -> None:
 
 def test_a_wide_table_is_split_with_its_keys_repeated_and_vectors_together() -> None:
     numbers = [Column(f"quantity-{k}.{part}", "mm", "fixed", follows=part == "y") for k in range(6) for part in "xy"]
-    found = Table((Column("crank", "deg", "fixed"), *numbers), ((5.0, *map(float, range(12))),), keys=1)
+    found = TableBlock((Column("crank", "deg", "fixed"), *numbers), ((5.0, *map(float, range(12))),), keys=1)
     lines = made_of(found).text().splitlines()
     heads = [line.split() for line in lines if line.startswith("crank")]
     assert len(heads) > 1
@@ -62,7 +62,7 @@ def test_a_wide_table_is_split_with_its_keys_repeated_and_vectors_together() -> 
 
 
 def test_names_that_look_like_markup_stay_as_they_are() -> None:
-    made = made_of(Paragraph("[bold]x[/bold] :smile: *a*"), Table((Column("[red]h"),), (("[b]",),)))
+    made = made_of(Paragraph("[bold]x[/bold] :smile: *a*"), TableBlock((Column("[red]h"),), (("[b]",),)))
     for part in ("[bold]x[/bold] :smile: *a*", "[red]h", "[b]"):
         assert part in made.text()
 

@@ -8,18 +8,18 @@ from compoundkin.files.shipped_mechanisms import load_named, names
 from compoundkin.kinematics.solvable import solvable
 from compoundkin.view.report import Report, report
 from compoundkin.view.report.mobility_count import equation_count
-from compoundkin.view.report.report_data import Alert, Formula, Paragraph, Step, Table
+from compoundkin.view.report.report_data import Alert, FormulaBlock, Paragraph, StepBlock, TableBlock
 from tests import catalog
 from tests.view.report.support import four_bar
 
 
-def table(made: Report, key: str, index: int = 0) -> Table:
+def table(made: Report, key: str, index: int = 0) -> TableBlock:
     section = made.section(key)
     assert section is not None
-    return [block for block in section.blocks if isinstance(block, Table)][index]
+    return [block for block in section.blocks if isinstance(block, TableBlock)][index]
 
 
-def column(found: Table, name: str) -> list[object]:
+def column(found: TableBlock, name: str) -> list[object]:
     k = [c.name for c in found.columns].index(name)
     return [row[k] for row in found.rows]
 
@@ -27,7 +27,7 @@ def column(found: Table, name: str) -> list[object]:
 def texts(made: Report, key: str) -> str:
     section = made.section(key)
     assert section is not None
-    return "\n".join(b.text for b in section.blocks if isinstance(b, Paragraph | Formula | Alert))
+    return "\n".join(b.text for b in section.blocks if isinstance(b, Paragraph | FormulaBlock | Alert))
 
 
 # --- structure ------------------------------------------------------------------------------------------
@@ -52,7 +52,7 @@ def test_the_structure_of_the_six_bar(six_bar: ck.Motion) -> None:
 def test_each_group_says_what_it_uses_and_yields(six_bar: ck.Motion) -> None:
     section = report(six_bar).section("groups")
     assert section is not None
-    steps = [block for block in section.blocks if isinstance(block, Step)]
+    steps = [block for block in section.blocks if isinstance(block, StepBlock)]
     assert [step.title for step in steps] == [
         "0  The frame and its driven links", "1  RRR dyad: plate and rocker", "2  RPR dyad: bar and block",
     ]  # fmt: skip

@@ -10,7 +10,7 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, NotAssembled
 from compoundkin.files.shipped_mechanisms import load_named, names
 from compoundkin.view.sketch.moving_sketch import moving_sketch
 from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.shapes import Circle, Polyline, Shape, corners, leaves
+from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape, corners, leaves
 from compoundkin.view.sketch.sketch_layers import layered
 from tests import catalog
 
@@ -126,7 +126,7 @@ def test_labels_stay_upright_and_near_their_points() -> None:
     assert all(0 < abs(at) < 40 for at in offsets)
     badges = [p for p in sketch.parts if p.is_label and not p.letter]
     assert {p.link for p in badges} == set(sketch.motion.mechanism.links) - {"frame"}
-    assert all(isinstance(next(leaves(p.shapes)), Circle) for p in badges)
+    assert all(isinstance(next(leaves(p.shapes)), CircleShape) for p in badges)
 
 
 def test_the_whole_catalog_moves() -> None:

@@ -15,7 +15,7 @@ from compoundkin.cli import cli
 from compoundkin.files import shipped_mechanisms
 from compoundkin.structure import decompose, loop_count
 from compoundkin.view.sketch.loops_picture import MOST, polygon
-from compoundkin.view.sketch.shapes import Circle, Group, Polyline, Text, leaves
+from compoundkin.view.sketch.shapes import CircleShape, Polyline, ShapeGroup, Text, leaves
 from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import style_of
 from tests import catalog
@@ -23,8 +23,8 @@ from tests import catalog
 NAMES = ["six-bar", "stephenson-iii", "class-iii-six-bar", "jansen-leg", "planetary-train", "crank-shaper"]
 
 
-def panels(picture: ck.Picture) -> list[Group]:
-    return [shape for shape in picture.shapes if isinstance(shape, Group)]
+def panels(picture: ck.Picture) -> list[ShapeGroup]:
+    return [shape for shape in picture.shapes if isinstance(shape, ShapeGroup)]
 
 
 def headings(picture: ck.Picture) -> list[str]:
@@ -84,7 +84,7 @@ def test_the_arrows_run_around_in_the_colour_of_the_loop() -> None:
     picture = ck.draw(shipped_mechanisms.load_named("stephenson-iii"), kind="loops")
     for k, panel in enumerate(panels(picture), start=1):
         own = [s for s in panel.shapes if isinstance(s, Polyline) and s.style == style_of("bar", k)]
-        pins = [s.centre for s in panel.shapes if isinstance(s, Circle)]
+        pins = [s.centre for s in panel.shapes if isinstance(s, CircleShape)]
         assert len(own) == len(pins) == len(catalog.structure("stephenson-iii").loops[k - 1])
         for arrow, start, stop in zip(own, pins, [*pins[1:], pins[0]], strict=True):
             way = (stop - start) / abs(stop - start)
@@ -116,7 +116,7 @@ def test_loops_of_what_cannot_be_drawn_are_shown_in_its_graph() -> None:
     picture = ck.draw(loose, kind="loops")
     assert picture.description == "frame - rod - arm - bar"
     (panel,) = panels(picture)
-    assert {s.title for s in panel.shapes if isinstance(s, Group)} == {"frame", "rod", "arm", "bar"}
+    assert {s.title for s in panel.shapes if isinstance(s, ShapeGroup)} == {"frame", "rod", "arm", "bar"}
     assert len([s for s in panel.shapes if isinstance(s, Polyline) and s.style == "bar1"]) == 4
 
 

@@ -25,7 +25,7 @@ from compoundkin.model.pairs.symbols import Mark, Pin, Sliding, strap_line
 from compoundkin.structure import decompose
 from compoundkin.view.sketch.label_places import around, placed
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Circle, Group, Polygon, Polyline, Text, leaves
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, ShapeGroup, Text, leaves
 from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import COLOURS, FRAME, INK, PAPER
 from compoundkin.view.sketch.symbol_shapes import PAINTED
@@ -116,10 +116,12 @@ def test_the_parts_are_the_groups_in_solving_order() -> None:
 def test_the_graph_has_a_node_for_each_link_and_a_line_for_each_pair() -> None:
     structure = decompose(shipped_mechanisms.load_named("six-bar"))
     picture = ck.draw(structure, kind="graph")
-    titles = [shape.title for shape in picture.shapes if isinstance(shape, Group)]
+    titles = [shape.title for shape in picture.shapes if isinstance(shape, ShapeGroup)]
     assert set(structure.mechanism.links) <= set(titles)
     assert sum(title.endswith("pair") for title in titles) == len(structure.pairs)
-    nodes = [s.shapes[0].centre for s in picture.shapes if isinstance(s, Group) and isinstance(s.shapes[0], Circle)]
+    nodes = [
+        s.shapes[0].centre for s in picture.shapes if isinstance(s, ShapeGroup) and isinstance(s.shapes[0], CircleShape)
+    ]
     assert min(abs(a - b) for k, a in enumerate(nodes) for b in nodes[:k]) > 40
 
 
@@ -269,7 +271,7 @@ def test_labels_of_crowded_points_do_not_overlap(seed: int) -> None:
     rng = np.random.default_rng(seed)
     points = [complex(*rng.uniform(150, 350, 2)) for _ in range(20)]
     labels = [around(str(k), p, 6 + 6j, 8.0) for k, p in enumerate(points)]
-    found = list(placed(labels, [Circle(p, 4.0, "pin") for p in points], 500, 500).values())
+    found = list(placed(labels, [CircleShape(p, 4.0, "pin") for p in points], 500, 500).values())
     for k, a in enumerate(found):
         assert all(abs((a - b).real) >= 12 or abs((a - b).imag) >= 12 for b in found[:k])
 

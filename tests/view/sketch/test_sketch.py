@@ -16,7 +16,7 @@ import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
 from compoundkin.view.notebook import MOST_LINKS
 from compoundkin.view.sketch.label_places import ROOM, text_half
-from compoundkin.view.sketch.shapes import Arc, Circle, Group, Polygon, Polyline, Text, leaves
+from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, ShapeGroup, Text, leaves
 from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, SMALL
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -56,7 +56,7 @@ def test_pins_are_where_the_solver_puts_them() -> None:
     motion = ck.solve(four_bar(), {"crank": [0.3, 0.9, 1.7]})
     picture = ck.draw(motion, pose=1)
     assert picture.window is not None
-    circles = [shape for shape in of(picture, "pin") if isinstance(shape, Circle) and shape.radius < 5]
+    circles = [shape for shape in of(picture, "pin") if isinstance(shape, CircleShape) and shape.radius < 5]
     for letter in "ABCD":
         place = picture.window.at(complex(motion.points[letter].position[1]))
         assert min(abs(circle.centre - place) for circle in circles) < 1e-9
@@ -79,13 +79,13 @@ def test_a_value_between_poses_is_solved_for_in_the_same_mode(mode: int) -> None
     picture = ck.draw(ck.solve(four_bar(), modes={"coupler": mode}), at=ck.deg(12.34))
     exact = ck.solve(four_bar(), {"crank": ck.deg(12.34)}, modes={"coupler": mode}).points["C"].position
     place = picture.window.at(complex(np.ravel(exact)[0]))
-    assert min(abs(shape.centre - place) for shape in of(picture, "pin") if isinstance(shape, Circle)) < 1e-6
+    assert min(abs(shape.centre - place) for shape in of(picture, "pin") if isinstance(shape, CircleShape)) < 1e-6
 
 
 def test_the_driver_turns_as_its_speed_says() -> None:
     forward, backward = (of(ck.draw(ck.solve(four_bar(), speed=s), at=1.0), "drive") for s in (2.0, -2.0))
-    assert [a.sweep for a in forward if isinstance(a, Arc)] == [False]
-    assert [a.sweep for a in backward if isinstance(a, Arc)] == [True]
+    assert [a.sweep for a in forward if isinstance(a, ArcShape)] == [False]
+    assert [a.sweep for a in backward if isinstance(a, ArcShape)] == [True]
 
 
 def test_a_path_is_that_of_the_point_and_ghosts_are_other_poses() -> None:
@@ -96,7 +96,7 @@ def test_a_path_is_that_of_the_point_and_ghosts_are_other_poses() -> None:
     corners = np.array(path.points)
     assert max(min(abs(corners - place)) for place in places) < 15
     assert abs(corners.real.max() - places.real.max()) < 0.5
-    ghosts = [shape for shape in picture.shapes if isinstance(shape, Group) and shape.style == "ghost"]
+    ghosts = [shape for shape in picture.shapes if isinstance(shape, ShapeGroup) and shape.style == "ghost"]
     assert len(ghosts) == 4
 
 
@@ -158,7 +158,7 @@ def test_one_design_of_several_is_shown() -> None:
         bars = [abs(s.points[1] - s.points[0]) / picture.window.scale for s in of(picture, "bar1")]
         assert any(abs(bar - lengths[design, 0]) < 1e-9 for bar in bars)
         place = picture.window.at(complex(motion.points["C"].position[design, 1]))
-        assert min(abs(s.centre - place) for s in of(picture, "pin") if isinstance(s, Circle)) < 1e-9
+        assert min(abs(s.centre - place) for s in of(picture, "pin") if isinstance(s, CircleShape)) < 1e-9
 
 
 # --- the source ------------------------------------------------------------------------------------------
@@ -187,9 +187,9 @@ def test_everything_is_on_the_paper(name: str) -> None:
 
 
 def _points(shape: object) -> list[complex]:
-    if isinstance(shape, Group):
+    if isinstance(shape, ShapeGroup):
         return [point for inner in shape.shapes for point in _points(inner)]
-    if isinstance(shape, Circle):
+    if isinstance(shape, CircleShape):
         return [shape.centre]
     if isinstance(shape, Text):
         return [shape.at]
@@ -275,7 +275,7 @@ def test_a_mechanism_that_cannot_be_solved_is_shown_as_drawn() -> None:
         ck.drawn(A=0, D=4, B=1j, C=2),
     ]
     picture = ck.draw(ck.Mechanism("Open", *words))
-    assert len([s for s in of(picture, "ink") if isinstance(s, Circle)]) == 2
+    assert len([s for s in of(picture, "ink") if isinstance(s, CircleShape)]) == 2
     loose = ck.Mechanism("Loose", ck.link("frame", A=0), ck.link("rod", A=0, B=1), ck.link("arm", B=0, C=1))
     with pytest.raises(ck.InvalidInput, match="cannot be solved"):
         ck.draw(loose)
@@ -319,7 +319,7 @@ def test_a_slide_without_values_is_drawn_where_it_is_asked_for() -> None:
 def test_grooves_are_as_long_as_the_way_of_their_pins() -> None:
     links = ck.link("frame", A=(0, 0), C=(60, 10)), ck.link("crank", A=(0, 0), B=(15, 0)), ck.link("rod", B=0, P=50)
     arc = ck.arc("rod", on="frame", at="P", centre_at="C", radius=30)
-    motion = ck.solve(ck.Mechanism("Arc", *links, arc, ck.drive("crank"), ck.drawn(P=(60, 40), B=(15, 0))))
+    motion = ck.solve(ck.Mechanism("ArcShape", *links, arc, ck.drive("crank"), ck.drawn(P=(60, 40), B=(15, 0))))
     picture = ck.draw(motion)
     (groove,) = of(picture, "frame-track")
     middle = picture.window.at(60 + 10j)

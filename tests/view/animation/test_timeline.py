@@ -1,4 +1,4 @@
-"""The course of an animation: which poses are shown, in which order, for how long."""
+"""The timeline of an animation: which poses are shown, in which order, for how long."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def rocking() -> ck.Motion:
 
 def indices(animation: ck.Animation) -> np.ndarray:
     """The poses of the frames as indices of the motion."""
-    return animation.sketch.scene.known[animation.course.poses[animation.course.frames]]
+    return animation.sketch.scene.known[animation.timeline.poses[animation.timeline.frames]]
 
 
 def test_a_full_turn_goes_on_for_ever_and_shows_its_end_once() -> None:
     animation = crank().animate()
-    assert animation.course.returns
+    assert animation.timeline.returns
     assert indices(animation).tolist() == list(range(72))
 
 
@@ -46,7 +46,7 @@ def test_what_does_not_end_as_it_began_goes_back_the_way_it_came() -> None:
     assert found.tolist() == [*range(31), *range(29, 0, -1)]
     forced = indices(crank().animate(back=True))
     assert np.array_equal(forced[1:], forced[:0:-1])
-    assert not ck.animate(animation.sketch.motion, back=False).course.returns
+    assert not ck.animate(animation.sketch.motion, back=False).timeline.returns
 
 
 @pytest.mark.parametrize(("poses", "frames"), [(361, 90), (721, 90), (36_001, 100), (12, 11)])
@@ -79,7 +79,7 @@ def test_a_motion_in_time_is_as_fast_as_it_is() -> None:
     mechanism = load_named("crank-rocker")
     motion = ck.solve(mechanism, {"crank": 0.0}, speed=np.pi, time=np.linspace(0.0, 2.0, 401))
     animation = motion.animate()
-    assert animation.course.returns
+    assert animation.timeline.returns
     assert animation.seconds == pytest.approx(2.0)
     assert len(animation) == 50
     half = ck.solve(mechanism, {"crank": 0.0}, speed=np.pi, time=np.linspace(0.0, 1.0, 201)).animate()
@@ -93,7 +93,7 @@ def test_intervals_that_can_be_assembled_are_shown_each_there_and_back() -> None
     assert motion.assembled[indices(animation)].all()
     known = np.flatnonzero(motion.assembled)
     low, high = known[known < 180], known[known > 180]
-    shown = [animation.sketch.scene.known[leg.poses] for leg in animation.course.legs]
+    shown = [animation.sketch.scene.known[leg.poses] for leg in animation.timeline.legs]
     assert [(leg[0], leg[-1]) for leg in shown] == [
         (low[0], low[-1]), (low[-1], low[0]), (high[0], high[-1]), (high[-1], high[0]),
     ]  # fmt: skip
@@ -104,7 +104,7 @@ def test_an_interval_across_the_end_of_a_turn_is_one() -> None:
         warnings.simplefilter("ignore", ck.UnassembledPoses)
         motion = ck.solve(load_named("triple-rocker"), {"driver": ck.deg(np.arange(0.0, 361.0, 2.0))})
     animation = motion.animate()
-    there = animation.sketch.scene.known[animation.course.legs[0].poses]
+    there = animation.sketch.scene.known[animation.timeline.legs[0].poses]
     turned = np.unwrap(ck.deg(2.0 * there))
     assert np.all(np.diff(turned) > 0)
     assert np.max(np.diff(turned)) < ck.deg(2.001)
