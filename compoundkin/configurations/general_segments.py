@@ -71,6 +71,8 @@ def _whole_turns(reached: Number, known: Number) -> Number:
 
 def _add(pieces: list[Piece], row: int, y: Number, turns: list[int], closed: bool) -> None:
     """The pieces of a curve; those of a closed one from its first turning point on."""
+    if len(y) < 2:
+        return  # both arcs of a configuration were lost: there is no curve
     first = len(pieces)
     if closed and turns:
         around = _whole_turns(y[-1], y[0])
