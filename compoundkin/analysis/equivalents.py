@@ -16,6 +16,7 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import Inputs
+from compoundkin.model.attributes import RATES
 from compoundkin.model.elements import Drive, Item, Link, drawn, drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair, slide
@@ -106,7 +107,7 @@ class _Builder:
     def _drive(self, item: Drive) -> Drive:
         value, *rates = (float(np.ravel(v)[0]) for v in self.inputs.drives[item.name])
         return drive(item.link, on=item.on, pair=item.pair, values=value, name=item.name,
-                     **dict(zip(("speed", "acceleration", "jerk"), rates, strict=True)))  # fmt: skip
+                     **dict(zip(RATES, rates, strict=True)))  # fmt: skip
 
     def _pair(self, pair: Pair) -> Iterator[Item]:
         poses = tuple(self.poses[name] for name in pair.members)

@@ -94,8 +94,10 @@ def _ends(kind: Kind) -> str:
 
 def _others(suffix: str) -> str:
     """What else is saved with a suffix."""
-    kinds = [_one(kind) for kind in SUFFIXES if suffix in SUFFIXES[kind]]
-    return f", {' and '.join(kinds)} {'is' if len(kinds) == 1 else 'are'}" if kinds else ""
+    *most, last = [_one(kind) for kind in SUFFIXES if suffix in SUFFIXES[kind]] or [""]
+    if most:
+        return f", {', '.join(most)} and {last} are"
+    return f", {last} is" if last else ""
 
 
 def _one(kind: Kind) -> str:

@@ -86,10 +86,9 @@ def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[st
     from compoundkin.cli import typed_values
     from compoundkin.cli.progress import working
     from compoundkin.kinematics import solve
+    from compoundkin.model.attributes import RATES
 
-    rates = {
-        what: typed_values.of_rates(structure, f"--{what}", asked[f"{what}s"]) for what in ("speed", "acceleration")
-    }
+    rates = {what: typed_values.of_rates(structure, f"--{what}", asked[f"{what}s"]) for what in RATES[:2]}
     modes = typed_values.of_modes(structure, asked["modes"])
     time = typed_values.of_times(asked.get("time"))
     with working("solving"), warnings.catch_warnings(record=True) as caught:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from compoundkin.base.suffixes import SUFFIXES, suffix_of
 from compoundkin.cli.shell import has_colour, put, say, width
 
 if TYPE_CHECKING:
@@ -16,8 +17,7 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-FORMATS = ("text", "markdown", "json", "html")
-BY_SUFFIX = {".md": "markdown", ".markdown": "markdown", ".json": "json", ".html": "html", ".htm": "html"}
+FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
 
 
 def report_options(command: F) -> F:
@@ -33,11 +33,9 @@ def put_report(report: Report, form: str | None, path: str | None) -> None:
     if path is None:
         put(report.text(width(), has_colour(sys.stdout)) if form is None or form == "text" else _written(report, form))
         return
-    from pathlib import Path
-
     from compoundkin.files.atomic import write_atomically
 
-    content = _written(report, form or BY_SUFFIX.get(Path(path).suffix.lower(), "text")).encode("utf-8")
+    content = _written(report, form or SUFFIXES["report"].get(suffix_of(path), "text")).encode("utf-8")
     write_atomically(path, lambda file: file.write(content))
     say(f"Wrote {path}.")
 

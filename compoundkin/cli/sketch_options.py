@@ -5,8 +5,9 @@ from __future__ import annotations
 import click
 
 from compoundkin.cli.drive_options import names
+from compoundkin.model.attributes import ACCELERATION, VELOCITY
 
-VECTORS = ("velocity", "acceleration")
+VECTORS = (VELOCITY, ACCELERATION)
 
 PATHS = click.option("--path", "paths", multiple=True, metavar="POINT", callback=lambda _c, _p, given: names(given),
                      help="Draw the path of a point: its coupler curve. Repeat it, or write commas.")  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from compoundkin.model.attributes import ANGLE
 from compoundkin.model.elements import Drive
 from compoundkin.model.fields import Key
 from compoundkin.model.mechanism import Mechanism
@@ -93,4 +94,4 @@ def quantity_is_angle(quantity: object) -> bool:
     >>> quantity_is_angle("bar.angle"), quantity_is_angle("bar.angular_velocity")
     (True, False)
     """
-    return isinstance(quantity, str) and quantity.endswith(".angle")
+    return isinstance(quantity, str) and quantity.endswith(f".{ANGLE}")

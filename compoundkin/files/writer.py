@@ -11,6 +11,7 @@ from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
 from compoundkin.files.kind_tables import DWELL, KIND, PROGRAM, SEGMENT
 from compoundkin.files.reader import default_name
+from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.elements import Expectation, Link
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import FunctionLaw
@@ -104,7 +105,7 @@ def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
     if item.at:
         out["at"] = {key: _at(angles, key, value) for key, value in item.at}
     owner, _, attribute = item.quantity.partition(".")
-    if owner in mechanism.carriers and attribute in VECTORS:
+    if owner in mechanism.carriers and attribute in OF_POINTS:
         out["value"] = exact_numbers.point(item.value)
     return out
 
@@ -117,9 +118,6 @@ def _at(angles: Mapping[str, bool], key: str, value: float) -> Any:
 def _published(value: complex, angle: bool) -> Any:
     return exact_numbers.point(value) if value.imag else exact_numbers.coordinate(value.real, angle)
 
-
-# What a point has that is written as [x, y].
-VECTORS = ("position", "velocity", "acceleration", "jerk")
 
 WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "name": lambda value, _: value,

@@ -19,6 +19,7 @@ from compoundkin.model.attributes import (
     Attribute,
     Dimension,
     Kind,
+    coordinate_dimension,
     readable,
     unit_of,
     vector_of,
@@ -198,7 +199,7 @@ def owner_of(motion: HasQuantities, kind: Kind, name: str) -> Owner:
     besides: Mapping[str, Attribute] = {}
     dimension: Dimension = "length" if kind == "points" else "angle"
     if kind in ("pairs", "drives"):
-        dimension = "angle" if found.is_angle else "length"
+        dimension = coordinate_dimension(found.is_angle)
         besides = ALSO[dimension]
     return Owner(name, found, dimension, {**CATALOGUE[kind], **besides}, motion.mechanism)
 

@@ -21,7 +21,7 @@ ASSEMBLED, DESIGN = "assembled", "design"
 ANGLES = "radians"
 
 
-class Solved(HasQuantities, Protocol):
+class AtPoses(HasQuantities, Protocol):
     """A motion: what has quantities, at poses."""
 
     @property
@@ -98,7 +98,7 @@ class Table:
         return f"Table({self.title!r}: {len(self)} rows of {len(self.columns)} columns)"
 
 
-def table_of(motion: Solved, *names: str) -> Table:
+def table_of(motion: AtPoses, *names: str) -> Table:
     """The table of a motion: the quantities named, with designs, time and drivers; everything where none is named.
 
     Raises UnknownName for a quantity that the motion does not have.
@@ -121,7 +121,7 @@ def table_of(motion: Solved, *names: str) -> Table:
     return Table(motion.mechanism.title, tuple(columns.values()))
 
 
-def _chosen(motion: Solved, names: Sequence[str]) -> Iterator[Quantity]:
+def _chosen(motion: AtPoses, names: Sequence[str]) -> Iterator[Quantity]:
     """The drivers' values and what is named."""
     found = [quantity(motion, name) for name in names]
     yield from (owner_of(motion, "drives", name).read(VALUE) for name in motion.drives)
@@ -139,12 +139,12 @@ def _designs(shape: tuple[int, ...]) -> Iterator[Quantity]:
         yield Quantity(DESIGN if axes == 1 else f"{DESIGN}{axis}", "", np.indices(shape)[axis].reshape(-1))
 
 
-def _time(motion: Solved) -> Iterator[Quantity]:
+def _time(motion: AtPoses) -> Iterator[Quantity]:
     if motion.time is not None:
         yield Quantity(TIME, unit_of("", "time"), motion.time, dimension="time", symbol="t")
 
 
-def _everything(motion: Solved) -> Iterator[Quantity]:
+def _everything(motion: AtPoses) -> Iterator[Quantity]:
     """All derivatives of all there is; where a pin and a driver have one name, the value is the driver's."""
     for kind, words in TABULATED.items():
         for name in getattr(motion, kind):

@@ -54,12 +54,15 @@ CATALOGUE: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
 ALSO: Mapping[Dimension, Mapping[str, Attribute]] = MappingProxyType(
     {"angle": _catalogue(("angle", "q", 0)), "length": _catalogue(("displacement", "q", 0))}
 )
-VALUE, TIME = next(iter(PAIR)), "time"
-# The length of a point's velocity.
-SPEED = tuple(POINT)[-1]
 # The words of the derivatives, from the zeroth on, that a whole table has of each.
 OF_POINTS, OF_LINKS, OF_PAIRS = tuple(POINT)[:4], tuple(LINK), tuple(PAIR)
-OF_DRIVERS = (VALUE, *tuple(DRIVER)[4:])
+OF_DRIVERS = (OF_PAIRS[0], *tuple(DRIVER)[4:])
+# Those that are asked for by name elsewhere.
+POSITION, VELOCITY, ACCELERATION = OF_POINTS[:3]
+ANGLE, ANGULAR_VELOCITY, ANGULAR_ACCELERATION = OF_LINKS[:3]
+VALUE, DISPLACEMENT, TIME = OF_PAIRS[0], *ALSO["length"], "time"
+# The length of a point's velocity; the rates of a driver.
+SPEED, RATES = tuple(POINT)[-1], OF_DRIVERS[1:]
 TABULATED: Mapping[Kind, tuple[str, ...]] = MappingProxyType(
     {"drives": OF_DRIVERS, "points": OF_POINTS, "links": OF_LINKS, "pairs": OF_PAIRS}
 )
@@ -69,7 +72,7 @@ LENGTH = "length"
 PARTS: Mapping[str, Callable[[Number], Number]] = MappingProxyType({"x": np.real, "y": np.imag, LENGTH: np.abs})
 
 # What may be the time derivative of an attribute, the first that there is; nothing means the attribute of a bare name.
-RATES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+RATE_OF: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         **{a: (b,) for words in (OF_DRIVERS, OF_LINKS, OF_PAIRS) for a, b in pairwise(words)},
         **dict.fromkeys(("", OF_LINKS[0]), (OF_LINKS[1], OF_PAIRS[1])),
@@ -88,6 +91,16 @@ def unit_of(length: str, dimension: Dimension, order: int = 0) -> str:
     """
     units = {"length": length or LENGTH, "angle": RADIANS, TIME: "s", "number": ""}
     return units[dimension] + PER_SECOND[order]
+
+
+def coordinate_dimension(is_angle: bool) -> Dimension:
+    """The dimension of a pair's or driver's coordinate."""
+    return "angle" if is_angle else "length"
+
+
+def after_number(is_angle: bool, length: str) -> str:
+    """The unit of a coordinate as it stands behind a number; nothing where lengths have none."""
+    return "°" if is_angle else f" {length}".rstrip()
 
 
 def readable(unit: str) -> str:

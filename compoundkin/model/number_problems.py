@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.errors import Problem, nearest
-from compoundkin.model.attributes import OF_DRIVERS
+from compoundkin.model.attributes import RATES
 from compoundkin.model.elements import Drive
 from compoundkin.model.fields import Key
 from compoundkin.model.pairs import Pair
@@ -18,8 +18,7 @@ from compoundkin.model.written import Written
 # Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
 ZERO_LENGTH = 1e-12
 
-# What a driver says of its coordinate in numbers, and the rates among it.
-RATES = OF_DRIVERS[1:]
+# What a driver says of its coordinate in numbers.
 DRIVEN = ("values", *RATES)
 
 # What is no array, and is looked at without NumPy: most mechanisms hold nothing else.

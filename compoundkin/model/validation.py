@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compoundkin.base.errors import Problem, nearest
-from compoundkin.model.attributes import TIME
+from compoundkin.model.attributes import RATES, TIME, VALUE
 from compoundkin.model.elements import FRAME, Drive, Item, Link
 from compoundkin.model.number_problems import (
-    RATES,
     drive_problems,
     is_finite,
     no_numbers,
@@ -190,6 +189,6 @@ def _quantities(mechanism: Written) -> Iterator[Problem]:
     for k, e in enumerate(mechanism.expectations):
         owner, _, attribute = e.quantity.partition(".")
         # a file must tell by the word alone whether the number is in degrees
-        if not attribute or (attribute == "value" and owner.split("(")[0] in mechanism.pins):
+        if not attribute or (attribute == VALUE and owner.split("(")[0] in mechanism.pins):
             yield Problem(f"expected[{k}].quantity", f"{e.quantity!r} does not say of what kind the number is",
                           f"write {owner}.angle, {owner}.position or another in full")  # fmt: skip

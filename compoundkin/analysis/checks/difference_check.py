@@ -14,13 +14,14 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block, places
 from compoundkin.kinematics.inputs import Inputs
+from compoundkin.model.attributes import OF_POINTS
 
 # Central differences on eight neighbours: their error is of eighth, eighth and sixth order in the step.
 OFFSETS = np.arange(-4, 5)
 # The step, as a part of the time scale of the series: truncation is then below 1e-10, and rounding, 1e-16, is
 # divided by this to the power of the derivative.
 STEP = 0.008
-NAMES = ("", "velocity", "acceleration", "jerk")
+NAMES = ("", *OF_POINTS[1:])
 LIMITS = (0.0, 1e-9, 1e-7, 1e-5)
 # A step may differ by this much (radians, or parts of the size) from the mean of the slopes at its ends: other
 # branches lie farther away, but for those that are about to meet.

@@ -18,6 +18,7 @@ from compoundkin.analysis.checks.finding import Finding, worst
 from compoundkin.base.errors import NotDetermined
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
+from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs import Pair
 
 # Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
@@ -25,7 +26,7 @@ from compoundkin.model.pairs import Pair
 TOLERANCE = 1e-9
 # Dimensions that must fit although nothing holds them are given to some five digits.
 FITS = 1e-5
-ORDERS = ("closure", "velocity", "acceleration", "jerk")
+ORDERS = ("closure", *OF_POINTS[1:])
 # n links have n (n - 1) / 2 centres and n (n - 1) (n - 2) / 6 triples: beyond this many links they take longer
 # than the motion did, and a mechanism of so many links is no longer checked by them.
 MOST_LINKS = 40

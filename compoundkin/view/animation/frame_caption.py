@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from compoundkin.base.series import Number
+from compoundkin.model.attributes import after_number
 from compoundkin.view.animation.timeline import times_of
 from compoundkin.view.sketch.arrows import VectorScale, scale_shapes
 from compoundkin.view.sketch.moving_sketch import MovingSketch
@@ -132,7 +133,7 @@ class Caption:
             name = step.drive.name
             values = np.broadcast_to(motion.inputs.drives[name][0], shape)[scene.pose[0]][scene.known]
             shown = np.rad2deg(values) if step.pair.free_is_angle else values
-            unit = "°" if step.pair.free_is_angle else f" {scene.mechanism.unit}".rstrip()
+            unit = after_number(step.pair.free_is_angle, scene.mechanism.unit)
             yield f"{name}, {shown.min():.5g} to {shown.max():.5g}{unit}", np.asarray(values, dtype=float)
 
     def _still(self, told: Sequence[tuple[str, Number]]) -> list[str]:

@@ -13,6 +13,7 @@ from compoundkin.analysis.centres import Centres, instant_centres
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
+from compoundkin.model.attributes import ANGULAR_ACCELERATION, ANGULAR_VELOCITY, unit_of
 from compoundkin.view.page.packed_numbers import brief, exact
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, SHORTEST
@@ -82,7 +83,7 @@ class MotionData:
         column, places = self.sample.places
         return {
             "title": mechanism.title,
-            "unit": mechanism.unit or "length",
+            "unit": unit_of(mechanism.unit, "length"),
             "poses": len(self.chosen),
             "all": self.sample.poses,
             "indices": exact(self.chosen) if len(self.chosen) > 1 else 0.0,
@@ -138,7 +139,7 @@ class MotionData:
         found: dict[str, Any] = {"name": name, "number": scene.numbers[name], "group": scene.groups[name]}
         z = self.of(link.origin.position)
         found |= {"x": exact(z.real), "y": exact(z.imag), "angle": exact(self.of(link.angle))}
-        for k, (rate, turning) in enumerate((("v", "angular_velocity"), ("a", "angular_acceleration")), start=1):
+        for k, (rate, turning) in enumerate((("v", ANGULAR_VELOCITY), ("a", ANGULAR_ACCELERATION)), start=1):
             if k <= self.motion.order:
                 z = self.of(link.origin.derivative(k))
                 found[rate] = [brief(z.real), brief(z.imag), brief(self.of(getattr(link, turning)))]

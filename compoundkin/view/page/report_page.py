@@ -8,9 +8,11 @@ import webbrowser
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import ClassVar
 
+from compoundkin.base.suffixes import Kind, suffix_for
 from compoundkin.base.version import VERSION
-from compoundkin.files.atomic import write_atomically
+from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
 from compoundkin.view.page.all_poses import OUTPUTS, all_poses
@@ -25,19 +27,17 @@ from compoundkin.view.report.report_data import Outcome, Section
 
 
 @dataclass(frozen=True)
-class Page:
+class Page(Savable):
     """A page as HTML that needs no other file and no network."""
+
+    saved_as: ClassVar[Kind] = "page"
 
     html: str
     title: str = ""
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it to a file, whole or not at all.
-
-        Raises InvalidInput where the file cannot be written.
-        """
-        made = self.html.encode("utf-8")
-        write_atomically(path, lambda file: file.write(made))
+    def content(self, form: str) -> bytes:
+        """Return the bytes of the file; `form` is "html"."""
+        return self.html.encode("utf-8")
 
     def open(self) -> Path:
         """Write it to a temporary file and show that in the browser, where there is one; the file's path."""
@@ -92,7 +92,7 @@ def _with_viewer(document: Document, moving: Viewer) -> Document:
 
 def temporary() -> Path:
     """A new file for a page that is only looked at."""
-    handle, name = tempfile.mkstemp(prefix="compoundkin-", suffix=".html")
+    handle, name = tempfile.mkstemp(prefix="compoundkin-", suffix=suffix_for("page", "html"))
     os.close(handle)
     return Path(name)
 

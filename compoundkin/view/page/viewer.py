@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, NotAssembled
 from compoundkin.kinematics import Motion
+from compoundkin.model.attributes import ACCELERATION, OF_LINKS, OF_POINTS, VELOCITY
 from compoundkin.model.elements import FRAME
 from compoundkin.view.page.markup import element, hidden, lines, safe
 from compoundkin.view.page.moving_data import MotionData
@@ -22,10 +23,12 @@ from compoundkin.view.sketch.svg import FONT, NATURAL, elements, link_names, num
 MOST_STOPS = 12
 # How much faster or slower than that the motion may be played.
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2")
+# Plots of a page go to accelerations.
+MOST_ORDER = 2
 # What can be shown in the sketch, as it is called: its key, the words, and what they say at length.
 SWITCHES = (
-    ("velocity", "velocities", "velocity vectors of all points"),
-    ("acceleration", "accelerations", "acceleration vectors of all points"),
+    (VELOCITY, "velocities", "velocity vectors of all points"),
+    (ACCELERATION, "accelerations", "acceleration vectors of all points"),
     ("centres", "instant centres", "instant centres with the lines that give them"),
     ("names", "names", "letters of points and numbers of links"),
 )
@@ -149,8 +152,8 @@ def _transport(moving: MotionData) -> str:
 
 def _switches(moving: MotionData, data: dict[str, Any]) -> str:
     """What may be shown or not; only what the motion has."""
-    has = {"velocity": "velocity" in data["vectors"], "acceleration": "acceleration" in data["vectors"],
-           "centres": bool(data["centres"]), "names": True}  # fmt: skip
+    has = {kind: kind in data["vectors"] for kind in (VELOCITY, ACCELERATION)}
+    has |= {"centres": bool(data["centres"]), "names": True}
     boxes = [_box(key, word, told, key == "names") for key, word, told in SWITCHES if has[key]]
     carriers = moving.motion.mechanism.carriers
     letters = [letter for letter in moving.sketch.scene.letters if FRAME not in carriers[letter]]
@@ -181,8 +184,8 @@ def _notes(moving: MotionData) -> Iterator[str]:
 def _plots(moving: MotionData) -> str:
     """The place of the plots, and what else may be plotted."""
     mechanism, order = moving.motion.mechanism, moving.motion.order
-    of_points = ("position", "velocity", "acceleration")[: order + 1]
-    of_links = ("angle", "angular_velocity", "angular_acceleration")[: order + 1]
+    of_points = OF_POINTS[: min(order, MOST_ORDER) + 1]
+    of_links = OF_LINKS[: min(order, MOST_ORDER) + 1]
     points = [letter for letter in moving.sketch.scene.letters if FRAME not in mechanism.carriers[letter]]
     names = [f"{letter}.{word}" for letter in points for word in of_points]
     names += [f"{link}.{word}" for link in mechanism.links if link != FRAME for word in of_links]

@@ -11,6 +11,7 @@ from compoundkin.analysis.coupler.relative_motion import relative_link
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
+from compoundkin.model.attributes import unit_of
 from compoundkin.model.elements import FRAME
 from compoundkin.view.plot import canvas, planar, plot_style
 from compoundkin.view.plot.coupler_plot import fixed_points
@@ -60,7 +61,7 @@ def centrodes(
         for letter, z in body.items():
             one.plot([z.real], [z.imag], marker="x", markersize=6, color=shades[1], linestyle="none", zorder=6)
             shared.labels.append(PointLabel(one, z.real, z.imag, letter, 1j, shades[1]))
-        unit = motion.mechanism.unit or "length"
+        unit = unit_of(motion.mechanism.unit, "length")
         canvas.plane(one, f"x [{unit}]", f"y [{unit}]")
         canvas.legend(one)
         where = f"every {shared.every} poses: {shared.x.label}"

@@ -9,7 +9,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.circuit_search import circuits as all_circuits
 from compoundkin.kinematics.quantities import degrees
-from compoundkin.model.attributes import order_of
+from compoundkin.model.attributes import ANGLE, DISPLACEMENT, VALUE, after_number, order_of
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Group, Structure
@@ -97,8 +97,8 @@ def _title(positions: Positions) -> str:
     parts = [positions.mechanism.title]
     for name, value in found.fixed.items():
         is_angle = positions.drives[name].is_angle
-        at = f"{number(float(degrees(value)))}°" if is_angle else f"{number(value)} {unit}".rstrip()
-        parts.append(f"{name} at {at}")
+        at = number(float(degrees(value)) if is_angle else value)
+        parts.append(f"{name} at {at}{after_number(is_angle, unit)}")
     return ", ".join(parts)
 
 
@@ -109,7 +109,7 @@ def _default(found: Circuits) -> tuple[str, ...]:
         return outputs
     groups, plan = found.structure.groups, found.placing.sweep.plan
     several = [groups[k] for k, solver in enumerate(plan.solvers) if solver.modes != 1]
-    return tuple(_of_group(group) for group in (several or groups)[:MOST_PANELS]) or (f"{found.driver}.value",)
+    return tuple(_of_group(group) for group in (several or groups)[:MOST_PANELS]) or (f"{found.driver}.{VALUE}",)
 
 
 def _of_group(group: Group) -> str:
@@ -117,5 +117,5 @@ def _of_group(group: Group) -> str:
     for pair in group.outer:
         if FRAME in pair.members and pair.is_simple:
             link = next(name for name in pair.members if name != FRAME)
-            return f"{link}.angle" if pair.free_is_angle else f"{pair.name}.displacement"
-    return f"{group.links[0]}.angle"
+            return f"{link}.{ANGLE}" if pair.free_is_angle else f"{pair.name}.{DISPLACEMENT}"
+    return f"{group.links[0]}.{ANGLE}"

@@ -10,6 +10,7 @@ import numpy as np
 from compoundkin.analysis.coupler.relative_motion import relative_link, relative_point
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
+from compoundkin.model.attributes import unit_of
 from compoundkin.model.elements import FRAME
 from compoundkin.view.plot import canvas, planar, plot_style
 from compoundkin.view.plot.plot_picture import Plot
@@ -53,7 +54,7 @@ def paths(
                 planar.curve(axes[0], shared, d, rows[d], colour, names[k])
                 planar.marks(axes[0], shared, d, rows[d], colour, shared.designs == len(curves) == 1)
         fixed_points(axes[0], motion, on, shared)
-        unit = motion.mechanism.unit or "length"
+        unit = unit_of(motion.mechanism.unit, "length")
         canvas.plane(axes[0], f"x [{unit}]", f"y [{unit}]")
         planar.finish(figure, axes, shared, True)
         return canvas.finished(figure, shared.labels)

@@ -12,7 +12,7 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity, known_owners, whole_and_part
-from compoundkin.model.attributes import LENGTH, PARTS, RATES, SPEED, TIME, VALUE, unit_of, vector_of
+from compoundkin.model.attributes import LENGTH, PARTS, RATE_OF, SPEED, TIME, VALUE, unit_of, vector_of
 
 POSE, DRIVEN = "pose", "driver"
 # The scale of angles, in degrees.
@@ -65,7 +65,7 @@ def rate_name(motion: Motion, name: str) -> str:
     own = shown(motion, name)
     vector, part = vector_of(name)
     owner, _, attribute = vector.rpartition(".") if "." in vector else (vector, "", "")
-    for candidate in RATES.get(f"{attribute}.{part}" if part else attribute, ()):
+    for candidate in RATE_OF.get(f"{attribute}.{part}" if part else attribute, ()):
         try:
             found = shown(motion, f"{owner}.{candidate}")
         except UnknownName:
@@ -94,7 +94,8 @@ def along(motion: Motion, against: str | None) -> tuple[Plotted, bool]:
         return driver(motion), True
     found = _named(motion, str(against))
     if found.is_vector:
-        remedy = f"take a part of it: {against}.x, {against}.y, {against}.length"
+        listed = ", ".join(f"{against}.{part}" for part in PARTS)
+        remedy = f"take a part of it: {listed}"
         raise InvalidInput(Problem(against, "nothing can be drawn against a vector", remedy))
     return found, False
 

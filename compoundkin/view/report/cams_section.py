@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.cam_analysis import CamAnalysis, cam_analysis, cam_pairs
+from compoundkin.model.attributes import unit_of
 from compoundkin.view.report.digits import number
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
@@ -42,7 +43,7 @@ def cam_blocks(sample: Sample, found: CamAnalysis) -> Iterator[Block]:
 
 
 def _rows(sample: Sample, found: CamAnalysis) -> Iterator[tuple[Cell, ...]]:
-    unit = sample.motion.mechanism.unit or "length"
+    unit = unit_of(sample.motion.mechanism.unit, "length")
     yield _extremes(sample, "pressure angle", "deg", np.rad2deg(found.pressure_angle))
     yield _extremes(sample, "radius of curvature of the profile", unit, found.radius_of_curvature)
     if found.pitch_radius is not None and found.roller_rate is not None:

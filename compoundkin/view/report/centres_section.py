@@ -14,6 +14,7 @@ from compoundkin.analysis.centres.centre_velocities import POOR
 from compoundkin.analysis.centres.circle_diagram import diagram_of
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.kinematics.quantities import degrees
+from compoundkin.model.attributes import unit_of
 from compoundkin.structure import Structure
 from compoundkin.view.report.digits import number
 from compoundkin.view.report.report_data import Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock
@@ -135,7 +136,7 @@ def _count(shown: CentresSample) -> Iterator[Block]:
 
 def _table(shown: CentresSample, found: Sequence[Centre], how: str) -> TableBlock:
     """A row for each centre; directions and conditioning only where there is something to say."""
-    unit = shown.sample.motion.mechanism.unit or "length"
+    unit = unit_of(shown.sample.motion.mechanism.unit, "length")
     floor = ROUNDING * shown.sample.motion.size
     columns = [Column("centre"), Column("x", unit, "each", floor), Column("y", unit, "each", floor, follows=True)]
     values: list[Iterable[Cell]] = [[_name(centre.links) for centre in found], *_coordinates(shown, found)]

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from compoundkin.kinematics.quantities import degrees
-from compoundkin.model.attributes import PER_SECOND
+from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY
 from compoundkin.model.laws import ConstantAcceleration, ConstantSpeed, FunctionLaw, Law
 from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.laws.time_tables import TimeTable
 from compoundkin.view.report.digits import number
 from compoundkin.view.report.wording import counted, listed
 
-DERIVATIVES = ("coordinate", "velocity", "acceleration")
+DERIVATIVES = ("coordinate", VELOCITY, ACCELERATION)
 
 
 @dataclass(frozen=True)

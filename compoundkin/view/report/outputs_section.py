@@ -12,7 +12,16 @@ import numpy as np
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import FULL_TURN
 from compoundkin.kinematics.quantities import Quantity
-from compoundkin.model.attributes import PER_SECOND, order_of
+from compoundkin.model.attributes import (
+    ANGLE,
+    DEGREES,
+    DISPLACEMENT,
+    POSITION,
+    RATES,
+    coordinate_dimension,
+    order_of,
+    unit_of,
+)
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
@@ -44,8 +53,8 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
     sliding = {pair.members[1]: pair.name for pair in mechanism.written_pairs
                if pair.is_simple and not pair.free_is_angle and pair.members[0] == FRAME}  # fmt: skip
     moving = [name for name in mechanism.links if name != FRAME and name not in driven]
-    lines = [f"{sliding[name]}.displacement" if name in sliding else f"{name}.angle" for name in moving]
-    return tuple([*(f"{name}.position" for name in tracers), *lines][:MOST_OUTPUTS])
+    lines = [f"{sliding[name]}.{DISPLACEMENT}" if name in sliding else f"{name}.{ANGLE}" for name in moving]
+    return tuple([*(f"{name}.{POSITION}" for name in tracers), *lines][:MOST_OUTPUTS])
 
 
 def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:
@@ -68,7 +77,7 @@ def drivers_section(structure: Structure, sample: Sample | None) -> Section:
 
 def _laws(structure: Structure) -> Iterator[Paragraph]:
     """How each driver with a law moves."""
-    steps, unit = driven_pairs(structure), structure.mechanism.unit or "length"
+    steps, unit = driven_pairs(structure), unit_of(structure.mechanism.unit, "length")
     for drive in structure.mechanism.drives:
         if drive.law is not None:
             is_angle = drive.name not in steps or steps[drive.name].pair.free_is_angle
@@ -76,8 +85,9 @@ def _laws(structure: Structure) -> Iterator[Paragraph]:
 
 
 def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, ...]]) -> TableBlock:
-    unit, rate = ("deg", "rad") if is_angle else (structure.mechanism.unit or "length",) * 2
-    rates = Column("speed", rate + PER_SECOND[1], "each"), Column("acceleration", rate + PER_SECOND[2], "each")
+    length, dimension = structure.mechanism.unit, coordinate_dimension(is_angle)
+    unit = DEGREES if is_angle else unit_of(length, dimension)
+    rates = (Column(RATES[k - 1], unit_of(length, dimension, k), "each") for k in (1, 2))
     span = Column("from", unit, "each"), Column("to", unit, "each"), Column("poses", style="each")
     return TableBlock((Column("driver"), Column("drives"), *span, *rates), tuple(rows))
 
@@ -134,9 +144,8 @@ def _introduction(sample: Sample) -> str:
 def _columns(sample: Sample, found: Quantity) -> Iterator[tuple[Column, Any]]:
     """One column for a number, two for a vector."""
     floor = sample.floor(found)
-    parts = ((".x", found.values.real), (".y", found.values.imag)) if found.is_vector else (("", found.values),)
-    for suffix, values in parts:
-        yield Column(found.name + suffix, found.unit, "fixed", floor, follows=suffix == ".y"), values
+    for k, part in enumerate(found.components):
+        yield Column(part.name, part.unit, "fixed", floor, follows=k > 0), part.values
 
 
 def _extremes(sample: Sample, found: Sequence[Quantity]) -> Iterator[Block]:

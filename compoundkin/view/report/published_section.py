@@ -14,7 +14,7 @@ import numpy as np
 from compoundkin.base.errors import NotAssembled, UnassembledPoses, UnknownName
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import HIGHEST_ORDER, TIME
+from compoundkin.model.attributes import HIGHEST_ORDER, RATES, TIME
 from compoundkin.model.elements import Expectation
 from compoundkin.structure import Structure
 from compoundkin.view.report.links_and_pairs import driven_pairs
@@ -23,7 +23,6 @@ from compoundkin.view.report.wording import counted
 
 # Up to so many published numbers are listed one by one; of more, each quantity's nearest to its tolerance.
 MOST_LISTED = 12
-RATES = ("speed", "acceleration", "jerk")
 
 
 @dataclass(frozen=True)

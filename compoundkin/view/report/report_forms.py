@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from compoundkin.base.display import Shows
+from compoundkin.base.suffixes import Kind
+from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
 from compoundkin.view.report.json_text import json_text
@@ -20,11 +22,13 @@ Subject: TypeAlias = Structure | Motion
 
 
 @dataclass(frozen=True)
-class Report(Shows):
+class Report(Shows, Savable):
     """What there is to say about a mechanism, in the order in which it is read.
 
     `subject` is what it is about, for the pictures of its page, and `outputs` and `design` are those it was made with.
     """
+
+    saved_as: ClassVar[Kind] = "report"
 
     title: str
     sections: tuple[Section, ...]
@@ -61,6 +65,11 @@ class Report(Shows):
         from compoundkin.view.page.report_page import page_of
 
         return page_of(self.title, self.sections, self.outcome, self.subject, self.outputs, self.design)
+
+    def content(self, form: str) -> bytes:
+        """Return the bytes of a file in the form "text", "markdown", "json" or "html"."""
+        write = {"text": self.text, "markdown": self.markdown, "json": self.json, "html": self.html}[form]
+        return write().encode("utf-8")
 
     def __repr__(self) -> str:
         return f"Report({self.title!r}: {', '.join(section.key for section in self.sections)})"

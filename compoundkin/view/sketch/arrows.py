@@ -8,12 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY, readable
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text
 from compoundkin.view.sketch.strokes import arrow
 
 # The kinds of vectors: their derivative, and what they are per.
-KINDS_OF_VECTOR: Mapping[str, tuple[int, str]] = {"velocity": (1, "/s"), "acceleration": (2, "/s²")}
+KINDS_OF_VECTOR: Mapping[str, tuple[int, str]] = {
+    word: (order, readable(PER_SECOND[order])) for order, word in ((1, VELOCITY), (2, ACCELERATION))
+}
 # The longest vector is at most this part of the picture's diagonal.
 LONGEST = 0.2
 # A shorter vector is a point.

@@ -19,6 +19,7 @@ from compoundkin.base.errors import (
 )
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion, solve
+from compoundkin.model.attributes import RATES, after_number
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.view.sketch.scene import Scene, scene_as_drawn, scene_of_motion
@@ -126,7 +127,7 @@ def _at_values(motion: Motion, at: dict[str, float], design: int) -> tuple[Motio
     drives = motion.inputs.drives.items()
     rates: Any = {
         key: {name: _rate(numbers, k, design, index) for name, numbers in drives}
-        for k, key in enumerate(("speed", "acceleration", "jerk"), start=1)
+        for k, key in enumerate(RATES, start=1)
     }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnassembledPoses)
@@ -152,9 +153,10 @@ def pose_notes(scene: Scene) -> list[str]:
     """The drivers' values at the pose shown."""
     if scene.shown is None:
         return []
-    unit, found = scene.mechanism.unit, []
+    found = []
     for step in scene.driven:
         value = scene.driver_value(step.drive.name)
-        shown = f"{np.rad2deg(value):.5g}°" if step.pair.free_is_angle else f"{value:.6g} {unit}".rstrip()
-        found.append(f"{step.drive.name} at {shown}")
+        is_angle = step.pair.free_is_angle
+        shown = f"{np.rad2deg(value):.5g}" if is_angle else f"{value:.6g}"
+        found.append(f"{step.drive.name} at {shown}{after_number(is_angle, scene.mechanism.unit)}")
     return found

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from compoundkin.model.attributes import ACCELERATION, VELOCITY
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text
 
 # Sizes that shapes are made with, in picture units.
@@ -36,8 +37,8 @@ COLOURS: tuple[tuple[str, str], ...] = (
     ("#5b4bc4", "#a79bff"),
     ("#b3261e", "#ff8a80"),
 )
-VELOCITY = "#b3261e", "#ff8a80"
-ACCELERATION = "#5b4bc4", "#a79bff"
+OF_VELOCITIES = "#b3261e", "#ff8a80"
+OF_ACCELERATIONS = "#5b4bc4", "#a79bff"
 
 _LINE = "fill:none;stroke-linecap:round;stroke-linejoin:round"
 
@@ -58,10 +59,10 @@ CLASSES: Mapping[str, tuple[str, tuple[str, str]]] = {
     "path": (f"{_LINE};stroke:{{}};stroke-width:1.6", ("#b0004e", "#ff6fa5")),
     "drive": (f"{_LINE};stroke:{{}};stroke-width:2.2", INK),
     "drive-head": ("fill:{}", INK),
-    "velocity": (f"{_LINE};stroke:{{}};stroke-width:2", VELOCITY),
-    "velocity-head": ("fill:{}", VELOCITY),
-    "acceleration": (f"{_LINE};stroke:{{}};stroke-width:2", ACCELERATION),
-    "acceleration-head": ("fill:{}", ACCELERATION),
+    VELOCITY: (f"{_LINE};stroke:{{}};stroke-width:2", OF_VELOCITIES),
+    f"{VELOCITY}-head": ("fill:{}", OF_VELOCITIES),
+    ACCELERATION: (f"{_LINE};stroke:{{}};stroke-width:2", OF_ACCELERATIONS),
+    f"{ACCELERATION}-head": ("fill:{}", OF_ACCELERATIONS),
     "centre": ("fill:{}", ("#b3261e", "#ff8a80")),
     "ray": (f"{_LINE};stroke:{{}};stroke-width:.9;stroke-dasharray:5 4", FAINT),
     "edge": (f"{_LINE};stroke:{{}};stroke-width:1.6", FAINT),

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.model.attributes import VELOCITY
 from compoundkin.model.elements import FRAME
 from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, VectorScale, rates_of, scale_of, scale_shapes, wanted
 from compoundkin.view.sketch.label_places import around, placed, text_half
@@ -35,7 +36,7 @@ def vector_polygon(what: Drawable, wishes: Wishes) -> Picture:
     J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms, chapters 3 and 4 (velocity and
     acceleration images).
     """
-    kinds = wanted(wishes.vectors) or ("velocity",)
+    kinds = wanted(wishes.vectors) or (VELOCITY,)
     if len(kinds) > 1:
         raise InvalidInput(Problem("vectors", "a polygon is one of them", f"one of {', '.join(kinds)}"))
     kind = kinds[0]

@@ -1,0 +1,99 @@
+"""`save`: everything that can be saved, in every form of the one table of suffixes, and what else is told."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+
+import compoundkin as ck
+from compoundkin.base.suffixes import SUFFIXES
+from compoundkin.cli import cli
+from compoundkin.files.shipped_mechanisms import load_named
+
+
+@cache
+def motion() -> ck.Motion:
+    return ck.solve(load_named("crank-rocker"), {"crank": ck.deg([0, 20, 40])})
+
+
+MAKERS: dict[str, Callable[[], Any]] = {
+    "mechanism": lambda: load_named("crank-rocker"),
+    "table": lambda: motion().table("rocker.angle"),
+    "picture": lambda: ck.draw(motion(), size=60),
+    "plot": lambda: motion().plot("rocker.angle"),
+    "animation": lambda: motion().animate(size=60, seconds=0.2),
+    "page": lambda: ck.report(motion()).page(),
+    "report": lambda: ck.report(motion()),
+}
+BEGINS = {
+    "toml": b"format = 1", "csv": b"crank.value [deg],rocker.angle [deg],assembled\n", "npz": b"PK", "parquet": b"PAR1",
+    "png": b"\x89PNG", "pdf": b"%PDF", "gif": b"GIF8", "html": b"<!DOCTYPE html>", "markdown": b"# ", "json": b"{",
+}  # fmt: skip
+ALL = [(kind, suffix) for kind, forms in SUFFIXES.items() for suffix in forms]
+
+
+@pytest.mark.parametrize(("kind", "suffix"), ALL)
+def test_everything_is_saved_in_every_form_of_the_table(kind: str, suffix: str, tmp_path: Path) -> None:
+    if suffix == ".mp4" and not shutil.which("ffmpeg"):
+        pytest.skip("there is no ffmpeg")
+    path = tmp_path / f"a{suffix.upper()}"
+    ck.save(MAKERS[kind](), path)
+    content = path.read_bytes()
+    form = SUFFIXES[kind][suffix]  # type: ignore[index]
+    assert content.startswith(BEGINS.get(form, b""))
+    assert len(content) > 100 or kind == "table"
+
+
+def test_a_motion_is_saved_as_its_whole_table(tmp_path: Path) -> None:
+    ck.save(motion(), tmp_path / "motion.csv")
+    ck.save(motion().table(), tmp_path / "table.csv")
+    assert (tmp_path / "motion.csv").read_bytes() == (tmp_path / "table.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "told"),
+    [
+        ("plot", "a.gif", "a plot is not saved as '.gif', an animation is; plots end in .png, .svg, .pdf"),
+        ("table", "a.xlsx", "a table is not saved as '.xlsx'; tables end in .csv, .json, .npz, .parquet"),
+        ("picture", "a", "the file has no suffix; pictures end in .svg, .png, .pdf"),
+        ("mechanism", "a.md", "a mechanism is not saved as '.md', a report is; mechanism files end in .toml, .json"),
+        ("page", "a.json", "a mechanism, a table and a report are; pages end in .html"),
+        ("report", "a.csv", "a report is not saved as '.csv', a table is; reports end in .txt, .md, .json, .html"),
+    ],
+)
+def test_a_wrong_suffix_is_told_what_can_be_saved_so(kind: str, name: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(ck.InvalidInput) as error:
+        ck.save(MAKERS[kind](), tmp_path / name)
+    assert told in str(error.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_cannot_be_saved_is_told_what_can(tmp_path: Path) -> None:
+    with pytest.raises(ck.InvalidInput, match=r"a list cannot be saved; mechanism files end in .*; tables end in .*; "):
+        ck.save([1, 2], tmp_path / "a.csv")
+
+
+def test_pages_and_reports_need_no_suffix(tmp_path: Path) -> None:
+    ck.save(MAKERS["page"](), tmp_path / "page")
+    ck.save(MAKERS["report"](), tmp_path / "report")
+    assert (tmp_path / "page").read_text().startswith("<!DOCTYPE html>")
+    assert (tmp_path / "report").read_text() == ck.report(motion()).text()
+
+
+@pytest.mark.parametrize("kind", SUFFIXES)
+def test_a_file_that_cannot_be_written_is_told(kind: str, tmp_path: Path) -> None:
+    with pytest.raises(ck.InvalidInput, match="cannot be written"):
+        ck.save(MAKERS[kind](), tmp_path / "missing" / f"a{next(iter(SUFFIXES[kind]))}")  # type: ignore[index]
+
+
+@pytest.mark.parametrize(("verb", "kind"), [("solve", "table"), ("draw", "picture"), ("plot", "plot")])
+def test_the_command_line_refuses_what_python_refuses_before_it_solves(verb: str, kind: str) -> None:
+    result = CliRunner().invoke(cli, [verb, "six-bar", "-o", "a.xyz"], standalone_mode=False)
+    assert isinstance(result.exception, ck.InvalidInput)
+    assert f"a {kind} is not saved as '.xyz'" in str(result.exception)
