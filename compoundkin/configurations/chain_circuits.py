@@ -6,13 +6,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from compoundkin.base.arrays import TURN, wrapped
 from compoundkin.configurations.circuit import Branch, ChangePoint, Circuit, Limit
 from compoundkin.configurations.segment_chains import Chain, Visit
 from compoundkin.configurations.segment_poses import Placing
 from compoundkin.configurations.segments import AWAY, CHANGE, LIMIT, NONE, RANGE, Strands
 from compoundkin.kinematics.configuration import Configuration
-
-TURN = 2.0 * np.pi
 
 
 def built(placing: Placing, chains: tuple[Chain, ...], period: float) -> tuple[Circuit, ...]:
@@ -87,7 +86,7 @@ class _Maker:
 
     def _value(self, s: float) -> float:
         """A driver's value, an angle between -pi and pi."""
-        return float(s - TURN * np.ceil((s - np.pi) / TURN)) if self.period else float(s)
+        return float(wrapped(s)) if self.period else float(s)
 
     def _branch(self, i: int, limits: dict[tuple[int, int], Limit]) -> Branch:
         part = self.parts[i]

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import TURN
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, nearest
 from compoundkin.base.series import Number
@@ -16,7 +17,7 @@ from compoundkin.configurations import dyad_segments, general_segments
 from compoundkin.configurations.all_modes import AllModes, closed_redundant
 from compoundkin.configurations.chain_circuits import built
 from compoundkin.configurations.circuit import Branch, Circuit, Limit, Place, Toggle
-from compoundkin.configurations.driver_range import TURN, range_of
+from compoundkin.configurations.driver_range import range_of
 from compoundkin.configurations.location import located, starting_configuration, starting_values
 from compoundkin.configurations.routes import Route, route
 from compoundkin.configurations.segment_chains import chains

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import TURN
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.configurations.segment_run import Sweep, drawn_angle
@@ -22,7 +23,6 @@ BEGIN = -2.5066282746310002
 MOST_TURNS = 60
 # Orientations this near are one: rounding of angles of many turns.
 SAME = 1e-9
-TURN = 2.0 * np.pi
 # Lengths are followed beyond the reach, for a limit position may lie at the reach itself.
 BEYOND = 1.25
 

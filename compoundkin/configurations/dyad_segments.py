@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.bracketing import bisected, least
 from compoundkin.base.series import Number
 from compoundkin.configurations.segment_run import Sweep
 from compoundkin.configurations.segments import AWAY, CHANGE, LIMIT, NONE, Strands
@@ -25,7 +26,6 @@ HALVINGS = 52
 # How far aside of a double zero the margin is looked at: it then has digits enough, and the last time no curvature.
 BESIDE = (1e-3, 1e-5, 1e-5)
 STEPS = 60
-GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
 class Event(NamedTuple):
@@ -103,11 +103,11 @@ def _events(margins: _Margins) -> list[list[Event]]:
     rows, cell = np.nonzero(good[:, 1:] != good[:, :-1])
     brackets = [(rows, phi[cell], phi[cell + 1])]
     rows, at = _dips(m, good)
-    place, least = _extreme(margins, rows, phi[at - 1], phi[at + 1], np.where(good[rows, at], 1.0, -1.0))
-    crossing = least < -TOUCHING
+    place, lowest = _extreme(margins, rows, phi[at - 1], phi[at + 1], np.where(good[rows, at], 1.0, -1.0))
+    crossing = lowest < -TOUCHING
     r, p = rows[crossing], place[crossing]
     brackets += [(r, phi[at - 1][crossing], p), (r, p, phi[at + 1][crossing])]
-    touching = ~crossing & (least <= TOUCHING) & good[rows, at]
+    touching = ~crossing & (lowest <= TOUCHING) & good[rows, at]
     place = np.where(touching, _centred(margins, rows, place), place)
     found = [[] for _ in range(len(m))]  # type: list[list[Event]]
     for row, angle in zip(rows[touching].tolist(), place[touching].tolist(), strict=True):
@@ -128,21 +128,15 @@ def _dips(m: Number, good: Number) -> tuple[Number, Number]:
 
 
 def _extreme(margins: _Margins, rows: Number, low: Number, high: Number, sense: Number) -> tuple[Number, Number]:
-    """Golden-section search for the least of `sense` times the margin, in all brackets at once."""
-    if not len(rows):
-        return np.zeros(0), np.zeros(0)
-    a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    fa, fb = sense * margins(rows, a), sense * margins(rows, b)
-    for _ in range(STEPS):
-        left = fa < fb
-        low, high = np.where(left, low, a), np.where(left, b, high)
-        new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
-        f = sense * margins(rows, new)
-        a, b = np.where(left, new, b), np.where(left, a, new)
-        fa, fb = np.where(left, f, fb), np.where(left, fa, f)
-        if np.all((np.minimum(fa, fb) < -TOUCHING) | (high - low < TOUCHING)):
-            break
-    return np.where(fa < fb, a, b), np.minimum(fa, fb)
+    """Find the least of `sense` times the margin in all brackets, until all are decided."""
+
+    def value(phi: Number, which: Number) -> Number:
+        return sense[which] * margins(rows[which], phi)
+
+    def going(found: Number, width: Number) -> Number:
+        return ~np.all((found < -TOUCHING) | (width < TOUCHING))
+
+    return least(value, low, high, STEPS, going)
 
 
 def _centred(margins: _Margins, rows: Number, place: Number) -> Number:
@@ -158,11 +152,8 @@ def _bisected(margins: _Margins, rows: Number, low: Number, high: Number) -> Num
     if not len(rows):
         return np.zeros(0)
     rising = margins(rows, high) >= 0
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2.0
-        upper = (margins(rows, middle) >= 0) == rising
-        low, high = np.where(upper, low, middle), np.where(upper, middle, high)
-    return np.where(rising, high, low)
+    inside, outside = np.where(rising, high, low), np.where(rising, low, high)
+    return bisected(lambda phi: margins(rows, phi) >= 0, inside, outside, HALVINGS)[0]
 
 
 def _cuts(margins: _Margins, events: list[list[Event]], modes: tuple[int, ...]) -> Iterator[Cut]:

@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import TURN
+from compoundkin.base.bracketing import bisected
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import NotAssembled, Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.configurations.all_modes import AllModes, first_values
-from compoundkin.configurations.driver_range import TURN, reach_of
+from compoundkin.configurations.driver_range import reach_of
 from compoundkin.kinematics.configuration import Configuration, named
 from compoundkin.kinematics.inputs import Inputs, by_name, inputs
 from compoundkin.kinematics.quantities import degrees
@@ -212,9 +214,7 @@ def _nearest(plan: SolvingOrder, given: Inputs, name: str) -> tuple[float, float
     order = np.argsort(np.abs(offsets), kind="stable")
     best = order[good[order]][0]
     near, far = offsets[best], offsets[best] - np.sign(offsets[best]) * 2.0 * span / (TRIED - 1)
-    for _ in range(HALVINGS):
-        middle = (near + far) / 2.0
-        near, far = (middle, far) if _any(plan, first, name, np.array([here + middle]))[0] else (near, middle)
+    near, _ = bisected(lambda off: _any(plan, first, name, np.array([here + off]))[0], near, far, HALVINGS)
     return abs(near) / (1.0 if is_angle else plan.size), here + near
 
 

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from compoundkin.base.arrays import whole_turns
 from compoundkin.base.series import Number
 from compoundkin.configurations.roadmap import STRIPS, Port, Web
 from compoundkin.configurations.segment_closure import Equations
@@ -65,7 +66,7 @@ def _whole_turns(reached: Number, known: Number) -> Number:
     """What takes the angles of a known state to those with which it was reached."""
     gap = reached - known
     out = np.zeros_like(gap)
-    out[2:-1:3] = 2.0 * np.pi * np.round(gap[2:-1:3] / (2.0 * np.pi))
+    out[2:-1:3] = whole_turns(gap[2:-1:3])
     return out
 
 

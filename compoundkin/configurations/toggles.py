@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from compoundkin.base.arrays import wrapped
+from compoundkin.base.bracketing import bisected
 from compoundkin.base.series import Number
 from compoundkin.configurations.circuit import Circuit, Toggle
 from compoundkin.configurations.segment_poses import Placing
@@ -13,7 +15,6 @@ from compoundkin.model.pairs import Pair
 
 CELLS = 72
 HALVINGS = 48
-TURN = 2.0 * np.pi
 # A link whose rate is below this (of the size, or radians, a radian of the strand's angle) throughout stands still.
 STILL = 1e-9
 
@@ -51,19 +52,22 @@ def _of_link(
     at, cell = np.nonzero((rate[:, 1:] > 0) != (rate[:, :-1] > 0))
     kept = moving[at]
     at, low, high = at[kept], phi[cell[kept]], phi[cell[kept] + 1]
-    rising = _rate(placing, pair, at, high[:, None])[:, 0] > 0 if len(at) else np.zeros(0, dtype=bool)
-    for _ in range(HALVINGS if len(at) else 0):
-        middle = (low + high) / 2.0
-        upper = (_rate(placing, pair, at, middle[:, None])[:, 0] > 0) == rising
-        low, high = np.where(upper, low, middle), np.where(upper, middle, high)
-    values = strands.at(at, low[:, None])[:, 0] if len(at) else np.zeros(0)
+    if not len(at):
+        return
+
+    def rises(phi: Number) -> Number:
+        return _rate(placing, pair, at, phi[:, None])[:, 0] > 0
+
+    rising = rises(high)
+    _, low = bisected(lambda phi: rises(phi) == rising, high, low, HALVINGS)
+    values = strands.at(at, low[:, None])[:, 0]
     owner = {v.row: (c, b) for c in circuits for b in c.branches for v in b.visits}
     period = placing.sweep.plan.driven[placing.sweep.driver].pair.free_is_angle
     for row, angle, s, one in zip(
         at.tolist(), low.tolist(), values.tolist(), placing.configurations(at, values), strict=True
     ):
         circuit, branch = owner[row]
-        value = s - TURN * np.ceil((s - np.pi) / TURN) if period else s
+        value = wrapped(s) if period else s
         yield row, angle, Toggle(float(value), link, pair.name, one, circuit.number, branch.number)
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from compoundkin.base.arrays import whole_turns
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.kinematics.inputs import Inputs
@@ -30,7 +31,7 @@ def approach(
     for name, rest in end.drives.items():
         way = rest[0] - values.get(name, rest[0])
         if plan.driven[name].pair.free_is_angle:
-            way = way - 2.0 * np.pi * np.round(way / (2.0 * np.pi))
+            way = way - whole_turns(way)
         ways[name] = way
     count = 1 + max((spacings(plan, name, way) for name, way in ways.items()), default=0)
     ramp = np.linspace(-1.0, 0.0, count)[None] if count > 1 else np.zeros((1, 1))
@@ -108,7 +109,7 @@ def _nearest(plan: SolvingOrder, given: Inputs, values: Mapping[str, Number]) ->
     for name, value in values.items():
         gap = np.abs(given.drives[name][0] - value)
         if plan.driven[name].pair.free_is_angle:
-            gap = np.abs(gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)))
+            gap = np.abs(gap - whole_turns(gap))
         total = total + gap
     return int(np.argmin(np.broadcast_to(total.max(axis=0), given.poses)))
 

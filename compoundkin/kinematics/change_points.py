@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import column
+from compoundkin.base.bracketing import least
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import blocks, places
@@ -32,7 +34,6 @@ CLEAR = 0.35
 STEEP = 4.0
 # Steps of golden-section search: 0.618**65 is below TOUCHING, for margins that fall linearly to zero.
 STEPS = 65
-GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 BLOCK = 4096
 
 
@@ -164,10 +165,10 @@ def _touching(way: _Way, tracker: Tracker, groups: Sequence[int]) -> _Spots:
                                                            strict=True)))  # fmt: skip
     if not len(spots.groups):
         return spots
-    place, least = _minimum(way, tracker, spots)
+    place, lowest_value = _minimum(way, tracker, spots)
     place = place * way.unit
     snapped = np.where(np.abs(place - np.round(place)) < CLOSE, np.round(place), place)
-    return spots._replace(places=snapped).where((np.abs(least) < TOUCHING) & np.isfinite(least))
+    return spots._replace(places=snapped).where((np.abs(lowest_value) < TOUCHING) & np.isfinite(lowest_value))
 
 
 def _lowest(margin: Number) -> tuple[Number, Number]:
@@ -192,24 +193,11 @@ def _minimum(way: _Way, tracker: Tracker, spots: _Spots) -> tuple[Number, Number
     low = np.maximum(spots.places - 1.0, 0.0)
     high = np.minimum(spots.places + 1.0, way.samples.poses - 1.0)
     steepest = STEEP * np.fmax(_margins(way, tracker, spots, low), _margins(way, tracker, spots, high))
-    a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    fa, fb = (_margins(way, tracker, spots, s) for s in (a, b))
-    going = np.ones(len(low), dtype=bool)
-    for _ in range(STEPS):
-        least = np.fmin(fa, fb)
-        going = going & (least >= -TOUCHING) & (least <= steepest * (high - low))
-        if not going.any():
-            break
-        left = fa < fb
-        low, high = np.where(going & ~left, a, low), np.where(going & left, b, high)
-        new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
-        f = np.where(left, fa, fb)
-        f[going] = _margins(way, tracker, spots.where(going), new[going])
-        old = a, b, fa, fb
-        a, b = np.where(left, new, b), np.where(left, a, new)
-        fa, fb = np.where(left, f, fb), np.where(left, fa, f)
-        a, b, fa, fb = (np.where(going, now, then) for now, then in zip((a, b, fa, fb), old, strict=True))
-    return np.where(fa < fb, a, b), np.minimum(fa, fb)
+
+    def going(found: Number, width: Number) -> Number:
+        return (found >= -TOUCHING) & (found <= steepest * width)
+
+    return least(lambda s, which: _margins(way, tracker, spots.where(which), s), low, high, STEPS, going)
 
 
 def _margins(way: _Way, tracker: Tracker, spots: _Spots, s: Number) -> Number:
@@ -219,7 +207,7 @@ def _margins(way: _Way, tracker: Tracker, spots: _Spots, s: Number) -> Number:
     own = np.empty(len(s))
     for k in np.unique(spots.groups):
         here = spots.groups == k
-        own[here] = np.broadcast_to(found[k], (len(s), 1))[here, 0]
+        own[here] = column(found[k], len(s))[here]
     return own
 
 

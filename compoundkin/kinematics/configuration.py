@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from compoundkin.base.arrays import wrapped
 from compoundkin.base.display import Shows
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
@@ -132,6 +133,6 @@ class Configurations:
 def state_distance(one: Number, other: Number, size: float) -> Number:
     """Return how far states (..., 3 n) are from each other: parts of the size, radians; whole turns do not count."""
     gap = one - other
-    turn = np.abs(np.angle(np.exp(1j * gap[..., 2::3])))
+    turn = np.abs(wrapped(gap[..., 2::3]))
     shift = np.maximum(np.abs(gap[..., 0::3]), np.abs(gap[..., 1::3])) / size
     return np.maximum(turn, shift).max(axis=-1)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from compoundkin.base.arrays import whole_turns
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import column
 from compoundkin.kinematics.block import blocks, places
@@ -72,4 +73,4 @@ def _unwrapped(angles: Number, start: int, first: Number) -> Number:
     last = np.maximum.accumulate(np.where(known, np.arange(angles.shape[1]), -1), axis=1)
     held = np.take_along_axis(angles, np.where(last < 0, known.argmax(axis=1)[:, None], last), axis=1)
     out = np.unwrap(np.nan_to_num(held), axis=1)
-    return out + 2.0 * np.pi * np.round(np.nan_to_num(first - out[:, start]) / (2.0 * np.pi))[:, None]
+    return out + whole_turns(np.nan_to_num(first - out[:, start]))[:, None]

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import column
+from compoundkin.base.bracketing import bisected
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 
@@ -95,13 +97,12 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[s
     """The driver values between an assembled pose and its neighbour that is not, by bisection."""
     inside = (good >= 0) & (good < motion.inputs.poses)
     near: Number = bad + np.where(inside, good - bad, 0.0)
-    far = bad.astype(float)
-    for _ in range(HALVINGS):
-        middle = (near + far) / 2.0
-        part = motion.inputs.pick(designs, middle)
-        closed = motion.tracker.run(part, 0, middle[:, None], designs[:, None]).failed == 0
-        closed = np.broadcast_to(closed, (len(designs), 1))[:, 0]
-        near, far = np.where(closed, middle, near), np.where(closed, far, middle)
+
+    def closes(s: Number) -> Number:
+        part = motion.inputs.pick(designs, s)
+        return column(motion.tracker.run(part, 0, s[:, None], designs[:, None]).failed == 0, len(designs))
+
+    near, _ = bisected(closes, near, bad.astype(float), HALVINGS)
     drives = motion.inputs.pick(designs, near).drives
     return {name: np.broadcast_to(np.ravel(values[0]), len(designs)) for name, values in drives.items()}
 

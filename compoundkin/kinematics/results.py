@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from compoundkin.base.arrays import unwrapped
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
@@ -190,20 +191,3 @@ class Named(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._names)
-
-
-def unwrapped(angle: Number) -> Number:
-    """An angle made continuous along the last axis, where it is known; leaps over unassembled poses included.
-
-    >>> unwrapped(np.array([3.0, np.nan, -3.0])).round(3).tolist()
-    [3.0, nan, 3.283]
-    """
-    if np.ndim(angle) == 0 or np.shape(angle)[-1] < 2:
-        return angle
-    if not np.isnan(angle).any():
-        return np.unwrap(angle)
-    rows = np.array(angle).reshape(-1, np.shape(angle)[-1])
-    for row in rows:
-        known = ~np.isnan(row)
-        row[known] = np.unwrap(row[known])
-    return rows.reshape(np.shape(angle))

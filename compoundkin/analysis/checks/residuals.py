@@ -15,6 +15,7 @@ import numpy as np
 from compoundkin.analysis.centres import instant_centres
 from compoundkin.analysis.centres.centre_velocities import SLOWEST
 from compoundkin.analysis.checks.finding import Finding, worst
+from compoundkin.base.arrays import wrapped
 from compoundkin.base.errors import NotDetermined
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
@@ -99,7 +100,7 @@ def _driver(motion: Motion, name: str, k: int) -> Number:
     gap = motion.pairs[driven.pair.name].coordinate.derivative(k) - asked
     if not driven.pair.free_is_angle:
         return np.abs(gap)
-    return np.abs(np.angle(np.exp(1j * gap)) if k == 0 else gap) * motion.size
+    return np.abs(wrapped(gap) if k == 0 else gap) * motion.size
 
 
 def _largest(values: list[Number]) -> Number:

@@ -13,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 
 from compoundkin.analysis.equations.pair_terms import pair_terms
+from compoundkin.base.arrays import wrapped
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
@@ -67,7 +68,7 @@ class DriverEquation:
     def at(self, values: Values, given: Number) -> Number:
         """What is to be zero; angles but for whole turns."""
         gap = self.sum.at(values) - given
-        return np.angle(np.exp(1j * gap)) if self.is_angle else gap
+        return wrapped(gap) if self.is_angle else gap
 
 
 @dataclass(frozen=True, eq=False)

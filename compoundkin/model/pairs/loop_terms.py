@@ -8,6 +8,7 @@ from typing import ClassVar, Literal, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arrays import wrapped
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.model.geometry import FRAME
@@ -129,7 +130,7 @@ class Auxiliary:
         if self.along is not None:
             vector = sum((term.at(values) for term in self.path), 0j)
             total = total + (vector * np.exp(-1j * self.along.at(values))).real
-        return total if self.counts_turns else np.angle(np.exp(1j * total))
+        return total if self.counts_turns else wrapped(total)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import cross
+from compoundkin.base.arrays import TURN, cross, whole_turns
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
@@ -19,7 +19,6 @@ from compoundkin.model.pairs.symbols import Mark, Track, Wheel, reach
 
 # A radius fits a drawn distance that it meets to this part of it: drawings are given to some five digits.
 FITS = 1e-5
-TURN = 2.0 * np.pi
 
 Row = tuple[Number, ...]
 
@@ -121,7 +120,7 @@ class OnLine(Pair):
         if self.phase is None:
             return drawn
         # a phase by a turn of the wheel farther on is the same mechanism, its angle counted from another turn
-        return self.phase + TURN * across * np.round((drawn - self.phase) / (TURN * across))
+        return self.phase + whole_turns(drawn - self.phase, TURN * across)
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """A phase that the drawing gave follows the turns of line and wheel since."""

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import TURN, whole_turns
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
@@ -25,7 +26,7 @@ from compoundkin.model.pairs.loop_terms import (
     difference,
     direction,
 )
-from compoundkin.model.pairs.pitch_line import TURN, radius_problems
+from compoundkin.model.pairs.pitch_line import radius_problems
 from compoundkin.model.pairs.symbols import Mark, Wheel
 
 
@@ -115,7 +116,7 @@ class RollingOnCircle(Pair):
         line = wheel.at(geometry.points[self.link][self.at]) - on.at(geometry.points[self.on][self.centre_at])
         turned = (wheel.angle - on.angle).c[0]
         drawn = turned - self._turns * np.angle((line * on.u.conj()).c[0])
-        return drawn if self.phase is None else self.phase + TURN * np.round((drawn - self.phase) / TURN)
+        return drawn if self.phase is None else self.phase + whole_turns(drawn - self.phase)
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """A phase that the drawing gave follows the turns of circle and wheel since."""

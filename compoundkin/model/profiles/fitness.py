@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from compoundkin.base.bracketing import bisected
 from compoundkin.base.curves.samples import spans
 from compoundkin.base.errors import Problem, nearest
 from compoundkin.model.laws.motion_programs import Program
@@ -187,12 +188,7 @@ def least_base(made: Synthesised) -> float | None:
         low, high = high, GROWTH * high
         if high > MOST * size:
             return None
-    for _ in range(HALVINGS):
-        if high - low <= DIGITS * high:
-            break
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if _will_do(replace(made, base=middle)) else (middle, high)
-    return high
+    return float(bisected(lambda base: _will_do(replace(made, base=float(base))), high, low, HALVINGS, DIGITS)[0])
 
 
 def _will_do(made: Synthesised) -> bool:

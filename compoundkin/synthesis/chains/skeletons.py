@@ -13,8 +13,7 @@ from itertools import combinations
 from string import ascii_uppercase
 from typing import TypeAlias
 
-import numpy as np
-
+from compoundkin.base.arrays import wrapped
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME, Drive, Item, drawn, drive, link
@@ -105,7 +104,7 @@ def _drive(items: Sequence[Item], names: Sequence[str], on: int, driven: int) ->
     """A driver at the drawn angle."""
     drawing = Mechanism("as drawn", *items).geometry.drawn
     angle = [float(drawing[names[k]].angle.c[0]) for k in (on, driven)]
-    middle = float(np.angle(np.exp(1j * (angle[1] - angle[0]))))
+    middle = float(wrapped(angle[1] - angle[0]))
     return drive(names[driven], on=names[on], values=middle)
 
 

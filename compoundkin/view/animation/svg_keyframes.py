@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import whole_turns
 from compoundkin.base.series import Number
 from compoundkin.view.animation.keyframes import DEVIATION, Keys, keys_of, short
 from compoundkin.view.animation.timeline import Timeline
@@ -54,7 +55,7 @@ class Writer:
     def turns(self, angles: Number, deviation: float) -> Keys:
         """The keyframes of those angles, in degrees."""
         shown = np.rad2deg(self.timeline.turning(angles))
-        return self.keys(shown - 360.0 * np.round(shown[0] / 360.0), np.rad2deg(deviation))
+        return self.keys(shown - whole_turns(shown[0], 360.0), np.rad2deg(deviation))
 
 
 def place(value: Number) -> str:

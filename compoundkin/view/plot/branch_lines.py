@@ -8,16 +8,16 @@ from functools import cached_property
 
 import numpy as np
 
+from compoundkin.base.arrays import TURN as FULL
+from compoundkin.base.arrays import turns_above, unwrapped
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.configurations.circuit import Branch, Limit
 from compoundkin.configurations.circuit_search import Circuits
-from compoundkin.configurations.driver_range import TURN as FULL
 from compoundkin.configurations.enumeration import dimensions_at
 from compoundkin.configurations.segments import CHANGE, NONE
 from compoundkin.kinematics.quantities import degrees, quantity, whole_and_part
-from compoundkin.kinematics.results import unwrapped
 from compoundkin.model.attributes import ALSO, order_of, vector_of
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import Ends, Poses
@@ -198,7 +198,7 @@ def seam(curves: Sequence[Number], candidates: Sequence[float]) -> float:
 
 def turns(angles: Number, low: float) -> Number:
     """The whole turns, in degrees, by which angles lie above the turn that begins at `low`."""
-    return TURN * np.floor((angles - low) / TURN)
+    return turns_above(angles, low, TURN)
 
 
 def wrapped(first: Number, second: Number, low: float) -> tuple[Number, Number]:

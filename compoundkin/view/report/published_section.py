@@ -6,11 +6,12 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import degrees, isfinite, remainder, tau
+from math import degrees, isfinite
 from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import wrapped
 from compoundkin.base.errors import NotAssembled, UnassembledPoses, UnknownName
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.quantities import quantity
@@ -121,7 +122,7 @@ def _compared(expectation: Expectation, motion: Motion | None, where: str) -> Co
     value = complex(np.ravel(found.values)[0])
     if found.is_angle and isfinite(value.real):
         published = expectation.value.real
-        value = complex(published + remainder(value.real - published, tau))
+        value = complex(published + wrapped(value.real - published))
     return Comparison(expectation, value, found.unit, found.is_angle, found.is_vector)
 
 
