@@ -315,7 +315,6 @@ STILL_TRACKING = {
     "configurations/location.py: compoundkin.kinematics.tracking",
 }
 STILL_LONG_FUNCTIONS = {
-    "base/bracketing.py: least",
     "configurations/dyad_segments.py: _glued",
     "kinematics/solution.py: solve",
     "kinematics/tracking.py: __init__",
@@ -327,9 +326,7 @@ STILL_LONG = {
     "analysis/equations/loop_equations.py",
     "cli/typed_values.py",
     "configurations/circuit_search.py",
-    "configurations/dyad_segments.py",
     "configurations/enumeration.py",
-    "kinematics/change_points.py",
     "kinematics/groups/group_equations.py",
     "kinematics/inputs.py",
     "model/laws/motion_programs.py",

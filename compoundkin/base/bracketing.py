@@ -89,15 +89,8 @@ def least(
         new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
         value: Number = np.where(left, fa, fb)
         value[on] = f(new[on], on)
-        a, b, fa, fb = (
-            np.where(on, now, then)
-            for now, then in (
-                (np.where(left, new, b), a),
-                (np.where(left, a, new), b),
-                (np.where(left, value, fb), fa),
-                (np.where(left, fa, value), fb),
-            )
-        )
+        moved = np.where(left, new, b), np.where(left, a, new), np.where(left, value, fb), np.where(left, fa, value)
+        a, b, fa, fb = (np.where(on, now, then) for now, then in zip(moved, (a, b, fa, fb), strict=True))
     return np.where(fa < fb, a, b), np.minimum(fa, fb)
 
 

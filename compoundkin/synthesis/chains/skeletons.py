@@ -13,6 +13,8 @@ from itertools import combinations
 from string import ascii_uppercase
 from typing import TypeAlias
 
+import numpy as np
+
 from compoundkin.base.arrays import wrapped
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.base.series import Number
