@@ -1,4 +1,4 @@
-"""What is asked of a cam: pressure angle, radii of curvature, sliding, and what is wrong with its profile."""
+"""What is asked of a cam. Pressure angle, radii of curvature, sliding, and what is wrong with its profile."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ RESTS = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class CamAnalysis(Shows):
-    """A cam pair over a motion; arrays are of the motion's shape, not a number where it is not assembled.
+    """A cam pair over a motion. Arrays are of the motion's shape, not a number where it is not assembled.
 
     Angles in radians. `pressure_angle` is from the direction in which the follower can move (the velocity of its
     contact point, or of the roller's middle) to the common normal, counterclockwise; a radius of curvature is negative
@@ -58,7 +58,7 @@ class CamAnalysis(Shows):
 
     @cached_property
     def pitch_curve(self) -> Number | None:
-        """The way of the roller's middle, or the knife edge, in the cam's frame; None for a flat face."""
+        """The way of the roller's middle, or the knife edge, in the cam's frame. None for a flat face."""
         if self.pair.is_flat:
             return None
         curve = self.pair.curve
@@ -68,17 +68,17 @@ class CamAnalysis(Shows):
 
     @property
     def roller_rate(self) -> Number | None:
-        """The angular velocity of the roller in its pin if it rolls without sliding; None without a roller."""
+        """The angular velocity of the roller in its pin if it rolls without sliding. None without a roller."""
         return self.sliding / self.pair.roller if self.pair.roller else None
 
     @property
     def undercut(self) -> tuple[tuple[float, float], ...]:
-        """The spans of the parameter where a hollow is narrower than the roller, or under a flat face."""
+        """The spans of the parameter where the profile is undercut."""
         return self.pair.hollows
 
     @property
     def untouched(self) -> tuple[tuple[float, float], ...]:
-        """The spans of the parameter that the follower bridges, for it touches before and behind them."""
+        """The spans of the parameter that the follower bridges without touching."""
         return self.pair.bridged
 
     @property
@@ -89,7 +89,7 @@ class CamAnalysis(Shows):
 
     @property
     def allowed_pressure_angle(self) -> float:
-        """The customary limit of the pressure angle: 30 degrees for a follower that translates, 35 for another one."""
+        """The customary limit of the pressure angle. 30 degrees for a follower that translates, 35 for another one."""
         return float(np.deg2rad(TRANSLATING if self.oscillates is False else OSCILLATING))
 
     @property
@@ -135,7 +135,7 @@ class CamAnalysis(Shows):
 
 
 def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
-    """The analysis of a cam or flat-faced cam pair over a motion.
+    """Return the analysis of a cam or flat-faced cam pair over a motion.
 
     Raises UnknownName for a pair that the mechanism does not have, InvalidInput for one that has no profile or a motion
     without velocities.
@@ -179,7 +179,7 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
 
 
 def cam_pairs(motion: Motion) -> tuple[str, ...]:
-    """The names of the pairs that can be analysed, in order."""
+    """Return the names of the pairs that can be analysed, in order."""
     return tuple(pair.name for pair in motion.mechanism.written_pairs if isinstance(pair, Profiled))
 
 
@@ -196,7 +196,7 @@ def _pair_of(motion: Motion, name: str) -> Profiled:
 
 
 def _radius(pair: Profiled, s: Number) -> Number:
-    """The radius of curvature, positive where the profile is convex toward the follower."""
+    """Return the radius of curvature, positive where the profile is convex toward the follower."""
     with np.errstate(divide="ignore"):
         return 1.0 / (pair.outward * pair.curve.curvature(s))
 
@@ -207,7 +207,7 @@ def _sliding(motion: Motion, pair: Profiled, place: Number, normal: Number) -> N
 
 
 def _direction(motion: Motion, pair: Profiled, contact: Number) -> tuple[str, bool | None, Number]:
-    """The follower, whether it oscillates, and the direction in which its contact point can move.
+    """Return the follower, whether it oscillates, and where its contact point can move.
 
     Where it has no single guide, the direction of its velocity.
     """
@@ -227,7 +227,7 @@ def _direction(motion: Motion, pair: Profiled, contact: Number) -> tuple[str, bo
 
 
 def _led(motion: Motion, pair: Profiled) -> str:
-    """The link that the contact moves: that of the profile where it is in the group which the contact closes."""
+    """Return the link that the contact moves. That of the profile where it is in the group which the contact closes."""
     for group in motion.structure.groups:
         if pair in group.outer or pair in group.inner:
             return pair.link if pair.link in group.links else pair.on
@@ -235,25 +235,25 @@ def _led(motion: Motion, pair: Profiled) -> str:
 
 
 def _guides(guide: Pair, name: str, apart: set[str]) -> bool:
-    """Whether a pair guides a link: joins it to another one than those of the contact and its roller."""
+    """Return whether a pair guides a link. Joins it to another one than those of the contact and its roller."""
     return name in guide.members and not (set(guide.members) - {name}) & (apart - {name})
 
 
 def _guided(motion: Motion, guide: Pair, point: Number) -> Number:
-    """The direction in which a point of a link can move on its guide."""
+    """Return the direction in which a link's point can move on its guide."""
     reference = motion.poses[guide.members[0]].carry(motion.inputs.ends[guide.name][0])
     return 1j * (point - as_series(reference.point).c[0]) if guide.free_is_angle else reference.along.c[0]
 
 
 def _velocity(pose: Pose, point: Number) -> Number:
-    """The velocity of the point of a link that is at a place of the world."""
+    """Return the velocity of a link's point at a place of the world."""
     z, u = pose.z, pose.u
     origin, rate = (z.c[1] if len(z.c) > 1 else 0j), (u.turning().c[0] if len(u.c) > 1 else 0.0)
     return origin + 1j * rate * (point - z.c[0])
 
 
 def _between(along: Number, normal: Number) -> Number:
-    """The angle from a line to a normal, between a right angle clockwise and one counterclockwise."""
+    """Return the angle from a line to a normal, at most a right angle."""
     turned = np.conjugate(along) * normal
     return np.angle(np.where(turned.real < 0.0, -turned, turned))
 

@@ -1,4 +1,4 @@
-"""The linkage of pins and slides that stands for a mechanism with higher pairs at one pose.
+"""The linkage of lower pairs that stands for higher pairs at one pose.
 
 Source: two profiles that touch move, up to accelerations, as if a bar joined their centres of curvature; e.g.
 I. I. Artobolevskii, Theory of Mechanisms and Machines, on the replacement of higher pairs by lower ones.
@@ -30,7 +30,7 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class Replacement:
-    """What stands for one higher pair: `link` is a bar of some `length`, or a block where that is None."""
+    """What stands for one higher pair. `link` is a bar of some `length`, or a block where that is None."""
 
     pair: Pair
     link: str
@@ -44,8 +44,9 @@ class Replacement:
 
 
 def equivalent_linkage(motion: Motion, at: int = 0) -> Mechanism:
-    """The mechanism of lower pairs with the same velocities and accelerations at one pose, `at` by its flat index.
+    """Return the mechanism of lower pairs with the same velocities and accelerations.
 
+    `at` is the pose's flat index.
     Every higher pair gives way to a bar between the centres of curvature, or to a block where one profile is straight;
     gears and belts to a bar on their line of action. Raises InvalidInput for a pose that is not assembled.
 
@@ -61,7 +62,7 @@ def equivalent_linkage(motion: Motion, at: int = 0) -> Mechanism:
 
 
 def replaced(motion: Motion, at: int = 0) -> tuple[Mechanism, tuple[Replacement, ...]]:
-    """The equivalent linkage, and what stands for each higher pair in the order of the pairs."""
+    """Return the equivalent linkage, and what stands for each higher pair."""
     builder = _Builder(motion, at)
     return builder.mechanism(), tuple(builder.found)
 
@@ -87,7 +88,7 @@ class _Builder:
         self.found: list[Replacement] = []
 
     def mechanism(self) -> Mechanism:
-        """The linkage."""
+        """Return the linkage."""
         pairs = [item for pair in self.motion.mechanism.written_pairs for item in self._pair(pair)]
         links = [Link(name, points) for name, points in self.points.items()]
         drives = [self._drive(item) for item in self.motion.mechanism.drives]
@@ -124,11 +125,11 @@ class _Builder:
             yield pair
 
     def _letter(self, name: str, end: End, pair: str) -> str:
-        """The letter of a pair's side on a link."""
+        """Return the letter of a pair's side on a link."""
         return self._named(name, self._world(name, complex(np.ravel(np.asarray(end.point))[0])), pair)
 
     def _replaced(self, pair: Pair, found: Osculation) -> Iterator[Item]:
-        """The bar or block that stands for a pair, and its slide."""
+        """Yield the bar or block that stands for a pair, and its slide."""
         first, second = (self.on.get(name, name) for name in pair.members[:2])
         new = f"{pair.name} {'block' if None in found[:2] else 'bar'}"
         if found.first is not None and found.second is not None:
@@ -146,7 +147,7 @@ class _Builder:
         self.found.append(Replacement(pair, new, None, found[:2]))
 
     def _named(self, name: str, place: complex, wanted: str, taken: str = "") -> str:
-        """The letter of a place of the world on a link: that of its point there, or a new one."""
+        """Return the letter of a place of the world on a link. That of its point there, or a new one."""
         local = complex(self.poses[name].inverse().at(place).c[0])
         for letter, p in self.points[name].items():
             if abs(p - local) <= SAME * self.motion.size and letter != taken:
@@ -163,19 +164,19 @@ class _Builder:
 
 
 def _angle(end: End) -> float:
-    """The direction of a side, as an angle in its link's frame."""
+    """Return the direction of a side, as an angle in its link's frame."""
     return float(np.ravel(end.along.angle().c[0])[0])
 
 
 def _plain(found: Osculation, size: float) -> Osculation:
-    """With numbers, and None for a centre that is too far away to be one."""
+    """Return a replacement with numbers, None for a centre too far away."""
     centres = (None if v is None else complex(np.ravel(v)[0]) for v in found[:2])
     first, second = (None if v is None or not abs(v) < STRAIGHT * size else v for v in centres)
     return Osculation(first, second, complex(np.ravel(found.normal)[0]))
 
 
 def _at(pose: Pose, at: int, shape: tuple[int, ...]) -> Pose:
-    """One pose of a motion, without derivatives."""
+    """Return one pose of a motion, without derivatives."""
     z, u = (complex(np.broadcast_to(series.c[0], shape).flat[at]) for series in (pose.z, pose.u))
     theta = float(np.broadcast_to(pose.angle.c[0], shape).flat[at])
     return Pose(constant(z), constant(u), constant(theta))

@@ -1,4 +1,4 @@
-"""Mechanical advantage: what a force or torque at one place of a mechanism is worth at another."""
+"""Mechanical advantage of a force or torque at one place over another."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from compoundkin.model.elements import FRAME
 
 @dataclass(frozen=True)
 class TorquePort:
-    """A torque on `link` that acts against `on`; its rate is their relative angular velocity, rad/s."""
+    """A torque on `link` that acts against `on`. Its rate is their relative angular velocity, rad/s."""
 
     link: str
     on: str = FRAME
@@ -24,8 +24,9 @@ class TorquePort:
 
 @dataclass(frozen=True, eq=False)
 class ForcePort:
-    """A force at a point of `link` in a direction (radians, or an array of them, in the frame of `on`), against `on`.
+    """A force at a point of `link` in a direction (radians), against `on`.
 
+    The direction is in the frame of `on`, a number or an array.
     `point` is a letter, or coordinates in the link's frame; the rate is the component of its velocity, length/s.
     """
 
@@ -57,8 +58,9 @@ class Advantage:
 
 @np.errstate(all="ignore")
 def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage:
-    """How many times the force or torque at `input` is available at `output`, at every pose, without friction.
+    """Return how many times the force or torque at `input` is available at `output`.
 
+    At every pose, without friction.
     Each of the two is a link (its torque against the frame), a pair or a driver by name (the force or torque along its
     free coordinate), `TorquePort(link, on)` for a torque between any two links, or `ForcePort(link, point, angle)`
     for a force at a point. Positive where both rates have one sign. It does not depend on the driver's speed.
@@ -95,7 +97,7 @@ def _quotient(a: Number, b: Number, infinite: Number) -> Number:
 
 
 def _rate(motion: Motion, port: Port, where: str) -> tuple[Number, Number]:
-    """The rate at a port, and the scale by which it is judged to be zero."""
+    """Return the rate at a port, and its scale."""
     scale, size = _scale(motion), motion.size
     if isinstance(port, str):
         return _named(motion, port, where, scale)
@@ -129,7 +131,7 @@ def _angle(motion: Motion, angle: Any, where: str) -> Number:
 
 
 def _scale(motion: Motion) -> Number:
-    """The rate of the fastest link or driver at each pose, in rad/s: what rounding is relative to."""
+    """Return the rate of the fastest link or driver at each pose, in rad/s. What rounding is relative to."""
     rates = [np.abs(d.rate) / (1.0 if d.is_angle else motion.size) for d in motion.drives.values()]
     rates += [np.abs(link.angular_velocity) for link in motion.links.values()]
     return np.maximum.reduce(np.broadcast_arrays(*rates, np.zeros(motion.shape)))

@@ -14,7 +14,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 
 
 def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], Any]) -> None:
-    """Let `write` fill a new file and put it in place of `path` once it is complete.
+    """Let `write` fill a new file, then put it in place of `path`.
 
     Raises InvalidInput where the file cannot be written; what was there before is then untouched.
 

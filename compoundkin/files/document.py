@@ -1,4 +1,4 @@
-"""What a mechanism file holds: the table of keys that reader, writer and schema are derived from."""
+"""What a mechanism file holds. The table of keys that reader, writer and schema are derived from."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FORMATS = (1,)
 
 @dataclass(frozen=True)
 class TableForm:
-    """Tables of one sort in a mechanism file: ``[name.X]`` if named, ``[[name]]`` if an array of tables."""
+    """Tables of one sort in a mechanism file. ``[name.X]`` if named, ``[[name]]`` if an array of tables."""
 
     name: str
     form: Literal["named", "array"]
@@ -73,7 +73,7 @@ _PIN_IS_ANGLE = next(kind.free_is_angle for kind in KINDS if not kind.table)
 
 
 def is_angle(mechanism: Mechanism, drive: Drive) -> bool | None:
-    """Whether a driver's coordinate is an angle (else a length); None where its pair is not determined.
+    """Return whether a driver's coordinate is an angle (else a length). None where its pair is not determined.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import link
@@ -89,7 +89,7 @@ def is_angle(mechanism: Mechanism, drive: Drive) -> bool | None:
 
 
 def quantity_is_angle(quantity: object) -> bool:
-    """Whether a quantity is written in degrees in files.
+    """Return whether a quantity is written in degrees in files.
 
     >>> quantity_is_angle("bar.angle"), quantity_is_angle("bar.angular_velocity")
     (True, False)

@@ -1,4 +1,4 @@
-"""Numbers as a file writes them: the shortest text from which reading makes exactly the number held."""
+"""Numbers as a file writes them. The shortest text from which reading makes exactly the number held."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PLAIN = 9
 
 
 def plain(value: Number) -> Any:
-    """A number, or an array as nested lists; whole numbers without a decimal point.
+    """Return a number, or an array as nested lists. Whole numbers without a decimal point.
 
     >>> plain(2.0), plain(np.array([1.5, 3.0]))
     (2, [1.5, 3])
@@ -44,7 +44,7 @@ def degrees(radians: Number) -> Any:
 
 
 def _degrees(radians: Floats) -> Floats | None:
-    """The shortest decimals that convert exactly, or None."""
+    """Return the shortest decimals that convert exactly, or None."""
     with np.errstate(all="ignore"):
         near = np.rad2deg(radians)
         tries = [np.round(near, digits) for digits in range(15)]
@@ -57,12 +57,12 @@ def _degrees(radians: Floats) -> Floats | None:
 
 
 def coordinate(value: Number, angle: bool) -> Any:
-    """A driven coordinate or an angle: degrees if it is an angle, else as it is."""
+    """Return a driven coordinate or an angle. Degrees if it is an angle, else as it is."""
     return degrees(value) if angle else plain(value)
 
 
 def values(value: Number, angle: bool) -> Any:
-    """The values of a driver, as ``{from, to, step}`` where that says exactly the same.
+    """Return a driver's values, as ``{from, to, step}`` where that is exact.
 
     >>> values(np.deg2rad(np.arange(0, 361, 5)), True)
     {'from': 0, 'to': 360, 'step': 5}
@@ -93,7 +93,7 @@ def _converted(written: Floats, angle: bool) -> Floats:
 
 
 def rate(value: Number, angle: bool) -> Any:
-    """A rate; as revolutions a minute or degrees a second where that is shorter and exact.
+    """Return a rate. As revolutions a minute or degrees a second where that is shorter and exact.
 
     >>> rate(700 * RPM, True), rate(10.0, True)
     ({'rpm': 700}, 10)
@@ -134,7 +134,7 @@ def _xy(value: Number) -> tuple[float, float]:
 
 
 def _parts(x: Floats, y: Floats) -> list[Any]:
-    """The coordinates of an array of points; one that is constant as a number, if the other is an array."""
+    """Return the coordinates of an array of points. One that is constant as a number, if the other is an array."""
     if np.all(y == y.flat[0]):
         return [plain(x), plain(y.flat[0])]
     return [plain(x.flat[0] if np.all(x == x.flat[0]) else x), plain(y)]

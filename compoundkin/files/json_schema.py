@@ -1,4 +1,4 @@
-"""The JSON Schema of mechanism files, derived from the same table of keys as reader and writer."""
+"""The JSON Schema of mechanism files, from the table of keys."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema (2020-12) that every mechanism file, TOML or JSON, fits.
+    """Return the JSON Schema (2020-12) that every mechanism file, TOML or JSON, fits.
 
     >>> schema()["required"]
     ['format', 'title', 'links']
@@ -74,7 +74,7 @@ def _table(keys: tuple[Key, ...]) -> dict[str, Any]:
 
 
 def _tagged(kinds: Mapping[str, type[Any]], doc: str) -> dict[str, Any]:
-    """One table for each kind of law or profile."""
+    """Return one table for each kind of law or profile."""
     tables = [(name, _table(kind.keys)) for name, kind in kinds.items()]
     ways = [
         {**table, "properties": {KIND: {"const": name}, **table["properties"]},
@@ -101,7 +101,7 @@ def _ref(name: str) -> dict[str, Any]:
 
 
 def _closed(**properties: Any) -> dict[str, Any]:
-    """A table that has exactly these keys."""
+    """Return a table that has exactly these keys."""
     return {
         "type": "object",
         "properties": properties,

@@ -1,4 +1,4 @@
-"""Laws, programs and profiles of cams in mechanism files: tables with their kind and what that kind holds."""
+"""Laws, programs and profiles of cams in mechanism files. Tables with their kind and what that kind holds."""
 
 from __future__ import annotations
 
@@ -30,14 +30,17 @@ PROGRAM = (
 
 
 def law(log: Recovery, raw: Any, where: str, angle: bool | None) -> Law | None:
-    """The law that a table says; None where it is broken, which is reported."""
+    """Return the law that a table says. None where it is broken, which is reported."""
     return of_kind(log, "law", laws.WRITTEN, raw, where, angle)
 
 
 def of_kind(
     log: Recovery, word: str, known: Mapping[str, type[Any]], raw: Any, where: str, angle: bool | None
 ) -> Any | None:
-    """An object from a table that says its kind, one of those known; None where it is broken, which is reported."""
+    """Return an object from a table that says its kind, one of those known.
+
+    None where it is broken, which is reported.
+    """
     how = f'write {{ {KIND} = "...", ... }}, the kind one of {", ".join(known)}'
     if not isinstance(raw, dict):
         log.report(wrong(where, raw, f"a {word}", how))
@@ -54,7 +57,7 @@ def of_kind(
 def segments(
     log: Recovery, raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] = ProgramSegment.keys
 ) -> tuple[ProgramSegment, ...]:
-    """The segments of a program; those that are broken are left out, which is reported."""
+    """Return the segments of a program. Those that are broken are left out, which is reported."""
     if not isinstance(raw, list):
         log.report(wrong(where, raw, "a list of segments", 'write [{ law = "cycloidal", over = 1, rise = 90 }]'))
         return ()
@@ -66,7 +69,7 @@ def segments(
 
 
 def profile(log: Recovery, raw: Any, where: str, angle: bool | None) -> Profile:
-    """The profile that a table says; a disc where it is broken, which is reported.
+    """Return the profile that a table says. A disc where it is broken, which is reported.
 
     Where the follower turns about a pivot, the rises of its program are angles.
     """
@@ -77,21 +80,21 @@ def profile(log: Recovery, raw: Any, where: str, angle: bool | None) -> Profile:
 
 
 def program(log: Recovery, raw: Any, where: str, angle: bool | None) -> Program | None:
-    """A program over a turn of a cam: its segments alone, or a table that also says where it starts."""
+    """Return a program over a turn of a cam. Its segments alone, or a table that also says where it starts."""
     table = raw if isinstance(raw, dict) else {"segments": raw}
     found: Program | None = made(log, Program, table, where, angle, PROGRAM)
     return found
 
 
 def turned(log: Recovery, raw: Any, where: str, angle: bool | None) -> tuple[ProgramSegment, ...]:
-    """The segments of a cam's program."""
+    """Return the segments of a cam's program."""
     return segments(log, raw, where, angle, SEGMENT)
 
 
 def made(
     log: Recovery, kind: type[Any], raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] | None = None
 ) -> Any:
-    """An object of a kind from its table; None where the table is broken or what it says cannot be meant."""
+    """Return an object of a kind from its table. None where the table is broken or what it says cannot be meant."""
     before = len(log.problems)
     found = log.table(raw, kind.keys if keys is None else keys, where, angle)
     if len(log.problems) > before:
@@ -104,7 +107,7 @@ def made(
 
 
 def _placed(problem: Problem, where: str) -> Problem:
-    """A problem of an object, "segment.over", at the place of its table."""
+    """Return a problem of an object, "segment.over", at the place of its table."""
     _, dot, rest = problem.where.partition(".")
     return replace(problem, where=where + dot + rest)
 

@@ -1,4 +1,4 @@
-"""Mechanism files in and out: `load`, `loads`, `dumps`; TOML and JSON are the same document."""
+"""Mechanism files in and out: `load`, `loads`, `dumps`. TOML and JSON are the same document."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SYNTAXES: tuple[Syntax, ...] = ("toml", "json")
 
 
 def load(path: str | os.PathLike[str]) -> Mechanism:
-    """The mechanism of a TOML or JSON file, told apart by the suffix.
+    """Return the mechanism of a TOML or JSON file, distinguished by the suffix.
 
     Raises InvalidInput for a file that cannot be read, InvalidMechanism listing all problems of its content.
 
@@ -43,7 +43,7 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
 
 
 def loads(text: str, syntax: Syntax = "toml", where: str = "") -> Mechanism:
-    """The mechanism that a text in TOML or JSON says; `where` names the text in errors.
+    """Return the mechanism that a text in TOML or JSON says. `where` names the text in errors.
 
     Raises InvalidMechanism listing all problems.
 
@@ -54,7 +54,7 @@ def loads(text: str, syntax: Syntax = "toml", where: str = "") -> Mechanism:
 
 
 def dumps(mechanism: Mechanism, syntax: Syntax = "toml") -> str:
-    """The text of a mechanism file, from which `loads` makes an equal mechanism.
+    """Return the text of a mechanism file, from which `loads` makes an equal mechanism.
 
     >>> from compoundkin.model.elements import link
     >>> print(dumps(Mechanism("Pin", link("frame", A=(0, 0.5)))))
@@ -72,7 +72,7 @@ def dumps(mechanism: Mechanism, syntax: Syntax = "toml") -> str:
 
 
 def encoded(mechanism: Mechanism, syntax: str, path: str | os.PathLike[str]) -> bytes:
-    """Return the bytes of a mechanism file; raises InvalidInput, which names the file, for text that has no UTF-8."""
+    """Return the bytes of a mechanism file. Raises InvalidInput, which names the file, for text that has no UTF-8."""
     try:
         return dumps(mechanism, _known(syntax)).encode("utf-8")
     except UnicodeEncodeError as error:
@@ -99,7 +99,7 @@ def _known(syntax: str) -> Syntax:
 
 
 def _neighbour(path: Path) -> str:
-    """The file in the same folder that may be meant."""
+    """Return the file in the same folder that may be meant."""
     try:
         found = sorted(p.name for p in path.parent.iterdir() if p.suffix in SUFFIXES["mechanism"])
     except OSError:
@@ -150,7 +150,7 @@ def _place(line: int, column: int) -> str:
 
 
 def _repeats(value: Any, where: str) -> list[Problem]:
-    """Every key given twice in a JSON document, with its place."""
+    """Return every key given twice in a JSON document, with its place."""
     found: list[Problem] = []
     if isinstance(value, _Repeats):
         remedy = "leave one of them out"

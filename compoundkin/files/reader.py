@@ -1,4 +1,4 @@
-"""From a parsed document to a mechanism; all problems of a file are found in one reading."""
+"""From a parsed document to a mechanism. All problems of a file are found in one reading."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from compoundkin.model.pairs import WRITTEN, Pair
 
 
 def read(document: Mapping[str, Any], where: str = "") -> Mechanism:
-    """The mechanism that the document of a file says; raises InvalidMechanism listing all problems.
+    """Return the mechanism that the document of a file says. Raises InvalidMechanism listing all problems.
 
     >>> read({"format": 1, "title": "Pin", "links": {"frame": {"points": {"A": [0, 0]}}}}).title
     'Pin'
@@ -38,7 +38,7 @@ def read(document: Mapping[str, Any], where: str = "") -> Mechanism:
 
 
 def failed(problems: list[Problem], where: str) -> InvalidMechanism:
-    """The one error with all problems of a file.
+    """Return the one error with all problems of a file.
 
     >>> print(failed([Problem("title", "it is missing")], "a.toml"))
     a.toml: 1 problem:
@@ -49,7 +49,7 @@ def failed(problems: list[Problem], where: str) -> InvalidMechanism:
 
 
 def default_name(pair: Pair) -> str:
-    """What a pair is called that is given no name.
+    """Say what a pair is called that is given no name.
 
     >>> from compoundkin.model.pairs import slide
     >>> default_name(slide("block", on="bar", through="F", at="C"))
@@ -59,7 +59,7 @@ def default_name(pair: Pair) -> str:
 
 
 def _version(version: Any, log: Recovery) -> bool:
-    """Whether to read on: a file of another version would be full of false problems."""
+    """Return whether to read on. A file of another version would be full of false problems."""
     is_number = isinstance(version, int) and not isinstance(version, bool)
     if is_number and version in doc.FORMATS:
         return True
@@ -69,7 +69,7 @@ def _version(version: Any, log: Recovery) -> bool:
 
 
 def _parts(document: Mapping[str, Any], log: Recovery) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What the file says on the whole, and its links, pairs, drives ... as written."""
+    """Return what the file says on the whole, and its links, pairs, drives ... as written."""
     parts = [*(table.name for table in doc.TABLES), doc.DRAWN.name]
     given = log.recognized(document, ["format", *(key.name for key in doc.HEAD), *parts], "")
     head = {key.name: given[key.name][0] for key in doc.HEAD if key.name in given}
@@ -87,7 +87,7 @@ def _parts(document: Mapping[str, Any], log: Recovery) -> tuple[dict[str, Any], 
 
 
 def _items(parts: Mapping[str, Any], log: Recovery) -> Iterator[Item]:
-    """The words of the mechanism; what a driver's numbers mean depends on the pairs read before."""
+    """Yield the words of the mechanism. What a driver's numbers mean depends on the pairs read before."""
     links = [_link(name, table, log) for name, table in parts.get("links", {}).items()]
     pairs = [_pair(kind, *at, log) for name, kind in WRITTEN.items() for at in _array(parts, name, log)]
     shown = {key: value for key, value in parts.items() if key == doc.DRAWN.name}
@@ -106,7 +106,7 @@ def _items(parts: Mapping[str, Any], log: Recovery) -> Iterator[Item]:
 
 
 def _valid(*items: Iterable[Item]) -> Mechanism | None:
-    """The mechanism without drivers, which tells what each would drive; None where it cannot be built."""
+    """Return the mechanism without drivers, which tells what each would drive. None where it cannot be built."""
     try:
         return Mechanism("", *(item for some in items for item in some))
     except InvalidMechanism:
@@ -114,7 +114,7 @@ def _valid(*items: Iterable[Item]) -> Mechanism | None:
 
 
 def _array(parts: Mapping[str, Any], name: str, log: Recovery) -> list[tuple[Any, str]]:
-    """The tables of an array with their places; a single table is read as an array of one."""
+    """Return the tables of an array with their places. A single table is read as an array of one."""
     raw = parts.get(name, [])
     if not isinstance(raw, list):
         log.report(wrong(name, raw, "an array of tables", f"write [[{name}]]"), JOINED)

@@ -1,6 +1,6 @@
-"""Reading on after a problem: what is broken gets a stand-in, so that the rest can be checked as well.
+"""Reading on after a problem. What is broken gets a stand-in, so that the rest can be checked as well.
 
-A problem of the mechanism that only a stand-in causes is told apart and not reported.
+A problem of the mechanism that only a stand-in causes is recognised and not reported.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Tagged: TypeAlias = "Callable[[Recovery, Any, str, bool | None], Any]"
 
 
 class Recovery:
-    """The problems found while one document is read, and the stand-ins for what is broken.
+    """The problems found while a document is read, and stand-ins for broken values.
 
     `tagged` reads the kinds of values that are tables with problems of their own.
     """
@@ -46,12 +46,12 @@ class Recovery:
         self._count = 0
 
     def report(self, error: InvalidMechanism, doubts: Iterable[str] = ()) -> None:
-        """Keep the problems of an error; problems at places that match `doubts` are not judged any more."""
+        """Keep the problems of an error. Problems at places that match `doubts` are not judged any more."""
         self.problems += error.problems
         self.doubts += doubts
 
     def new(self, problems: Iterable[Problem]) -> list[Problem]:
-        """Those problems of the mechanism that nothing broken in the file can cause."""
+        """Return those problems of the mechanism that nothing broken in the file can cause."""
         broken = [problem.where for problem in self.problems]
         return [problem for problem in problems if not self._caused(problem, broken)]
 
@@ -64,7 +64,7 @@ class Recovery:
         return any(where == b or where.startswith((f"{b}.", f"{b}[")) for b in broken)
 
     def recognized(self, raw: Mapping[str, Any], known: list[str], where: str) -> dict[str, tuple[Any, str]]:
-        """The values by key, with their places; a misspelt key is reported, and read as the one meant."""
+        """Return the values by key, with their places. A misspelt key is reported, and read as the one meant."""
         given = {key: (value, inside(where, key)) for key, value in raw.items() if key in known}
         for key, value in raw.items():
             if key in known:
@@ -77,7 +77,7 @@ class Recovery:
         return given
 
     def table(self, raw: Any, keys: tuple[Key, ...], where: str, angle: bool | None = None) -> dict[str, Any]:
-        """The values of a table by key, with stand-ins where a required one is missing or broken."""
+        """Return the values of a table by key, with stand-ins for broken ones."""
         if not isinstance(raw, dict):
             self.report(wrong(where, raw, "a table"))
             return {key.name: self.stand_in(key.kind) for key in keys if key.required}
@@ -103,11 +103,11 @@ class Recovery:
             return self.stand_in(kind)
 
     def points(self, raw: Mapping[str, Any], where: str) -> dict[str, Number]:
-        """Points by letter, each broken one replaced."""
+        """Return points by letter, each broken one replaced."""
         return {letter: self._value("point", value, f"{where}.{letter}", None) for letter, value in raw.items()}
 
     def stand_in(self, kind: Kind) -> Any:
-        """A harmless value of a kind; names and points are distinct."""
+        """Return a harmless value of a kind; names and points are distinct."""
         self._count += 1
         name = f"{STAND_IN}{self._count}"
         # no two coincide, with each other or, but by a miracle, with a point that is given
@@ -122,7 +122,7 @@ class Recovery:
 
 
 def stands_in(value: Any) -> bool:
-    """Whether a name, or one of the letters of some points, is a stand-in.
+    """Return whether a name, or a letter of points, is a stand-in.
 
     >>> stands_in("\\ufffd1"), stands_in({"A": 0}), stands_in(3.0)
     (True, False, False)
@@ -133,7 +133,7 @@ def stands_in(value: Any) -> bool:
 
 
 def inside(where: str, key: str) -> str:
-    """The place of a key in a table.
+    """Return the place of a key in a table.
 
     >>> inside("links.crank", "points"), inside("", "title")
     ('links.crank.points', 'title')

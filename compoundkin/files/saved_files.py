@@ -21,11 +21,11 @@ class Savable:
     saved_as: ClassVar[Kind]
 
     def content(self, form: str) -> bytes:
-        """Return the bytes of a file in one of the forms of its kind; the same every time."""
+        """Return the bytes of a file in one of the forms of its kind. The same every time."""
         raise NotImplementedError
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it to a file in the form that the suffix tells, whole or not at all.
+        """Save it to a file in the form that the suffix tells.
 
         Raises InvalidInput for another suffix, where the file cannot be written, or where a library is missing.
         """
@@ -34,7 +34,7 @@ class Savable:
 
 
 def save(what: Any, path: str | os.PathLike[str]) -> None:
-    """Write anything that can be saved to a file, in the form that its suffix tells, whole or not at all.
+    """Save anything to a file in the form that its suffix tells.
 
     A mechanism is a .toml or .json file; a motion or a table .csv or .json (angles in degrees), .npz or .parquet
     (radians); a picture .svg, .png, .pdf; a plot the same; an animation .gif, .mp4, .svg; a page .html; a report .txt,

@@ -1,4 +1,4 @@
-"""The shipped mechanisms: one file each, known by the file's name wherever a mechanism file is expected."""
+"""The shipped mechanisms, one file each, known by name."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ FOLDERS = (Path(__file__).parents[1] / "_catalog", Path(__file__).parents[2] / "
 
 @cache
 def folder() -> Path:
-    """Where the files are; the first of `FOLDERS` that exists."""
+    """Return where the files are; the first of `FOLDERS` that exists."""
     return next((place for place in FOLDERS if place.is_dir()), FOLDERS[0])
 
 
 @cache
 def names() -> tuple[str, ...]:
-    """The names of all shipped mechanisms, in alphabetical order.
+    """Return the names of all shipped mechanisms, in alphabetical order.
 
     >>> "six-bar" in names()
     True
@@ -35,7 +35,7 @@ def names() -> tuple[str, ...]:
 
 
 def path(name: str) -> Path:
-    """The file of a shipped mechanism; raises UnknownName with the nearest name there is.
+    """Return the file of a shipped mechanism. Raises UnknownName with the nearest name there is.
 
     >>> path("six-bar").name
     'six-bar.toml'
@@ -49,7 +49,7 @@ def path(name: str) -> Path:
 
 
 def load_named(name: str) -> Mechanism:
-    """A shipped mechanism by its name; raises UnknownName with the nearest name there is.
+    """Return a shipped mechanism by its name. Raises UnknownName with the nearest name there is.
 
     >>> load_named("six-bar").title
     'Six-bar of Example 3-4'
@@ -61,7 +61,7 @@ def load_named(name: str) -> Mechanism:
 
 
 def resolve(name_or_path: str | PathLike[str]) -> Path:
-    """The file that a user means: an existing file, or else a shipped mechanism's.
+    """Return the file that a user means. An existing file, or else a shipped mechanism's.
 
     Raises InvalidInput for what is written as a path and does not exist, UnknownName for any other text.
 
@@ -85,6 +85,6 @@ def resolve(name_or_path: str | PathLike[str]) -> Path:
 
 
 def _remedy(text: str) -> str:
-    """A bare file name that is a catalog name with a suffix: say so."""
+    """Return a bare file name that is a catalog name with a suffix. Say so."""
     stem = Path(text).stem
     return f"the catalog's mechanism is called {stem!r}" if text == stem + SUFFIX and stem in names() else ""

@@ -1,4 +1,4 @@
-"""Single values of a mechanism file as Python holds them; each reader raises naming the place."""
+"""Single values of a mechanism file as Python holds them. Each reader raises naming the place."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Reader: TypeAlias = Callable[[Any, str, "bool | None"], Any]
 
 
 def wrong(where: str, value: Any, wanted: str, remedy: str = "") -> InvalidMechanism:
-    """The error that a value is not of the kind wanted.
+    """Read the error that a value is not of the kind wanted.
 
     >>> print(wrong("drives[0].speed", True, "a number"))
     drives[0].speed: true is not a number
@@ -24,7 +24,7 @@ def wrong(where: str, value: Any, wanted: str, remedy: str = "") -> InvalidMecha
 
 
 def bad(where: str, what: str, remedy: str = "") -> InvalidMechanism:
-    """The error of a single problem.
+    """Read the error of a single problem.
 
     >>> print(bad("title", "it is missing"))
     title: it is missing
@@ -33,7 +33,7 @@ def bad(where: str, what: str, remedy: str = "") -> InvalidMechanism:
 
 
 def described(value: Any) -> str:
-    """A value in the words of a file.
+    """Read a value in the words of a file.
 
     >>> described({}), described([1]), described("x"), described(2.5)
     ('a table', 'a list', "the text 'x'", '2.5')
@@ -52,21 +52,21 @@ def described(value: Any) -> str:
 
 
 def text(value: Any, where: str, angle: bool | None = None) -> str:
-    """A text."""
+    """Read a text."""
     if not isinstance(value, str):
         raise wrong(where, value, "a text", "write it in quotes")
     return value
 
 
 def name(value: Any, where: str, angle: bool | None = None) -> str:
-    """A text that is not empty."""
+    """Read a text that is not empty."""
     if not text(value, where):
         raise bad(where, "the name is empty")
     return str(value)
 
 
 def points(value: Any, where: str, angle: bool | None = None) -> dict[str, None]:
-    """The letters of a link given as drawn; a table of points is read point by point elsewhere."""
+    """Read the letters of a link given as drawn. A table of points is read point by point elsewhere."""
     if value in ([], {}):
         raise bad(where, "a link needs at least one point")
     if not isinstance(value, list):
@@ -75,14 +75,14 @@ def points(value: Any, where: str, angle: bool | None = None) -> dict[str, None]
 
 
 def table(value: Any, where: str, angle: bool | None = None) -> dict[str, Any]:
-    """A table, taken as it is."""
+    """Read a table, taken as it is."""
     if not isinstance(value, dict):
         raise wrong(where, value, "a table")
     return value
 
 
 def names(value: Any, where: str, angle: bool | None = None) -> tuple[str, ...]:
-    """A list of names, none twice."""
+    """Read a list of names, none twice."""
     if not isinstance(value, list):
         raise wrong(where, value, "a list of names", 'write ["A", "B"]')
     found = tuple(name(v, f"{where}[{i}]") for i, v in enumerate(value))
@@ -93,21 +93,21 @@ def names(value: Any, where: str, angle: bool | None = None) -> tuple[str, ...]:
 
 
 def sign(value: Any, where: str, angle: bool | None = None) -> int:
-    """1 or -1."""
+    """Read 1 or -1."""
     if isinstance(value, bool) or value not in (1, -1):
         raise wrong(where, value, "an assembly mode", "write 1 or -1")
     return int(value)
 
 
 def flag(value: Any, where: str, angle: bool | None = None) -> bool:
-    """True or false."""
+    """Read true or false."""
     if not isinstance(value, bool):
         raise wrong(where, value, "true or false")
     return value
 
 
 def two(value: Any, where: str, angle: bool | None = None) -> tuple[Number, Number]:
-    """Two numbers, or two nested lists of them.
+    """Read two numbers, or two nested lists of them.
 
     >>> two([20, 40], "gears[0].teeth")
     (20.0, 40.0)
@@ -118,14 +118,14 @@ def two(value: Any, where: str, angle: bool | None = None) -> tuple[Number, Numb
 
 
 def whole(value: Any, where: str, angle: bool | None = None) -> int:
-    """A whole number."""
+    """Read a whole number."""
     if isinstance(value, bool) or not isinstance(value, int):
         raise wrong(where, value, "a whole number")
     return value
 
 
 def numbers(value: Any, where: str, angle: bool | None = None) -> Number:
-    """A finite number, or a nested list of them as an array.
+    """Read a finite number, or a nested list of them as an array.
 
     >>> numbers([1, 2.5], "here").tolist()
     [1.0, 2.5]
@@ -147,7 +147,7 @@ def numbers(value: Any, where: str, angle: bool | None = None) -> Number:
 
 
 def held(out: np.ndarray[Any, Any]) -> Number:
-    """An array as a mechanism holds it: a number if it is one, else not to be written to.
+    """Read an array as a mechanism holds it. A number if it is one, else not to be written to.
 
     >>> held(np.asarray(2.0))
     2.0
@@ -167,7 +167,7 @@ def _leaves(value: Any) -> Iterator[Any]:
 
 
 def single(value: Any, where: str, angle: bool | None = None) -> float:
-    """A single number, not a list."""
+    """Read a single number, not a list."""
     if isinstance(value, list | dict):
         raise wrong(where, value, "a single number")
     return float(numbers(value, where))

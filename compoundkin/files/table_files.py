@@ -1,4 +1,4 @@
-"""Tables as files: CSV and JSON for people, angles in degrees; NPZ and Parquet for programs, angles in radians."""
+"""Tables as files: CSV and JSON for people, angles in degrees. NPZ and Parquet for programs, angles in radians."""
 
 from __future__ import annotations
 
@@ -57,7 +57,10 @@ def _plain(value: Any) -> Any:
 
 
 def _npz(table: Table) -> Write:
-    """An array for each column; `units` is their units as JSON, `angles` how angles are counted, `title` the title."""
+    """Return an array for each column.
+
+    `units` is their units as JSON, `angles` how angles are counted, `title` the title.
+    """
     arrays = {column.name: column.values for column in table.columns}
     told = {"title": table.title, "angles": ANGLES, "units": json.dumps(dict(table.units), ensure_ascii=False)}
     # NumPy 2 stubs take any keyword for `allow_pickle`
@@ -66,7 +69,7 @@ def _npz(table: Table) -> Write:
 
 
 def _parquet(table: Table) -> Write:
-    """Fields with their `unit` as metadata; the schema says what the table is of and how angles are counted."""
+    """Fields with their `unit` as metadata. The schema says what the table is of and how angles are counted."""
     try:
         import pyarrow
         import pyarrow.parquet

@@ -1,4 +1,4 @@
-"""A document as TOML that is pleasant to read: short tables and lists on one line, one order of keys."""
+"""A document as TOML that is pleasant to read. Short tables and lists on one line, one order of keys."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ WIDTH = 100
 
 
 def dumps(document: Mapping[str, Any]) -> str:
-    """The text of a document of tables, lists, texts and numbers.
+    """Return the text of a document of tables, lists, texts and numbers.
 
     >>> print(dumps({"a": 1, "t": {"x": [1, 2.5]}, "s": [{"y": "z"}]}))
     a = 1
@@ -25,7 +25,7 @@ def dumps(document: Mapping[str, Any]) -> str:
 
 
 def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
-    """The lines of a table: its entries first, as TOML wants it, then the tables in it."""
+    """Yield the lines of a table. Its entries first, as TOML wants it, then the tables in it."""
     inner = {}
     for key, value in table.items():
         if _has_own_heading(key, value, nested=bool(path)):
@@ -70,7 +70,7 @@ def _is_table(value: Any) -> bool:
 
 
 def _wrapped(value: Any, room: int, indent: str = "") -> str:
-    """A value on one line, or a list on as many lines as it takes; `room` is left on the first."""
+    """Return a value on one line, or a list on several. `room` is left on the first."""
     line = _text(value) if isinstance(value, str) else _inline(value)
     if len(line) <= room or not isinstance(value, list):
         return line

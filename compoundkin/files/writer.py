@@ -21,7 +21,7 @@ from compoundkin.model.pairs import WRITTEN, Pair
 
 
 def document(mechanism: Mechanism) -> dict[str, Any]:
-    """The document that says what a mechanism says, in the order in which files are written.
+    """Return the document that says what a mechanism says.
 
     Raises InvalidInput for what files cannot say: a link of which only some points have coordinates, a Python function.
 
@@ -41,7 +41,7 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _table(item: Any, keys: tuple[Key, ...], angle: bool = False) -> dict[str, Any]:
-    """What an item holds by key; defaults are left out."""
+    """Return what an item holds by key; defaults are left out."""
     said = [(key, getattr(item, key.name)) for key in keys]
     return {key.name: WRITERS[key.kind](held, angle) for key, held in said if not _left_out(key, held)}
 
@@ -94,7 +94,7 @@ def _segment(item: ProgramSegment, keys: tuple[Key, ...], angle: bool) -> dict[s
 
 
 def _program(item: Program, angle: bool) -> Any:
-    """A cam's program: its segments alone where it starts on the base circle."""
+    """Return a cam's program: its segments alone where it starts on the base circle."""
     table = _table(item, PROGRAM, angle)
     return table if len(table) > 1 else table["segments"]
 

@@ -1,4 +1,4 @@
-"""Points, angles and the numbers of drivers as Python holds them: radians, complex numbers, arrays."""
+"""Points, angles and the numbers of drivers as Python holds them. Radians, complex numbers, arrays."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def degrees(value: Any, where: str, angle: bool | None = True) -> Number:
 
 
 def values(value: Any, where: str, angle: bool | None) -> Number:
-    """A coordinate, also as ``{from, to, step}``."""
+    """Read a coordinate, also as ``{from, to, step}``."""
     if isinstance(value, dict) and value.keys() & {"from", "to", "step"}:
         return coordinate(_range(value, where), where, angle)
     return coordinate(value, where, angle)
@@ -88,7 +88,7 @@ def _range(value: dict[str, Any], where: str) -> list[float]:
 
 
 def spaced(start: float, stop: float, step: float) -> np.ndarray[Any, np.dtype[np.float64]] | None:
-    """What ``{from, to, step}`` means: start + step k up to `stop`; None where that is too many values.
+    """Read what ``{from, to, step}`` means: start + step k up to `stop`. None where that is too many values.
 
     >>> spaced(0.0, 10.0, 5.0).tolist()
     [0.0, 5.0, 10.0]
@@ -99,7 +99,7 @@ def spaced(start: float, stop: float, step: float) -> np.ndarray[Any, np.dtype[n
 
 
 def rate(value: Any, where: str, angle: bool | None) -> Number:
-    """A rate as it is, or ``{rpm = ...}`` or ``{deg = ...}`` (a second) as rad/s."""
+    """Read a rate, also as ``{rpm = ...}`` or ``{deg = ...}``, as rad/s."""
     if not isinstance(value, dict):
         return numbers(value, where)
     unit, amount = _unit(value, where, ("rpm", "deg"), angle)
@@ -137,7 +137,7 @@ def point(value: Any, where: str, angle: bool | None = None) -> Number:
 
 
 def published(value: Any, where: str, angle: bool | None) -> complex:
-    """A number or ``[x, y]``; an angle in degrees or ``{rad = ...}``."""
+    """Read a number or ``[x, y]``; an angle in degrees or ``{rad = ...}``."""
     if isinstance(value, list):
         if angle:
             raise wrong(where, value, "an angle", "write degrees")
@@ -148,13 +148,13 @@ def published(value: Any, where: str, angle: bool | None) -> complex:
 
 
 def margin(value: Any, where: str, angle: bool | None) -> float:
-    """A single number; an angle in degrees or ``{rad = ...}``."""
+    """Read a single number; an angle in degrees or ``{rad = ...}``."""
     out = coordinate(value, where, bool(angle))
     return out if isinstance(out, float) else single(value, where)
 
 
 def turn(value: Any, where: str, angle: bool | None = True) -> float:
-    """A single angle: degrees or ``{rad = ...}`` as radians.
+    """Read a single angle: degrees or ``{rad = ...}`` as radians.
 
     >>> turn({"rad": 0.5}, "cams[0].profile.start")
     0.5
@@ -163,7 +163,7 @@ def turn(value: Any, where: str, angle: bool | None = True) -> float:
 
 
 def place(value: Any, where: str, angle: bool | None = None) -> complex:
-    """A point that is one for all designs.
+    """Read a point that is one for all designs.
 
     >>> place([1, 2], "cams[0].profile.middle")
     (1+2j)
@@ -175,7 +175,7 @@ def place(value: Any, where: str, angle: bool | None = None) -> complex:
 
 
 def places(value: Any, where: str, angle: bool | None = None) -> tuple[complex, ...]:
-    """A list of such points.
+    """Read a list of such points.
 
     >>> places([[1, 2], [3, 4]], "cams[0].profile.points")
     ((1+2j), (3+4j))

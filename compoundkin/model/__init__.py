@@ -1,1 +1,1 @@
-"""What a user writes: links, pairs, drives with laws, profiles; the mechanism made of them, and its validation."""
+"""What a user writes: links, pairs, drives with laws, profiles. The mechanism made of them, and its validation."""

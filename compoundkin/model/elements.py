@@ -1,4 +1,4 @@
-"""The words to write a mechanism with, and what they make: link, drive, drawn, mode, expect."""
+"""The words to write a mechanism with, and what they make. Link, drive, drawn, mode, expect."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Drive:
 
 @dataclass(frozen=True)
 class Mode:
-    """The assembly mode of the group that holds `links`: +1 or -1, as the group's kind defines it."""
+    """The assembly mode of the group that holds `links`. +1 or -1, as the group's kind defines it."""
 
     links: tuple[str, ...]
     sign: int
@@ -78,14 +78,14 @@ class Mode:
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """Points as drawn: one pose in global coordinates, exact or roughly, to choose the assembly mode by."""
+    """Points of one pose in global coordinates, drawn exactly or roughly. They choose the assembly mode."""
 
     points: Mapping[str, Number]
 
 
 @dataclass(frozen=True)
 class Expectation:
-    """A published number: at these driver values the quantity has this value, to this tolerance.
+    """A published number that a quantity has at given driver values, to a tolerance.
 
     `at` holds driver values (radians or lengths) and, for "speed", "acceleration", keys such as "crank.speed".
     Angles in `value` are radians.
@@ -101,7 +101,7 @@ Item: TypeAlias = Link | Pair | Drive | Mode | Drawn | Expectation
 
 
 def link(name: str, *letters: str, **points: Any) -> Link:
-    """A link with its points: ``A=(x, y)`` or complex numbers in the link's frame, or letters alone as drawn.
+    """Return a link with its points. ``A=(x, y)`` or complex numbers in the link's frame, or letters alone as drawn.
 
     Raises InvalidMechanism for a point that is not a planar vector.
 
@@ -135,7 +135,7 @@ def drive(
     law: Any = None,
     name: str = "",
 ) -> Drive:
-    """A driver of the pair between `link` and `on`; angles in radians.
+    """Return a driver of the pair between `link` and `on`; angles in radians.
 
     `law` is one of `constant_speed`, `constant_acceleration`, `program`, `time_table`, or a Python function
     of an array of times. Raises InvalidMechanism for anything else.
@@ -151,7 +151,7 @@ def drive(
 
 
 def drawn(**points: Any) -> Drawn:
-    """Points as drawn, in global coordinates: the dimensions of links given by letters, and the assembly mode.
+    """Return points as drawn, in global coordinates. The dimensions of links given by letters, and the assembly mode.
 
     >>> drawn(A=(3, 4)).points["A"]
     (3+4j)
@@ -160,7 +160,7 @@ def drawn(**points: Any) -> Drawn:
 
 
 def mode(sign: int, *links: str) -> Mode:
-    """The assembly mode, +1 or -1, of the group that holds the named links.
+    """Return the choice of an assembly mode, +1 or -1, for the links' group.
 
     >>> mode(-1, "coupler", "rocker").sign
     -1
@@ -171,7 +171,9 @@ def mode(sign: int, *links: str) -> Mode:
 
 
 def expect(quantity: str, value: Any, tolerance: float, **at: float) -> Expectation:
-    """A published number to hold the solved motion against, at the given driver values.
+    """Return a published number to hold the solved motion against.
+
+    At the given driver values.
 
     >>> expect("block.angle", 0.5, 1e-3, crank=1.0).at
     (('crank', 1.0),)

@@ -1,4 +1,4 @@
-"""Points and numbers as they are written, and the dimensions of a mechanism that are made of them."""
+"""Points and numbers as they are written, and dimensions made of them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FRAME = "frame"
 
 @dataclass(frozen=True)
 class Geometry:
-    """The points of every link in the link's own frame, and the drawn pose of every link a drawing fixes.
+    """The points of links in their own frames, and the poses that are drawn.
 
     `points[link][name]` is complex, a number or an array; `drawn[link]` is a `Pose` of order 0.
     `as_drawn` names the links whose dimensions were read off the drawing.
@@ -32,14 +32,14 @@ class Geometry:
 
     @property
     def size(self) -> float:
-        """The greatest distance between two points of one link, or the size of a profile: the length scale."""
+        """The length scale, the greatest distance on a link or size of a profile."""
         spans = [_span(list(points.values())) for points in self.points.values()]
         spans.append(_span(list(self.sketch.values())))
         return max(*spans, self.profiles) or 1.0
 
 
 def _span(points: list[Number]) -> float:
-    """The diagonal of the box around some points, over all designs."""
+    """Return the diagonal of the box around some points, over all designs."""
     if len(points) < 2:
         return 0.0
     x = [np.real(p) for p in points]
@@ -50,7 +50,7 @@ def _span(points: list[Number]) -> float:
 
 
 def read_off(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Pose | None, dict[str, Number]]:
-    """The drawn pose of a link given by its letters only, and its points in its own frame.
+    """Return a link's drawn pose, and its points in its own frame.
 
     The origin is the first letter; the x axis points to the second. A single letter shows no direction, so no pose.
     """
@@ -70,7 +70,7 @@ def read_off(letters: tuple[str, ...], sketch: Mapping[str, Number]) -> tuple[Po
 
 
 def fitted_pose(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> Pose | None:
-    """The pose of a link with known dimensions that a drawing shows at two points or more, or None."""
+    """Return the pose of a link drawn at two points or more, or None."""
     shown = [name for name in points if name in sketch]
     if len(shown) < 2:
         return None
@@ -94,7 +94,9 @@ def deg(angle: Any) -> Number:
 
 
 def polar(radius: Any, angle: Any) -> Number:
-    """The planar vector of a length and an angle (radians), a complex number or array.
+    """Return the planar vector of a length and an angle (radians).
+
+    A complex number or array.
 
     >>> polar(2.0, 0.0)
     (2+0j)
@@ -104,7 +106,7 @@ def polar(radius: Any, angle: Any) -> Number:
 
 
 def vector(where: str, value: Any) -> Number:
-    """A planar vector written as complex or as (x, y), either of them a number or an array.
+    """Return a planar vector written as complex or as (x, y), numbers or arrays.
 
     Raises InvalidMechanism naming `where`.
 
@@ -133,7 +135,7 @@ def _frozen(array: Any) -> Any:
 
 
 def real(where: str, value: Any) -> Number:
-    """A number, or an array that cannot be written to; None stays None. Raises InvalidMechanism naming `where`.
+    """Return a number, or an array that cannot be written to; None stays None. Raises InvalidMechanism naming `where`.
 
     >>> real("time", [0, 1]).tolist()
     [0.0, 1.0]
@@ -148,7 +150,7 @@ def real(where: str, value: Any) -> Number:
 
 
 def place_of(value: Any, where: str = "profile") -> complex:
-    """A point written as (x, y) or as a complex number; raises InvalidMechanism for anything else."""
+    """Return a point written as (x, y) or as a complex number. Raises InvalidMechanism for anything else."""
     try:
         if isinstance(value, str):  # Python reads "1+2j" as a number
             raise ValueError
@@ -158,7 +160,7 @@ def place_of(value: Any, where: str = "profile") -> complex:
 
 
 def number_of(value: Any, where: str) -> float:
-    """One real number; raises InvalidMechanism naming `where` for anything else."""
+    """Return one real number; raises InvalidMechanism naming `where` for anything else."""
     try:
         return float(value)
     except (TypeError, ValueError):

@@ -20,7 +20,7 @@ from compoundkin.model.written import Written
 
 
 class Mechanism(Written, ShowsPicture):
-    """Links, pairs and drivers, written with the words of this module; checked as a whole when it is made.
+    """Links, pairs and drivers, written with the words of this module. Checked as a whole when it is made.
 
     Two links that have a point of the same name are pinned there; the link called "frame" is the frame.
     `time` holds the times (seconds) at which it is solved unless a call says otherwise.
@@ -63,7 +63,7 @@ class Mechanism(Written, ShowsPicture):
             raise InvalidMechanism(problems, heading=f"{title!r} cannot be built")
 
     def _misfits(self) -> Iterator[Problem]:
-        """Find what is wrong with the dimensions of pairs, in a mechanism that has no other problems."""
+        """Find dimensions of pairs that do not fit, where nothing else is wrong."""
         for where, pair in self.placed_pairs:
             yield from pair.misfits(self.geometry, where)
 
@@ -95,7 +95,7 @@ class Mechanism(Written, ShowsPicture):
         return max((pair.extent for pair in self.written_pairs), default=0.0)
 
     def replace(self, *items: Item, **changes: Any) -> Mechanism:
-        """A copy in which each given item takes the place of the one of the same kind and name.
+        """Return a copy with items in the place of those of their names.
 
         A word with no counterpart is added; `title`, `unit`, `source`, `description`, `outputs`, `time` by keyword.
 
@@ -111,7 +111,7 @@ class Mechanism(Written, ShowsPicture):
         return Mechanism(title, *kept, *keys.values(), **{**words, **changes})
 
     def link(self, name: str) -> Link:
-        """The link of a name; raises UnknownName."""
+        """Return the link of a name; raises UnknownName."""
         if name not in self.links:
             raise UnknownName(Problem(name, "there is no such link", nearest(name, list(self.links))))
         return self.links[name]
@@ -127,7 +127,7 @@ class Mechanism(Written, ShowsPicture):
 
 
 def same(a: Any, b: Any) -> bool:
-    """Whether two nested values are equal, arrays element by element."""
+    """Return whether two nested values are equal, arrays element by element."""
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return np.shape(a) == np.shape(b) and bool(np.array_equal(a, b))
     if isinstance(a, Mapping) and isinstance(b, Mapping):
@@ -146,7 +146,7 @@ def _identity(item: Item) -> tuple[Any, ...]:
 
 
 def _plain(mechanism: Mechanism) -> list[Any]:
-    """What is written, as nested builtins and arrays, for comparison."""
+    """Return what is written, as nested builtins and arrays, for comparison."""
     about = [getattr(mechanism, k) for k in ("title", "unit", "source", "description", "outputs", "time")]
     drawing = [["Drawn", mechanism.sketch]] if mechanism.sketch else []
     written = [

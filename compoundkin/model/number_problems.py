@@ -1,4 +1,4 @@
-"""What can be wrong with the numbers of a mechanism: points, dimensions, rates, and shapes of arrays."""
+"""What can be wrong with the numbers of a mechanism. Points, dimensions, rates, and shapes of arrays."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def point_problems(mechanism: Written) -> Iterator[Problem]:
 
 
 def is_finite(value: Any) -> bool:
-    """Whether a value is a number or an array of numbers, all finite and at least one."""
+    """Return whether a value is finite numbers, one or an array of them."""
     try:
         if isinstance(value, _NUMBERS):
             return cmath.isfinite(value)
@@ -62,7 +62,7 @@ def _undrawn(letter: str, sketch: Mapping[str, Any]) -> str:
 
 
 def _lengths(mechanism: Written, name: str, size: float) -> Iterator[Problem]:
-    """Pinned points of one link that coincide: a link of no length between two pairs."""
+    """Pinned points of one link that coincide. A link of no length between two pairs."""
     link = mechanism.links[name]
     place = {k: mechanism.sketch.get(k) if p is None else p for k, p in link.points.items()}
     pinned = [(k, p) for k, p in place.items() if k in mechanism.pins and p is not None]
@@ -75,7 +75,7 @@ def _lengths(mechanism: Written, name: str, size: float) -> Iterator[Problem]:
 
 
 def _coincident(points: list[Any], nearer: float) -> Iterator[tuple[int, int]]:
-    """The pairs of points that coincide in any design."""
+    """Yield the pairs of points that coincide in any design."""
     if all(isinstance(p, _NUMBERS) for p in points):
         yield from sorted(_near_in_order(points, nearer))
     else:
@@ -84,7 +84,7 @@ def _coincident(points: list[Any], nearer: float) -> Iterator[tuple[int, int]]:
 
 
 def _near_in_order(points: list[complex], nearer: float) -> Iterator[tuple[int, int]]:
-    """The pairs of points that coincide; each is held against those next to it along one direction only."""
+    """Yield the pairs of points that coincide. Each is held against those next to it along one direction only."""
     along = sorted(((p * _OBLIQUE).real, i) for i, p in enumerate(points) if cmath.isfinite(p))
     for here, (t, i) in enumerate(along):
         for there in range(here + 1, len(along)):
@@ -102,14 +102,14 @@ def _size(mechanism: Written) -> float:
 
 
 def _greatest(value: Any) -> float:
-    """The greatest absolute value, of what is finite."""
+    """Return the greatest absolute value, of what is finite."""
     if isinstance(value, _NUMBERS):
         return abs(value) if cmath.isfinite(value) else 0.0
     return float(np.max(np.abs(np.asarray(value))[np.isfinite(value)], initial=0.0))
 
 
 def no_numbers(pair: Pair, where: str) -> Iterator[Problem]:
-    """Find what a pair holds in place of real numbers, and of true or false."""
+    """Find what a pair holds in place of real numbers or flags."""
     for key in pair.keys:
         for value in _numbers_of(pair, key):
             if not is_finite(value) or np.iscomplexobj(value):
@@ -120,7 +120,7 @@ def no_numbers(pair: Pair, where: str) -> Iterator[Problem]:
 
 
 def _numbers_of(pair: Pair, key: Key) -> tuple[Any, ...]:
-    """The numbers and arrays that a pair holds under a key."""
+    """Return the numbers and arrays that a pair holds under a key."""
     value: Any = getattr(pair, key.name, None)
     if key.kind not in ("length", "angle", "two") or (value is None and key.default is None and not key.required):
         return ()
@@ -128,7 +128,7 @@ def _numbers_of(pair: Pair, key: Key) -> tuple[Any, ...]:
 
 
 def drive_problems(drive: Drive, where: str) -> Iterator[Problem]:
-    """Find numbers of a driver that are none, or that are given beside a law, which says it all."""
+    """Find a driver's numbers that are none, or that stand beside a law."""
     for key in DRIVEN:
         value = getattr(drive, key)
         if value is not None and not is_finite(value):

@@ -1,4 +1,4 @@
-"""What can be wrong with the words of a mechanism; every problem is found, none hides another."""
+"""What can be wrong with the words of a mechanism. Every problem is found, none hides another."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def problems_of(mechanism: Written) -> Iterator[Problem]:
 
 
 def _words(mechanism: Written) -> Iterator[Problem]:
-    """What is not a word at all."""
+    """Find what is not a word at all."""
     for index, item in enumerate(mechanism.items):
         if not isinstance(item, Item):
             yield Problem(
@@ -71,7 +71,7 @@ def _names(mechanism: Written) -> Iterator[Problem]:
 
 
 def _named(mechanism: Written) -> Iterator[tuple[str, str, str]]:
-    """The place, sort and name of everything that has one; pairs of all kinds share their names."""
+    """Yield the place, sort and name of everything that has one. Pairs of all kinds share their names."""
     for item in mechanism.items:
         if isinstance(item, Link):
             yield f"links.{item.name}", "link", item.name
@@ -97,7 +97,7 @@ def _pairs(mechanism: Written) -> Iterator[Problem]:
 
 
 def _joined(mechanism: Written) -> Iterator[Problem]:
-    """Links that no pair joins to anything: most often a misspelt letter."""
+    """Find links that no pair joins to anything: most often a misspelt letter."""
     paired = {name for names in mechanism.pins.values() for name in names}
     paired |= {name for pair in mechanism.written_pairs for name in pair.members}
     if len(mechanism.links) < 2:
@@ -177,7 +177,7 @@ def _expectations(mechanism: Written) -> Iterator[Problem]:
 
 
 def _quantities(mechanism: Written) -> Iterator[Problem]:
-    """Outputs and published numbers of what there is not; a multiple pin's pairs are named by their links."""
+    """Outputs and published numbers of what there is not. A multiple pin's pairs are named by their links."""
     named = [*mechanism.carriers, *mechanism.links, *(p.name for p in mechanism.written_pairs)]
     known = dict.fromkeys([*named, *(drive.name for drive in mechanism.drives)])
     asked = [(f"outputs[{k}]", name) for k, name in enumerate(mechanism.outputs)]

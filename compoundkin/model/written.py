@@ -1,4 +1,4 @@
-"""What is written of a mechanism, by name: its links, pairs and drivers, and which links share which points."""
+"""What is written of a mechanism, by name. Its links, pairs and drivers, and which links share which points."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from compoundkin.model.pairs import Pair
 
 
 class Written:
-    """A mechanism as written, checked or not: its words, sorted and looked up by name."""
+    """A mechanism as written, checked or not. Its words, sorted and looked up by name."""
 
     title: str
     unit: str
@@ -67,7 +67,7 @@ class Written:
 
     @cached_property
     def pins_on(self) -> dict[str, dict[str, None]]:
-        """The letters of the pins on each link, as the keys of a dictionary in the order of `pins`."""
+        """The letters of the pins on each link, in the order of `pins`."""
         found: dict[str, dict[str, None]] = {name: {} for name in self.links}
         for letter, names in self.pins.items():
             for name in names:
@@ -75,7 +75,7 @@ class Written:
         return found
 
     def pins_between(self, one: str, other: str) -> list[str]:
-        """The letters at which two links, which need not exist, are pinned to each other."""
+        """Return the letters at which two links, existing or not, are pinned together."""
         fewer, more = sorted((self.pins_on.get(name, {}) for name in (one, other)), key=len)
         return [letter for letter in fewer if letter in more and one != other]
 
@@ -99,7 +99,7 @@ class Written:
         return tuple(found)
 
     def drivable(self, drive: Drive) -> list[str]:
-        """Return the names of the pairs between a drive's two links that it can mean."""
+        """Return the names of the pairs that a drive can mean."""
         pins = self.pins_between(drive.link, drive.on)
         between = self.pairs_between.get(frozenset((drive.link, drive.on)), ())
         others = [pair.name for pair in between if pair.is_drivable]

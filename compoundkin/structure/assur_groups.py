@@ -1,4 +1,4 @@
-"""Assur groups from components of unknowns: their bodies, their pairs and what each group is called.
+"""Assur groups from components of unknowns. Their bodies, their pairs and what each group is called.
 
 A dyad is named by its pairs along the chain, outer-inner-outer, from the end that makes the name first in
 the order of `pairs.KINDS`: RRP, not PRR. A larger group is named by the letters of its outer pairs, a dash,
@@ -31,7 +31,7 @@ _NUMERALS = ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I"))
 
 
 def roman(number: int) -> str:
-    """A class as it is printed.
+    """Return a class as it is printed.
 
     >>> roman(2), roman(4), roman(13)
     ('II', 'IV', 'XIII')
@@ -45,7 +45,7 @@ def roman(number: int) -> str:
 
 
 def named_group(bodies: Sequence[Body], inner: Sequence[Pair], outer: Sequence[Pair]) -> Group:
-    """The group of some bodies in input order, with its name, class and order."""
+    """Return the group of some bodies, with its name, class and order."""
     if len(bodies) == 2 and len(inner) == 1 and len(outer) == 2:
         return _dyad(bodies, inner[0], outer)
     name = "-".join(letters for letters in (_letters(outer), _letters(inner)) if letters)
@@ -63,7 +63,7 @@ def _dyad(bodies: Sequence[Body], inner: Pair, outer: Sequence[Pair]) -> Group:
 
 
 def group_class(bodies: Sequence[Body], inner: Sequence[Pair], outer: Sequence[Pair]) -> int:
-    """The class by Artobolevskii of a group, from the graph of its bodies and pairs."""
+    """Return a group's class by Artobolevskii, from its graph."""
     index = {link: k for k, body in enumerate(bodies) for link in body.links}
     joined = [tuple(dict.fromkeys(index[m] for m in pair.members if m in index)) for pair in (*inner, *outer)]
     pairs_on = [0] * len(bodies)
@@ -76,7 +76,7 @@ def group_class(bodies: Sequence[Body], inner: Sequence[Pair], outer: Sequence[P
 
 
 def rank(pair: Pair) -> int:
-    """The place of a pair's letter in a group's name."""
+    """Return the place of a pair's letter in a group's name."""
     return _RANK[pair.code]
 
 
@@ -90,13 +90,13 @@ def _on(body: Body, pair: Pair) -> bool:
 
 @dataclass
 class Binder:
-    """Binds components in solving order; `holder[k]` is the body through which the k-th pin is located."""
+    """Binds components in solving order. `holder[k]` is the body through which the k-th pin is located."""
 
     system: System
     holder: dict[int, int] = field(default_factory=dict)
 
     def locate(self, component: Sequence[int], constraints: Sequence[Constraint]) -> None:
-        """Note where the pins of a component are found: on a body that is then solved."""
+        """Note where the pins of a component are found. On a body that is then solved."""
         own = frozenset(component)
         for constraint in constraints:
             vertex, body = constraint.sides[0], constraint.sides[-1]
@@ -104,7 +104,7 @@ class Binder:
                 self.holder.setdefault(vertex, body)
 
     def group(self, component: Sequence[int], constraints: Sequence[Constraint]) -> Group:
-        """The group of a component that holds a body."""
+        """Return the group of a component that holds a body."""
         own = set(component)
         inner: list[Pair] = []
         outer: list[Pair] = []
@@ -138,7 +138,7 @@ class Binder:
 
 
 def all_pairs(system: System, groups: Sequence[Group], kept: Sequence[Pair] = ()) -> tuple[Pair, ...]:
-    """Every pair: the pins letter by letter, as drivers and groups use them, then those written out.
+    """Return every pair, the pins letter by letter and then those written out.
 
     `kept` are what groups use in the place of pairs of which something is dropped: those themselves are listed.
     """
@@ -155,7 +155,7 @@ def all_pairs(system: System, groups: Sequence[Group], kept: Sequence[Pair] = ()
 
 
 def _completed(system: System, letter: str, pairs: list[Pair]) -> list[Pair]:
-    """The pairs of one pin, with those that no driver and no group uses."""
+    """Return the pairs of one pin, unused ones included."""
     links = system.mechanism.pins[letter]
     if len(pairs) == len(links) - 1:
         return pairs

@@ -25,7 +25,7 @@ class Pins:
     mechanism: Mechanism
 
     def pair(self, letter: str, first: str, second: str) -> Pair:
-        """The revolute pair of two links at a letter, named by it; of a multiple pin, as ``J(crank-rod)``.
+        """Return the revolute pair of two links at a letter, named by it. Of a multiple pin, as ``J(crank-rod)``.
 
         >>> from compoundkin.model.elements import link
         >>> links = [link(name, J=0) for name in ("frame", "crank", "rod")]
@@ -50,13 +50,13 @@ class Pins:
 
 
 def pin_at(letter: str) -> Pair:
-    """The revolute pair at a letter before it is known between which of the links it is written."""
+    """Return the revolute pair at a letter, its links not yet known."""
     return Revolute(letter, letter, "", "")
 
 
 @dataclass(frozen=True)
 class Composites:
-    """The bodies of a mechanism: the ground, the moving ones in input order, and what closes on itself.
+    """The bodies of a mechanism. The ground, the moving ones in input order, and what closes on itself.
 
     `body_of` maps each link to the index of its moving body, or to GROUND. `closing` are the drives whose
     links other drives join already. A link with a passive freedom is one body with the link it is pinned to.
@@ -70,12 +70,12 @@ class Composites:
     passive: tuple[Passive, ...]
 
     def body(self, index: int) -> Body:
-        """The body of an index as in `body_of`."""
+        """Return the body of an index as in `body_of`."""
         return self.ground if index == GROUND else self.moving[index]
 
 
 def composites(mechanism: Mechanism) -> Composites:
-    """The bodies that the drives make of the links."""
+    """Return the bodies that the drives make of the links."""
     neighbours: dict[str, list[DrivenPair]] = {name: [] for name in mechanism.links}
     leader = {name: name for name in mechanism.links}
     pins = Pins(mechanism)
@@ -105,7 +105,9 @@ def composites(mechanism: Mechanism) -> Composites:
 
 
 def passive_freedoms(mechanism: Mechanism) -> Iterator[Passive]:
-    """The links on a single pin about which all their other pairs are round; not those that a driver turns.
+    """Yield the links that may turn about their only pin without moving anything.
+
+    Not those that a driver turns.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import link
@@ -125,7 +127,7 @@ def passive_freedoms(mechanism: Mechanism) -> Iterator[Passive]:
 
 
 def driven_pair(pins: Pins, drive: Drive) -> Pair:
-    """The pair that a drive prescribes: a written one, or the pin between precisely its two links."""
+    """Return the pair that a drive prescribes. A written one, or the pin between precisely its two links."""
     mechanism = pins.mechanism
     (name,) = mechanism.drivable(drive)
     if name in mechanism.pins_between(drive.link, drive.on):
@@ -135,7 +137,7 @@ def driven_pair(pins: Pins, drive: Drive) -> Pair:
 
 
 def spanned(body: Body, links: Iterable[str]) -> tuple[DrivenPair, ...]:
-    """The driven pairs of a composite that lie between some of its links."""
+    """Return the driven pairs of a composite that lie between some of its links."""
     below = dict.fromkeys(body.links, 0)
     wanted = [name for name in dict.fromkeys(links) if name in below]
     for name in wanted:

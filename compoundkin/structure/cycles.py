@@ -1,4 +1,4 @@
-"""Sets that are joined, and independent cycles of a multigraph: a shortest basis, or a quick one for large graphs."""
+"""Sets that are joined, and independent cycles of a multigraph. A shortest basis, or a quick one for large graphs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SHORTEST_BASIS_UP_TO = 60
 
 
 class Leaders(Protocol[T]):
-    """What leads from each member of a set towards its representative: a list, or a dictionary."""
+    """What leads from each member of a set towards its representative. A list, or a dictionary."""
 
     def __getitem__(self, member: T, /) -> T:
         """Return the next one on the way."""
@@ -24,7 +24,7 @@ class Leaders(Protocol[T]):
 
 
 def find(leader: Leaders[T], member: T) -> T:
-    """Return the representative of the set that a member belongs to; ways are halved as they are gone.
+    """Return the representative of the set that a member belongs to. Ways are halved as they are gone.
 
     >>> find([0, 0, 1, 3], 2), find({"a": "b", "b": "b"}, "a")
     (0, 'b')
@@ -36,8 +36,9 @@ def find(leader: Leaders[T], member: T) -> T:
 
 
 def cycle_basis(nodes: int, edges: Edges) -> list[tuple[int, ...]]:
-    """A basis of independent cycles, each as its edges in order around it from its least node.
+    """Return a basis of independent cycles, each as its edges in order.
 
+    Each starts at its least node.
     Of least total length up to SHORTEST_BASIS_UP_TO nodes. Source: J. D. Horton, A polynomial-time algorithm
     to find the shortest cycle basis of a graph, SIAM J. Comput. 16 (1987) 358.
 
@@ -57,7 +58,7 @@ def cycle_basis(nodes: int, edges: Edges) -> list[tuple[int, ...]]:
 
 
 def _candidates(nodes: int, edges: Edges, around: list[list[int]]) -> list[int]:
-    """Horton's cycles, shortest first: two shortest paths from a node and the edge that joins their ends.
+    """Horton's cycles, shortest first. Two shortest paths from a node and the edge that joins their ends.
 
     Sets of edges are written as the bits of a number.
     """
@@ -71,7 +72,7 @@ def _candidates(nodes: int, edges: Edges, around: list[list[int]]) -> list[int]:
 
 
 def _paths(root: int, edges: Edges, around: list[list[int]]) -> dict[int, int]:
-    """The edges of one shortest path from a node to each that it reaches."""
+    """Return the edges of a shortest path from a node to each other."""
     paths = {root: 0}
     queue = deque([root])
     while queue:
@@ -85,7 +86,7 @@ def _paths(root: int, edges: Edges, around: list[list[int]]) -> dict[int, int]:
 
 
 def _independent(cycles: Sequence[int], wanted: int) -> list[int]:
-    """The first cycles that are independent, by elimination modulo two."""
+    """Return the first cycles that are independent, by elimination modulo two."""
     pivots: dict[int, int] = {}
     chosen: list[int] = []
     for cycle in cycles:
@@ -105,14 +106,14 @@ def _members(cycle: int) -> list[int]:
 
 
 def _closed_by_tree(nodes: int, edges: Edges, around: list[list[int]]) -> list[list[int]]:
-    """The cycles that the edges outside a breadth-first forest close."""
+    """Return the cycles that the edges outside a breadth-first forest close."""
     parent, depth = _forest(nodes, edges, around)
     in_tree = set(parent)
     return [_closed(k, edges, parent, depth) for k in range(len(edges)) if k not in in_tree]
 
 
 def _forest(nodes: int, edges: Edges, around: list[list[int]]) -> tuple[list[int], list[int]]:
-    """The edge from each node to its parent in a breadth-first forest (-1 at a root), and its depth."""
+    """Return each node's edge to its parent in a breadth-first forest, and depths. The edge is -1 at a root."""
     parent, depth = [-1] * nodes, [-1] * nodes
     for root in range(nodes):
         if depth[root] >= 0:
@@ -145,7 +146,7 @@ def _across(edge: tuple[int, int], node: int) -> int:
 
 
 def _in_order(cycle: Sequence[int], edges: Edges) -> tuple[int, ...]:
-    """The edges of a cycle one after the other, from its least node by its first edge."""
+    """Return the edges of a cycle in order around it from its least node. It starts by its first edge."""
     meeting: dict[int, list[int]] = {}
     for k in cycle:
         for node in edges[k]:

@@ -1,4 +1,4 @@
-"""Taking a mechanism apart: driven links, then Assur groups in solving order, and what stands in the way.
+"""Taking a mechanism apart. Driven links, then Assur groups in solving order, and what stands in the way.
 
 Constraints are assigned to the unknowns they determine (a maximum matching); an unknown depends on the
 other members of the constraints assigned to it; the strongly connected components of that dependency, in
@@ -31,7 +31,7 @@ from compoundkin.structure.system import System, system_of
 
 
 def decompose(mechanism: Mechanism) -> Structure:
-    """Take a mechanism apart into its driven links and its Assur groups, in solving order.
+    """Take a mechanism apart into driven links and Assur groups in solving order.
 
     Nothing is raised for a mechanism that is over- or under-constrained: `faults` name the links, by how
     much, and a remedy. The work grows about linearly with the number of links.
@@ -54,7 +54,7 @@ def decompose(mechanism: Mechanism) -> Structure:
 
 @contextmanager
 def _without_collection() -> Iterator[None]:
-    """Pause Python's collector of cycles: nothing here makes any, and at 100,000 links it takes a third of the time."""
+    """Pause Python's collector of cycles. Nothing here makes any, and at 100,000 links it takes a third of the time."""
     was_on = gc.isenabled()
     gc.disable()
     try:
@@ -81,14 +81,14 @@ def decomposed(mechanism: Mechanism, relaxation: Relaxation | None) -> Structure
 
 @dataclass(frozen=True)
 class _Coarse:
-    """Which unknowns are held by too much and which by too little; the others are well determined."""
+    """Which unknowns are overconstrained and which are left free. The others are well determined."""
 
     over: list[bool]
     under: list[bool]
 
 
 def _groups(system: System, matching: Matching, coarse: _Coarse) -> tuple[list[Group], list[Fault]]:
-    """The groups of the well-determined part in solving order, and components that only seem to be one."""
+    """Return the groups in solving order, and faults of components that only seem determined."""
     binder, test = Binder(system), RankTest(system)
     _locate_overdetermined(system, binder, coarse.over)
     groups: list[Group] = []

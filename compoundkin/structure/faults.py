@@ -1,4 +1,4 @@
-"""Over- and under-constrained parts, named: which links, by how much, and what to add or remove."""
+"""Over- and under-constrained parts, named. Which links, by how much, and what to add or remove."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LISTED = 6
 
 
 def closed_drives(system: System) -> Iterator[Fault]:
-    """Composites that close on themselves: driven pairs in a ring, or pairs across a driven chain."""
+    """Composites that close on themselves. Driven pairs in a ring, or pairs across a driven chain."""
     body_of = system.bodies.body_of
     pairs: dict[int, list[Pair]] = {}
     for pair in held_pairs(system.mechanism, system.dropped):
@@ -53,12 +53,12 @@ def _closed(system: System, body: Body, pairs: Sequence[Pair], drives_inside: Se
 
 
 def _meant(system: System, pair: Pair) -> str:
-    """The name of a written pair, or of the one of which it is what is kept."""
+    """Return the name of the written pair that a pair is or stands for."""
     return next((part.name for part in system.dropped if part.kept is pair), pair.name)
 
 
 def _letters_twice(system: System, body: Body) -> Iterator[tuple[str, tuple[int, tuple[str, ...]]]]:
-    """Letters that links of one composite share without being driven there, with what they hold too many."""
+    """Yield letters that links of a composite share without being driven there."""
     links: dict[str, list[str]] = {}
     for name in body.links:
         for letter in system.mechanism.links[name].points:
@@ -79,7 +79,7 @@ def _letters_twice(system: System, body: Body) -> Iterator[tuple[str, tuple[int,
 
 
 def counted_faults(system: System, matching: Matching, over: list[bool], under: list[bool]) -> Iterator[Fault]:
-    """The parts that more rows hold than they have freedoms, and those that fewer hold."""
+    """Find the parts that are overconstrained by count, and those left free."""
     touching: list[list[Constraint]] = [[] for _ in over]
     free = [unknown for unknown, yes in enumerate(under) if yes]
     owned_by_under = {system.constraint_of[row] for unknown in free for row in matching.owned[unknown]}
@@ -112,7 +112,7 @@ def _part_faults(system: System, part: Subsystem) -> Iterator[Fault]:
 
 
 def rank_faults(system: System, part: Subsystem, found: Deficiency) -> Iterator[Fault]:
-    """What is redundant and what is free in a part; both where its pairs hold less than they count."""
+    """Find what is redundant and what is free in a part. Both where its pairs hold less than they count."""
     if found.redundant:
         yield _over(system, found)
     if found.free:
@@ -166,7 +166,7 @@ def _under_remedy(amount: int, choices: Sequence[str]) -> str:
 
 
 def _drivable(system: System, constraint: Constraint) -> Iterator[str]:
-    """Where a driver could be put: "crank on frame (pin A)"."""
+    """Yield where a driver could be put: "crank on frame (pin A)"."""
     links = _links_of(system, constraint)
     if constraint.letter and len(links) == 1:
         other = system.neighbour(constraint.letter, constraint.sides[1])
@@ -184,7 +184,7 @@ def _links_of(system: System, constraint: Constraint) -> tuple[str, ...]:
 
 
 def _in_input_order(system: System, links: Iterable[str]) -> tuple[str, ...]:
-    """The links once each; the frame only if it is alone."""
+    """Return the links once each; the frame only if it is alone."""
     moving = dict.fromkeys(name for name in links if name != FRAME)
     return tuple(sorted(moving, key=system.place_of.__getitem__)) or (FRAME,)
 
@@ -194,7 +194,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _of(amount: int, names: Sequence[str], word: str, among: str = "") -> str:
-    """ "driver a", "one of the drivers a, b", "2 of the drivers a, b, c"."""
+    """Write "driver a" or "one of the drivers a, b", with their number."""
     among = among or f"of the {word}s"
     if len(names) == 1:
         return f"{'the ' + word if word == 'driver' else _number(amount, word) + ' of the pair'} {names[0]}"

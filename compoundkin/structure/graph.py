@@ -1,4 +1,4 @@
-"""The kinematic graph, links as nodes and pairs as edges, and its loops: closed chains of links and pairs."""
+"""The kinematic graph, links as nodes and pairs as edges, and its loops. Closed chains of links and pairs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class LinksAndPairs(Protocol):
-    """A mechanism with all its pairs, as a structure holds them: a multiple pin of k links is k - 1 pairs."""
+    """A mechanism with all its pairs, as a structure holds them. A multiple pin of k links is k - 1 pairs."""
 
     @property
     def mechanism(self) -> Mechanism:
@@ -30,7 +30,7 @@ class LinksAndPairs(Protocol):
 
 @dataclass(frozen=True)
 class Loop:
-    """A closed chain: `pairs[k]` joins `links[k]` to the next link, the last one to the first.
+    """A closed chain of links, `pairs[k]` between `links[k]` and the next.
 
     It starts at the frame where it contains it.
     """
@@ -47,8 +47,9 @@ class Loop:
 
 
 def kinematic_graph(structure: LinksAndPairs) -> nx.MultiGraph:
-    """The links as nodes (attribute `pairs`: how many each has), the pairs as edges keyed by their names.
+    """Return the graph of links as nodes and pairs as edges.
 
+    Attribute `pairs` says how many a link has. Edges are keyed by the pairs' names.
     Edges have the attributes `pair` and `code`. A multiple pin of k links is k - 1 edges.
 
     >>> from compoundkin.model.mechanism import Mechanism
@@ -70,7 +71,7 @@ def kinematic_graph(structure: LinksAndPairs) -> nx.MultiGraph:
 
 
 def pair_counts(structure: LinksAndPairs) -> dict[str, int]:
-    """How many pairs each link has; at a pin of several links each of them counts one.
+    """Return how many pairs each link has. At a pin of several links each of them counts one.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import link
@@ -91,7 +92,7 @@ def pair_counts(structure: LinksAndPairs) -> dict[str, int]:
 
 
 def links_by_pairs(structure: LinksAndPairs) -> dict[int, tuple[str, ...]]:
-    """The links with one pair, the binary links, the ternary ones and so on, by their number of pairs.
+    """Return the links by their number of pairs: singular, binary, ternary and so on.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import link
@@ -105,7 +106,7 @@ def links_by_pairs(structure: LinksAndPairs) -> dict[int, tuple[str, ...]]:
 
 
 def independent_loops(structure: LinksAndPairs) -> tuple[Loop, ...]:
-    """A basis of independent loops, p - n + 1 of them in a connected mechanism.
+    """Return a basis of independent loops, p - n + 1 if connected.
 
     Of least total length for up to 60 links; beyond, those that pairs outside a spanning tree close.
 
@@ -120,7 +121,7 @@ def independent_loops(structure: LinksAndPairs) -> tuple[Loop, ...]:
 
 
 def loops_through(structure: LinksAndPairs, pairs: Sequence[Pair]) -> tuple[Loop, ...]:
-    """A basis of the independent loops that some of the pairs close.
+    """Return a basis of the independent loops that some of the pairs close.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.structure import decompose
@@ -135,8 +136,9 @@ def loops_through(structure: LinksAndPairs, pairs: Sequence[Pair]) -> tuple[Loop
 
 
 def simple_loops(structure: LinksAndPairs, limit: int | None = None, longest: int | None = None) -> Iterator[Loop]:
-    """All loops that pass no link twice, one after another, at most `limit` of them; their number may be enormous.
+    """Yield the loops that pass no link twice, at most `limit` of them.
 
+    Their number may be enormous.
     `longest` leaves out loops of more links. A multiple pin of k links is k - 1 pairs, as everywhere.
     Source: D. B. Johnson, Finding all the elementary circuits of a directed graph, SIAM J. Comput. 4 (1975) 77.
 
@@ -161,7 +163,7 @@ def simple_loops(structure: LinksAndPairs, limit: int | None = None, longest: in
 
 
 def _turned(structure: LinksAndPairs, pairs: Sequence[Pair]) -> Loop:
-    """A loop from its first link on, whichever pair is named first."""
+    """Return a loop from its first link on, whichever pair is named first."""
     order = {name: k for k, name in enumerate(_numbered(structure))}
     first = min((name for pair in pairs for name in pair.members[:2]), key=order.__getitem__)
     at = next(k for k in range(len(pairs)) if all(first in pairs[j].members[:2] for j in (k, k - 1)))
@@ -173,12 +175,12 @@ def _turned(structure: LinksAndPairs, pairs: Sequence[Pair]) -> Loop:
 
 
 def _numbered(structure: LinksAndPairs) -> list[str]:
-    """The links, the frame first."""
+    """Return the links, the frame first."""
     return [FRAME, *(name for name in structure.mechanism.links if name != FRAME)]
 
 
 def loop_count(structure: LinksAndPairs) -> int:
-    """The number of independent loops by Euler's formula: L = p - n + 1, one more for each further piece.
+    """Return the number of independent loops by Euler's formula. L = p - n + 1, one more for each further piece.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import link
@@ -196,7 +198,7 @@ def loop_count(structure: LinksAndPairs) -> int:
 
 
 def _loop(structure: LinksAndPairs, pairs: Sequence[Pair]) -> Loop:
-    """The loop of pairs in order around it, from the first of the links that the first and the last pair share."""
+    """Return the loop of pairs that are given in order around it."""
     shared = set(pairs[-1].members[:2]) & set(pairs[0].members[:2])
     order = {name: k for k, name in enumerate(_numbered(structure))}
     link = min(shared, key=order.__getitem__)

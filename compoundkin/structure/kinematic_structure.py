@@ -22,7 +22,7 @@ SHOWN_GROUPS = 12
 
 @dataclass(frozen=True)
 class Structure(ShowsPicture):
-    """A mechanism taken apart: the frame with its driven links, then the Assur groups in solving order.
+    """A mechanism taken apart. The frame with its driven links, then the Assur groups in solving order.
 
     `pairs` lists every pair, a multiple pin of k links as k - 1 of them. Where `faults` is not empty the
     mechanism cannot be solved, and `groups` holds what could be decomposed. Where there is a `relaxation`, part of
@@ -40,7 +40,7 @@ class Structure(ShowsPicture):
 
     @cached_property
     def redundant(self) -> tuple[Pair, ...]:
-        """The pairs that no driver and no group uses as they are: the others hold what they hold."""
+        """The pairs that no driver and no group uses as they are. The others hold what they hold."""
         if self.relaxation is None:
             return ()
         bodies = (self.ground, *(body for group in self.groups for body in group.bodies))

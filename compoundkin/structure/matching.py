@@ -1,4 +1,4 @@
-"""Which unknown each constraint row determines: a maximum matching, and the parts that it leaves over.
+"""Which unknown each constraint row determines. A maximum matching, and the parts that it leaves over.
 
 Plain lists and loops, nothing recursive: NetworkX's Hopcroft-Karp recurses too deep beyond a thousand links
 and SciPy's hangs on some instances (scipy issue 26147).
@@ -15,7 +15,7 @@ FREE = -1
 
 @dataclass(frozen=True)
 class Matching:
-    """`owner[row]` is the unknown a row determines, or FREE; `owned[unknown]` its rows; `room` what lacks."""
+    """`owner[row]` is the unknown a row determines, or FREE. `owned[unknown]` its rows; `room` what lacks."""
 
     rows: Sequence[tuple[int, ...]]
     owner: list[int]
@@ -24,7 +24,7 @@ class Matching:
 
 
 def maximum_matching(rows: Sequence[tuple[int, ...]], freedoms: Sequence[int]) -> Matching:
-    """Assign rows to unknowns, to none more than its freedoms and as many as can be.
+    """Assign as many rows as possible to unknowns, within their freedoms.
 
     Breadth-first augmentation in phases that share their marks; each phase is linear in the rows, and few
     are needed after the greedy start. Source: A. Pothen and C.-J. Fan, ACM Trans. Math. Softw. 16 (1990) 303.
@@ -45,7 +45,7 @@ def maximum_matching(rows: Sequence[tuple[int, ...]], freedoms: Sequence[int]) -
 
 
 def _start(matching: Matching) -> None:
-    """Give rows to the unknown that is forced; where none is, to the one with the least room left."""
+    """Give rows to the unknown that is forced. Where none is, to the one with the least room left."""
     rows, room = matching.rows, matching.room
     touching: list[list[int]] = [[] for _ in room]
     for row, unknowns in enumerate(rows):
@@ -72,7 +72,7 @@ def _give(matching: Matching, row: int, unknown: int) -> None:
 
 
 def _augment(matching: Matching, row: int, seen: bytearray) -> bool:
-    """Find a place for a row by moving others along a shortest path of unmarked unknowns."""
+    """Find a place for a row by moving others along a shortest path."""
     before: dict[int, int] = {}
     queue = deque([row])
     while queue:
@@ -102,7 +102,9 @@ def _shift(matching: Matching, row: int, unknown: int, before: dict[int, int]) -
 
 
 def overdetermined(matching: Matching) -> list[bool]:
-    """Which unknowns more rows hold than they have freedoms (vertical part of Dulmage and Mendelsohn).
+    """Return which unknowns more rows hold than they have freedoms.
+
+    They are the vertical part of Dulmage and Mendelsohn.
 
     >>> overdetermined(maximum_matching([(0,), (0,), (1,)], [1, 1]))
     [True, False]
@@ -118,7 +120,9 @@ def overdetermined(matching: Matching) -> list[bool]:
 
 
 def underdetermined(matching: Matching) -> list[bool]:
-    """Which unknowns are left free, or hang on one that is (horizontal part of Dulmage and Mendelsohn).
+    """Return which unknowns are free or depend on a free one.
+
+    They are the horizontal part of Dulmage and Mendelsohn.
 
     >>> underdetermined(maximum_matching([(0, 1), (2,)], [1, 1, 1]))
     [True, True, False]

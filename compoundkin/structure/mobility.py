@@ -13,7 +13,7 @@ from compoundkin.structure.system import LINK_FREEDOMS
 
 @dataclass(frozen=True)
 class PairCount:
-    """How many pairs of one kind there are: its letter, what one of them holds, and their number."""
+    """How many pairs of one kind there are. Its letter, what one of them holds, and their number."""
 
     code: str
     held: int
@@ -22,7 +22,7 @@ class PairCount:
 
 @dataclass(frozen=True)
 class Mobility:
-    """The mobility by the count of Chebyshev and Gruebler: F = 3 (n - 1) - the sum of what the pairs hold.
+    """The mobility by the count of Chebyshev and Gruebler. F = 3 (n - 1) - the sum of what the pairs hold.
 
     A multiple pin of k links counts as k - 1 pairs. Passive freedoms, such as a roller's spin, are no mobility:
     `passive` of them are subtracted.
@@ -88,7 +88,7 @@ class Mobility:
 
 
 def mobility_of(mechanism: Mechanism, pairs: Sequence[Pair], passive: Sequence[Passive]) -> Mobility:
-    """The mobility of a mechanism with all its pairs, those of multiple pins one by one, and its passive freedoms."""
+    """Return the mobility of a mechanism with all its pairs and passive freedoms. Multiple pins count one by one."""
     numbers: dict[tuple[str, int], int] = {}
     for pair in pairs:
         numbers[pair.code, pair.held] = numbers.get((pair.code, pair.held), 0) + 1

@@ -1,4 +1,4 @@
-"""Strong components of the dependencies between unknowns, in an order in which they can be solved."""
+"""Strong components of the dependencies between unknowns, in solving order."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from heapq import heapify, heappop, heappush
 
 
 def strong_components(successors: Sequence[Sequence[int]]) -> list[list[int]]:
-    """The strongly connected components of a directed graph, every one after those it points to.
+    """Return the strong components of a directed graph, each after its successors.
 
     Without recursion. Source: R. Tarjan, SIAM J. Comput. 1 (1972) 146.
 
@@ -22,9 +22,7 @@ def strong_components(successors: Sequence[Sequence[int]]) -> list[list[int]]:
     components: list[list[int]] = []
     clock = 0
     for root in range(count):
-        if index[root]:
-            continue
-        path = [root]
+        path = [] if index[root] else [root]
         while path:
             node = path[-1]
             if not index[node]:
@@ -49,7 +47,7 @@ def strong_components(successors: Sequence[Sequence[int]]) -> list[list[int]]:
 
 
 def _popped(stack: list[int], on_stack: bytearray, root: int) -> list[int]:
-    """The component that ends at its root on the stack."""
+    """Return the component that ends at its root on the stack."""
     component = []
     while on_stack[root]:
         member = stack.pop()
@@ -61,7 +59,7 @@ def _popped(stack: list[int], on_stack: bytearray, root: int) -> list[int]:
 def solving_order(
     components: Sequence[Sequence[int]], successors: Sequence[Sequence[int]], rank: Sequence[int]
 ) -> list[int]:
-    """The components, each after those it depends on; of several possible ones that of least `rank`."""
+    """Return the components, each after those it depends on. Of several possible ones that of least `rank`."""
     of = {node: k for k, component in enumerate(components) for node in component}
     needs: list[set[int]] = [set() for _ in components]
     leads: list[list[int]] = [[] for _ in components]

@@ -1,4 +1,4 @@
-"""The parts of a mechanism that is taken apart: composite links, Assur groups, passive freedoms, faults."""
+"""The parts of a mechanism that is taken apart. Composite links, Assur groups, passive freedoms, faults."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from compoundkin.model.pairs import Pair
 
 @dataclass(frozen=True)
 class DrivenPair:
-    """One driven pair inside a composite link: `link` is placed from `parent` by the driver's value.
+    """One driven pair inside a composite link. `link` is placed from `parent` by the driver's value.
 
     A passive freedom, such as the spin of a roller, is held at zero as by a driver that nobody wrote: `is_passive`.
     """
@@ -26,7 +26,7 @@ class DrivenPair:
 
 @dataclass(frozen=True)
 class Body:
-    """A composite link: links joined by driven pairs, `links[0]` the base, `driven` leading out from it.
+    """A composite link of links joined by driven pairs, `links[0]` its base.
 
     Most bodies are a single link.
     """
@@ -37,7 +37,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Group:
-    """An Assur group: its bodies, its inner pairs and the outer pairs that attach it to what is solved.
+    """An Assur group with its bodies, its inner pairs and its outer pairs.
 
     `name` is the pairs' letters (RRR, RRP ...; inner and outer letters for a larger group). A dyad's
     `bodies[k]` carries `outer[k]`. A pair's members are links; an outer pair has one member in the group.
@@ -57,7 +57,7 @@ class Group:
 
     @property
     def uses(self) -> tuple[str, ...]:
-        """The links outside that it is attached to, in the order of its outer pairs."""
+        """The links outside that it is attached to, by its outer pairs."""
         own = set(self.links)
         known = [link for pair in (*self.outer, *self.inner) for link in pair.members if link not in own]
         return tuple(dict.fromkeys(known))
@@ -65,7 +65,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Passive:
-    """A freedom that moves nothing else: `link` may turn about the pin `at` on the link `on`, as a roller does."""
+    """A freedom that moves nothing else. `link` may turn about the pin `at` on the link `on`, as a roller does."""
 
     link: str
     on: str
@@ -77,7 +77,7 @@ class Passive:
 
 @dataclass(frozen=True)
 class Fault:
-    """A part that is over- or under-constrained: which links, by how much, and what to add or remove."""
+    """A part that is over- or under-constrained. Which links, by how much, and what to add or remove."""
 
     kind: str  # "over", "under"
     links: tuple[str, ...]
@@ -88,7 +88,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Dropped:
-    """Part of a pair that is left out when a mechanism is solved, since the other pairs hold it already.
+    """Part of a redundant pair that is left out when a mechanism is solved.
 
     `name` is the letter of a pin, taken off there are the links `off`, all of one body; or the name of a written
     pair. What it still holds is the pair `kept`, None where that is nothing; `freed` says in words what is left out.
@@ -105,7 +105,7 @@ class Dropped:
 
 @dataclass(frozen=True)
 class Relaxation:
-    """What is dropped of a mechanism that moves though it is overconstrained; an assembled pose by points and links.
+    """What is dropped of a mechanism that moves though it is overconstrained. An assembled pose by points and links.
 
     The pose is the drawn one made exact, or one that was found where nothing is drawn.
     """

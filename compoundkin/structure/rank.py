@@ -1,4 +1,4 @@
-"""Does a part hold as it counts? The rank of its constraint Jacobian at a random generic pose."""
+"""The rank of a part's constraint Jacobian at a random generic pose."""
 
 from __future__ import annotations
 
@@ -51,21 +51,21 @@ class Deficiency:
 
 @dataclass
 class RankTest:
-    """Tests parts; those of the same make-up share one test, for a generic rank depends on nothing else."""
+    """Tests the rank of parts. Those of the same make-up share one test, for a generic rank depends on nothing else."""
 
     system: System
     known: dict[tuple[Any, ...], bool] = field(default_factory=dict)
     kinds: dict[Hashable, int] = field(default_factory=dict)
 
     def deficiency(self, part: Subsystem) -> Deficiency | None:
-        """What is wrong with a part that counts as determined, or None if it is."""
+        """Return the deficiency of a part that counts as determined, or None."""
         rank_key = self._rank_key(part)
         if rank_key not in self.known:
             self.known[rank_key] = self._is_regular(part)
         return None if self.known[rank_key] else self.analysed(part)
 
     def analysed(self, part: Subsystem) -> Deficiency:
-        """The redundancy and freedom of any part; by count alone, and for all of it, where it is large."""
+        """Return the redundancy and freedom of any part. By count alone, and for all of it, where it is large."""
         rows, columns = self._shape(part)
         if max(rows, columns) > DENSE_UP_TO:
             # at least one of each where a square part is singular
@@ -110,7 +110,7 @@ class RankTest:
         return bool(np.min(pivots) > RANK_TOLERANCE * np.max(pivots))
 
     def _rank_key(self, part: Subsystem) -> tuple[Any, ...]:
-        """All that the rank depends on: not the order of constraints, nor which body on a pin is named first."""
+        """Return all that the rank depends on. Not the order of constraints, nor which body on a pin is named first."""
         place = {unknown: k for k, unknown in enumerate(part.unknowns)}
         times = Counter(c.letter for c in part.constraints)
         shared = [letter for letter, count in times.items() if letter and count > 1]
@@ -132,7 +132,7 @@ class RankTest:
         return matrix
 
     def _blocks(self, part: Subsystem) -> Iterator[tuple[int, int, Matrix]]:
-        """The blocks of the Jacobian: the held rows of each constraint; x, y and of a body theta."""
+        """Yield the blocks of the Jacobian: the held rows of each constraint. X, y and of a body theta."""
         start = self._start(part)
         row = 0
         for constraint, rows in _rows(part):
@@ -144,12 +144,12 @@ class RankTest:
             row += len(held)
 
     def _start(self, part: Subsystem) -> dict[int, int]:
-        """The first column of each unknown."""
+        """Return the first column of each unknown."""
         sizes = [self.system.freedoms[unknown] for unknown in part.unknowns]
         return dict(zip(part.unknowns, accumulate(sizes, initial=0), strict=False))
 
     def _moving(self, part: Subsystem, motions: Matrix) -> tuple[Constraint, ...]:
-        """The constraints whose pairs move where the unknowns have the given motions."""
+        """Return the constraints whose pairs move where the unknowns have the given motions."""
         start = self._start(part)
         found = []
         for constraint, rows in _rows(part):
@@ -164,7 +164,7 @@ class RankTest:
         return tuple(found)
 
     def _body_sides(self, constraint: Constraint) -> tuple[int, ...]:
-        """The bodies a constraint is between; of a multiple pin, with the first other body on it."""
+        """Return the bodies a constraint is between. Of a multiple pin, with the first other body on it."""
         first, *others = constraint.sides
         if first == GROUND or self.system.is_body(first):
             return constraint.sides
@@ -172,7 +172,7 @@ class RankTest:
 
 
 def _rows(part: Subsystem) -> Iterator[tuple[Constraint, Matrix]]:
-    """Each pair's rows in the world at a generic pose; all links on a pin share its one place."""
+    """Yield each pair's rows in the world at a generic pose. All links on a pin share its one place."""
     rng = np.random.default_rng(_SEED)
     pins: dict[str, Ends] = {}
     for constraint in part.constraints:
@@ -184,7 +184,7 @@ def _rows(part: Subsystem) -> Iterator[tuple[Constraint, Matrix]]:
 
 
 def _taking_part(null_space: Matrix, sizes: Sequence[int]) -> list[bool]:
-    """Which blocks of rows of a null space are not zero."""
+    """Return which blocks of rows of a null space are not zero."""
     weights = np.linalg.norm(null_space, axis=1)
     blocks = zip(accumulate(sizes, initial=0), sizes, strict=False)
     return [bool(np.max(weights[a : a + n], initial=0.0) > RANK_TOLERANCE) for a, n in blocks]

@@ -35,7 +35,7 @@ class Constraint:
 
 @dataclass(frozen=True)
 class System:
-    """Unknowns (first the moving bodies, then the pins in `vertices`) and the constraints between them."""
+    """The unknowns, moving bodies and then pins, and the constraints between them."""
 
     mechanism: Mechanism
     bodies: Composites
@@ -64,16 +64,16 @@ class System:
         return {name: place for place, name in enumerate(self.mechanism.links)}
 
     def is_body(self, unknown: int) -> bool:
-        """Whether an unknown is a moving body (else a pin)."""
+        """Return whether an unknown is a moving body (else a pin)."""
         return unknown < len(self.bodies.moving)
 
     def neighbour(self, letter: str, body: int) -> int:
-        """The first other body that carries a letter."""
+        """Return the first other body that carries a letter."""
         on_pin = (self.bodies.body_of[name] for name in self.mechanism.pins[letter])
         return next(other for other in on_pin if other != body)
 
     def carrier(self, letter: str, body: int) -> str:
-        """The link of a body that carries a letter, the one nearest to its base."""
+        """Return the link of a body that carries a letter nearest to its base."""
         links = self.bodies.body(body).links
         return links[0] if len(links) == 1 else self._carriers[letter, body]
 
@@ -90,7 +90,7 @@ class System:
 
 
 def system_of(mechanism: Mechanism, bodies: Composites, dropped: Sequence[Dropped] = ()) -> System:
-    """The constraint system of a mechanism with its driven links already joined, without what is dropped."""
+    """Return the constraint system of composite links, without what is dropped."""
     count = len(bodies.moving)
     vertices: list[str] = []
     constraints: list[Constraint] = []
@@ -109,7 +109,7 @@ def system_of(mechanism: Mechanism, bodies: Composites, dropped: Sequence[Droppe
 
 
 def held_pairs(mechanism: Mechanism, dropped: Sequence[Dropped]) -> tuple[Pair, ...]:
-    """The written pairs, with what is kept in the place of pairs of which part is dropped."""
+    """Return the written pairs, those partly dropped replaced by what is kept."""
     left_out = {part.name for part in dropped if not part.off}
     kept = (part.kept for part in dropped if part.kept is not None)
     return (*(pair for pair in mechanism.written_pairs if pair.name not in left_out), *kept)

@@ -1,4 +1,4 @@
-"""Every choice of frame link and drivers for one mechanism, and what it makes of its structure."""
+"""Every choice of frame and drivers for a mechanism, and its structure then."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ FEW = 4
 
 @dataclass(frozen=True)
 class Alternative:
-    """A choice of frame and drivers, links by the names they have now, and the groups that it gives.
+    """A choice of frame and drivers, and the groups that it gives.
 
     `groups` are (letters, class, order) in solving order. `class_` is the highest class, 1 where the drivers move
     everything. `configurations` is the number of ways to assemble it at given driver values, those of larger groups
@@ -68,8 +68,9 @@ class Alternative:
 
 
 def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None = None) -> tuple[Alternative, ...]:
-    """Every choice of a frame, or of one of `frames`, and of as many drivers as there are freedoms; alike ones once.
+    """Return every choice of frame and drivers, alike ones once.
 
+    A frame is any link or one of `frames`, drivers are as many as there are freedoms. Alike ones once.
     Alike are choices that a symmetry of the kinematic graph carries into each other. Where several drivers give more
     than `MOST_CHOICES` choices, one of the present ones at a time is put elsewhere. Nothing is solved; what is found
     holds for generic dimensions. None where the count leaves no freedom.
@@ -110,7 +111,7 @@ class _Choices:
         self.number = self.drivers * len(self.places) if self.one_by_one else everything
 
     def frames(self, wanted: Sequence[str]) -> list[tuple[str, int]]:
-        """The frames to try, alike ones once, those that are wanted first; and for how many each stands."""
+        """Return the frames to try, alike ones once, those that are wanted first. And for how many each stands."""
         orbits = canonical(self._graph(None)).orbits
         found = []
         for orbit in orbits:
@@ -121,7 +122,7 @@ class _Choices:
         return sorted(found, key=lambda entry: self.links.index(entry[0]) if entry[0] != FRAME else -1)
 
     def of(self, frame: str, alike: int) -> Iterator[Alternative]:
-        """The choices with one frame."""
+        """Yield the choices with one frame."""
         outline = Outline.of(self.mechanism, frame)
         names = swapped_names(frame)
         for chosen, number in self._driven(frame):
@@ -129,7 +130,7 @@ class _Choices:
             yield self._found(frame, chosen, alike * number, decompose(outline.driven(drives)))
 
     def _driven(self, frame: str) -> Iterator[tuple[tuple[int, ...], int]]:
-        """Places for drivers as indices, alike ones once; and how many each stands for."""
+        """Yield places for drivers as indices, alike ones once. And how many each stands for."""
         choices = list(self._sets())
         index = {frozenset(chosen): k for k, chosen in enumerate(choices)}
         leader = list(range(len(choices)))
@@ -161,13 +162,13 @@ class _Choices:
         return dict.fromkeys(tuple(sorted(chosen)) for chosen in sets)
 
     def _moved(self, generator: Permutation, k: int) -> int:
-        """The place to which a symmetry carries a place."""
+        """Return the place to which a symmetry carries a place."""
         joint, ends = self._ends[k]
         return self._ends.index((generator[joint], frozenset(generator[end] for end in ends)))
 
     @cached_property
     def _ends(self) -> list[tuple[int, frozenset[int]]]:
-        """The vertex of the pin or pair, and those of the two links, of each place."""
+        """The vertices of the pin or pair and the two links of each place."""
         number = {name: k for k, name in enumerate(self.links)}
         pins = [letter for letter, links in self.mechanism.pins.items() for _ in combinations(links, 2)]
         letters, written = list(self.mechanism.pins), [pair.name for pair in self.mechanism.written_pairs]
@@ -177,7 +178,7 @@ class _Choices:
         return [(len(self.links) + joint, end) for joint, end in zip(joints, ends, strict=True)]
 
     def _graph(self, frame: str | None) -> Coloured:
-        """The graph with links, then pins and pairs, then the thirds of pairs of three links as vertices."""
+        """Return the graph of links, of pins and pairs, and of third members."""
         written = self.mechanism.written_pairs
         colours = ["frame" if name == frame else "link" for name in self.links]
         colours += ["pin"] * len(self.mechanism.pins) + [f"{pair.code} {pair.held}" for pair in written]
@@ -203,7 +204,7 @@ class _Choices:
         )
 
     def _title(self, frame: str, drivers: Sequence[DriverPlace]) -> str:
-        """The inversion's name; only of four links it depends on the driver."""
+        """Return the inversion's name; only of four links it depends on the driver."""
         links = self.joints.links
         spun = {spin.link: spin.on for spin in self.structure.passive}
         driver = spun.get(drivers[0].link, drivers[0].link)

@@ -1,4 +1,4 @@
-"""Mechanisms composed as theory has it: the frame, driven links, then Assur groups one after another.
+"""Mechanisms composed as theory has it. The frame, driven links, then Assur groups one after another.
 
 Source: L. V. Assur, Investigation of plane hinged mechanisms, 1914: attaching a group changes no mobility.
 """
@@ -24,7 +24,7 @@ DYAD_NAMES = tuple(DYADS)
 
 
 class Attachment(NamedTuple):
-    """Where something is attached: a link, there a point, and of a guide a second one; "" for new points."""
+    """Where something is attached. A link, there a point, and of a guide a second one. "" for new points."""
 
     link: str
     point: str = ""
@@ -33,7 +33,7 @@ class Attachment(NamedTuple):
 
 @dataclass
 class _GroupPair:
-    """A pair of a group to be written: its letter, the two links (the first carries the guide), its points."""
+    """A pair of a group to be written. Its letter, the two links (the first carries the guide), its points."""
 
     code: str
     first: str
@@ -59,7 +59,7 @@ class Composer(LetteredLinks):
     _drives: list[dict[str, Any]] = field(default_factory=list)
 
     def drive(self, name: str, to: str = FRAME, pair: str = REVOLUTE, **words: Any) -> Composer:
-        """A driven link: pinned (`pair` "R") or sliding ("P") on the frame or another link.
+        """Return a driven link. Pinned (`pair` "R") or sliding ("P") on the frame or another link.
 
         `to` is a link, or ``"A on frame"``; `words` are those of `drive` but for the links. Raises InvalidInput for
         another pair or a name that is taken, UnknownName for a link that is not there yet.
@@ -78,7 +78,7 @@ class Composer(LetteredLinks):
     def attach(
         self, group: str | AssurGroup, links: Sequence[str], to: Sequence[str], at: Sequence[str] = ()
     ) -> Composer:
-        """Attach an Assur group: a dyad by its letters, or a group of the atlas by its name, of revolute pairs.
+        """Attach an Assur group. A dyad by its letters, or a group of the atlas by its name, of revolute pairs.
 
         `links` name its links, those of a larger group in the order of its numbering. `to` says where it is attached,
         one entry for each outer pair: a link, ``"B on crank"``, or for a guide ``"E toward F on frame"``. `at` may
@@ -113,7 +113,7 @@ class Composer(LetteredLinks):
         return self
 
     def mechanism(self, **words: Any) -> Mechanism:
-        """What has been composed, as drawn; `words` are those of `Mechanism`, such as `unit`.
+        """Return what has been composed, as drawn. `words` are those of `Mechanism`, such as `unit`.
 
         Raises InvalidMechanism where places that were given cannot be meant, such as two pins of a link at one.
 
@@ -131,7 +131,7 @@ class Composer(LetteredLinks):
         return Mechanism(self.title, *items, drawn(**places), **words)
 
     def _place(self, text: str) -> Attachment:
-        """A link, or points on it: "B on crank", "E toward F on frame"."""
+        """Return a link, or points on it. "B on crank", "E toward F on frame"."""
         if text in self.links:
             return Attachment(text)
         points, on, name = text.partition(ON)
@@ -157,7 +157,7 @@ class Composer(LetteredLinks):
         return f"{pair.second}/{pair.first}"
 
     def _driver(self, words: dict[str, Any], places: dict[str, complex]) -> dict[str, Any]:
-        """The words of a driver; a slide without values stays as it is drawn."""
+        """Return the words of a driver. A slide without values stays as it is drawn."""
         written = next((s for s in self._slides if f"{s['link']}/{s['on']}" == words["pair"]), None)
         if written is None or "values" in words:
             return words
@@ -167,7 +167,7 @@ class Composer(LetteredLinks):
 
 
 def pairs_of(group: str | AssurGroup) -> tuple[list[tuple[str, int | None, int]], int, int]:
-    """Return the pairs of a group as code, first body (None for what is known) and second; outer pairs, links."""
+    """Return a group's pairs as code, first body (None where known) and second. Outer pairs, links."""
     if isinstance(group, str) and group in DYADS:
         return [(group[0], None, 0), (group[1], 0, 1), (group[2], None, 1)], 2, 2
     found = assur_group(group, [*DYADS]) if isinstance(group, str) else group
@@ -177,8 +177,9 @@ def pairs_of(group: str | AssurGroup) -> tuple[list[tuple[str, int | None, int]]
 def random_mechanism(
     groups: int = 1000, seed: int = 0, kinds: Sequence[str | AssurGroup] = DYAD_NAMES, multiple: float = 0.2
 ) -> Mechanism:
-    """A crank and so many groups of the given kinds, each on random links before it; the same for the same seed.
+    """Return a crank with so many random groups, the same for the same seed.
 
+    The same for the same seed.
     A share `multiple` of outer pins are put on pins that there are already. Links of group k are "k-0", "k-1", ...
     It assembles as drawn, where the crank stays; it may not far from there.
 
@@ -209,7 +210,7 @@ def random_mechanism(
 
 
 def _entry(composer: Composer, chosen: random.Random, code: str, on: str, multiple: float) -> str:
-    """Where an outer pair goes: on a link, or now and then on a pin that it has."""
+    """Return where an outer pair goes. On a link, or now and then on a pin that it has."""
     if code == REVOLUTE and composer.links[on] and chosen.random() < multiple:
         return f"{chosen.choice(composer.links[on])}{ON}{on}"
     return on

@@ -1,4 +1,4 @@
-"""Where drivers may be, and the outline of a mechanism that has another frame, and drivers there."""
+"""Where drivers may be, and outlines of mechanisms with another frame and drivers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ OTHER = "other frame"
 
 @dataclass(frozen=True)
 class DriverPlace:
-    """Where a driver is: the link that it drives, on which one, and the pin or pair between them."""
+    """Where a driver is. The link that it drives, on which one, and the pin or pair between them."""
 
     link: str
     on: str
@@ -28,7 +28,7 @@ class DriverPlace:
 
 
 class Outline(Mechanism):
-    """A mechanism of which only the structure counts: it is not checked, and has no drawing."""
+    """A mechanism of which only the structure counts. It is not checked, and has no drawing."""
 
     def __init__(self, title: str, items: tuple[Item, ...]) -> None:
         self.title, self.items = title, items
@@ -37,7 +37,7 @@ class Outline(Mechanism):
 
     @classmethod
     def of(cls, mechanism: Mechanism, frame: str) -> Outline:
-        """One with another frame, and no drivers."""
+        """Return one with another frame, and no drivers."""
         names = swapped_names(frame)
         links = [replace(item, name=names.get(name, name), points=mechanism.geometry.points[name])
                  for name, item in mechanism.links.items()]  # fmt: skip
@@ -45,7 +45,7 @@ class Outline(Mechanism):
         return cls(mechanism.title, (*links, *pairs))
 
     def driven(self, drives: tuple[Drive, ...]) -> Outline:
-        """With drivers."""
+        """Return it with drivers."""
         return Outline(self.title, (*self.items, *drives))
 
 
@@ -55,7 +55,7 @@ def swapped_names(frame: str) -> dict[str, str]:
 
 
 def driver_places(mechanism: Mechanism) -> Iterator[DriverPlace]:
-    """Yield every place for a driver: at pins between each two of their links, then at the written pairs."""
+    """Yield every place for a driver. At pins between each two of their links, then at the written pairs."""
     for letter, links in mechanism.pins.items():
         yield from (DriverPlace(second, first, letter) for first, second in combinations(links, 2))
     for pair in mechanism.written_pairs:
@@ -64,7 +64,7 @@ def driver_places(mechanism: Mechanism) -> Iterator[DriverPlace]:
 
 
 def means(item: Drive, place: DriverPlace) -> bool:
-    """Whether a driver is at a place."""
+    """Return whether a driver is at a place."""
     return {item.link, item.on} == {place.link, place.on} and item.pair in ("", place.pair)
 
 
@@ -75,7 +75,7 @@ def driver_at(names: Mapping[str, str], place: DriverPlace) -> Drive:
 
 
 def outward(place: DriverPlace, frame: str, joints: Joints) -> DriverPlace:
-    """The place with the link that is nearer to the frame as the one that is not driven."""
+    """Return the place with the link nearer to the frame as not driven."""
     if place.link == frame or (place.on != frame and _near(joints, place.link, frame) < _near(joints, place.on, frame)):
         return DriverPlace(place.on, place.link, place.pair)
     return place
@@ -88,13 +88,13 @@ def _near(joints: Joints, link: str, frame: str) -> int:
 
 
 def readable(text: str, names: Mapping[str, str]) -> str:
-    """A fault with the links' own names; whole words only."""
+    """Return a fault with the links' own names; whole words only."""
     new = names.get(FRAME)
     return text if new is None else text.replace(OTHER, "\0").replace(FRAME, new).replace("\0", FRAME)
 
 
 def renamed(item: Item, names: Mapping[str, str]) -> Item:
-    """A word with links renamed; drivers and pairs keep their own names."""
+    """Return a word with links renamed; drivers and pairs keep their own names."""
     if isinstance(item, Link):
         return replace(item, name=names.get(item.name, item.name))
     if isinstance(item, Drive):
@@ -103,7 +103,7 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
 
 
 def renamed_pair(pair: Pair, names: Mapping[str, str]) -> Pair:
-    """A written pair between renamed links, under its own name.
+    """Return a written pair between renamed links, under its own name.
 
     >>> from compoundkin.model.pairs import slide
     >>> renamed_pair(slide("block", on="frame", at="C", through="F"), {"frame": "bar"}).members

@@ -1,4 +1,4 @@
-"""The same mechanism with another link as its frame, or driven elsewhere: all dimensions are kept.
+"""The same mechanism with another link as its frame, or driven elsewhere. All dimensions are kept.
 
 Source: F. Reuleaux, The Kinematics of Machinery, 1876, section 3: inversion changes no relative motion.
 """
@@ -30,7 +30,7 @@ _AXES = {"old origin": 0j, "old x": 1 + 0j}
 
 
 def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
-    """The inversion of a mechanism in which `link` is the frame; the frame moves as the link "old frame".
+    """Return the inversion of a mechanism in which `link` is the frame. The frame moves as the link "old frame".
 
     Dimensions, drivers and thus all relative motions are kept, and the assembly: modes chosen by sign are replaced by
     a drawing. Published numbers are left out. The world's axes are those of the new frame.
@@ -64,8 +64,9 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
 def with_driver(
     mechanism: Mechanism, link: str, on: str = FRAME, *, pair: str = "", instead: str = "", **words: Any
 ) -> Mechanism:
-    """A mechanism driven elsewhere: `link` on the link `on`, in place of its driver, or of the one called `instead`.
+    """Return a mechanism driven elsewhere.
 
+    `link` on the link `on`, in place of its driver, or of the one called `instead`.
     `words` are those of `drive`, such as `values`; without values a pin makes a full turn, a slide stays.
     Dimensions and assembly are kept, published numbers are left out.
 
@@ -95,7 +96,7 @@ def with_driver(
 
 
 def _replaced(mechanism: Mechanism, instead: str) -> Drive | None:
-    """The driver that gives way; None where there is none."""
+    """Return the driver that gives way; None where there is none."""
     names = [item.name for item in mechanism.drives]
     if instead:
         if instead not in names:
@@ -108,7 +109,7 @@ def _replaced(mechanism: Mechanism, instead: str) -> Drive | None:
 
 
 def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
-    """With the drawn value for a driver that is no angle, which cannot make a full turn."""
+    """Return the mechanism with the drawn value for a driven slide."""
     structure = decompose(mechanism)
     pair = _driven(structure, new)
     if pair is None or pair.free_is_angle:
@@ -135,14 +136,14 @@ def _written(mechanism: Mechanism, title: str, items: list[Item], outputs: list[
 
 
 def _renamed(mechanism: Mechanism, link: str) -> dict[str, str]:
-    """New names of the two links that change places; not one that a link or a point has already."""
+    """New names of the two links that change places. Not one that a link or a point has already."""
     taken = (*mechanism.links, *mechanism.carriers)
     number = next(k for k in range(1, len(taken) + 2) if f"{OLD_FRAME}{k if k > 1 else ''}" not in taken)
     return {link: FRAME, FRAME: f"{OLD_FRAME}{number if number > 1 else ''}"}
 
 
 def _with_axes(mechanism: Mechanism, link: Link) -> Link:
-    """The old frame with two points that keep its axes, where it was drawn and a pair or driver counts from them."""
+    """Return the old frame with two points that keep its axes if needed."""
     counted = [name for pair in mechanism.written_pairs for name in pair.members]
     counted += [name for item in mechanism.drives for name in (item.link, item.on)]
     if not link.is_drawn or FRAME not in counted:
@@ -151,7 +152,7 @@ def _with_axes(mechanism: Mechanism, link: Link) -> Link:
 
 
 def _seen_from(mechanism: Mechanism, link: str) -> dict[str, Number]:
-    """Where all points are in one pose, as seen from a link; none where nothing shows it."""
+    """Return where all points are in one pose, as seen from a link. None where nothing shows it."""
     if not any(item.is_drawn for item in mechanism.links.values()):
         points, pose = _assembled(mechanism), None
         if points:
@@ -167,7 +168,7 @@ def _seen_from(mechanism: Mechanism, link: str) -> dict[str, Number]:
 
 
 def _assembled(mechanism: Mechanism) -> dict[str, Number]:
-    """Where all points are at some pose that assembles; none where there is none."""
+    """Return where all points are at some pose that assembles. None where there is none."""
     found = _some_pose(mechanism)
     return (
         {} if found is None else {letter: _at(motion.position, found[1]) for letter, motion in found[0].points.items()}
@@ -175,7 +176,7 @@ def _assembled(mechanism: Mechanism) -> dict[str, Number]:
 
 
 def _pose_of(mechanism: Mechanism, link: str) -> Pose | None:
-    """The pose of a link where `_assembled` has its points."""
+    """Return the pose of a link where `_assembled` has its points."""
     found = _some_pose(mechanism)
     if found is None:
         return None
@@ -184,7 +185,7 @@ def _pose_of(mechanism: Mechanism, link: str) -> Pose | None:
 
 
 def _some_pose(mechanism: Mechanism) -> Any:
-    """The motion and the index of a pose that assembles in all designs, or None: not one of the first or last ones."""
+    """Return the motion and the index of a pose that assembles, or None."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UnassembledPoses)
@@ -198,7 +199,7 @@ def _some_pose(mechanism: Mechanism) -> Any:
 
 
 def _clear(motion: Motion, found: Number) -> int:
-    """Which of some poses a drawing shows without doubt, where links of one point show no angle."""
+    """Return which of some poses a drawing shows without doubt."""
     for item in motion.mechanism.drives:
         if any(len(motion.mechanism.links[name].points) == 1 for name in (item.link, item.on)):
             pair = _driven(motion.structure, item)
@@ -212,7 +213,7 @@ def _clear(motion: Motion, found: Number) -> int:
 
 
 def _at(values: Number, k: int) -> Number:
-    """Values at one pose: a number, or of several designs an array (designs, 1)."""
+    """Return values at one pose. A number, or of several designs an array (designs, 1)."""
     array = np.asarray(values)
     if array.ndim == 0:
         return array.item()

@@ -1,4 +1,4 @@
-"""Links with points by letters, placed in a drawing where they are given and generically where not."""
+"""Links with points by letters, placed in a drawing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ON = " on "
 
 @dataclass
 class LetteredLinks:
-    """Links by name with the letters of their points; two links that carry one letter are pinned there.
+    """Links by name with the letters of their points. Two links that carry one letter are pinned there.
 
     Points not named get the letters A, B, C, ...
     """
@@ -32,7 +32,7 @@ class LetteredLinks:
     _letters: Iterator[str] = field(default_factory=lambda: _endless(), kw_only=True)
 
     def place(self, **points: Any) -> Self:
-        """Where points are in the drawing: ``place(A=(0, 0), B=3+1j)``; they may be named before or after.
+        """Return where points are in the drawing: ``place(A=(0, 0), B=3+1j)``. They may be named before or after.
 
         Raises InvalidMechanism for what is not one point.
 
@@ -43,7 +43,7 @@ class LetteredLinks:
         return self
 
     def point(self, on: str, letter: str) -> Self:
-        """A point more on a link: a tracing point, or one to place.
+        """Return a point more on a link: a tracing point, or one to place.
 
         >>> LetteredLinks().point("frame", "A").links
         {'frame': ['A']}
@@ -52,13 +52,13 @@ class LetteredLinks:
         return self
 
     def link(self, name: str) -> str:
-        """Return the name of a link; raises UnknownName for one that is not there yet."""
+        """Return the name of a link. Raises UnknownName for one that is not there yet."""
         if name not in self.links:
             raise UnknownName(Problem(name, "there is no such link yet", nearest(name, list(self.links))))
         return name
 
     def new_links(self, names: Sequence[str], wanted: int, where: str) -> None:
-        """Add links without points; raises InvalidInput for another number of them, or a name that is taken."""
+        """Add links without points. Raises InvalidInput for another number of them, or a name that is taken."""
         if isinstance(names, str) or len(names) != wanted:
             raise InvalidInput(Problem("links", f"{where} has {wanted} links", f"name {wanted} new links"))
         for name in names:
@@ -85,12 +85,12 @@ class LetteredLinks:
         return letter
 
     def free(self, name: str) -> str:
-        """A point of a link at which nothing is joined to it yet; "" where there is none."""
+        """Return a point of a link at which nothing is joined to it yet. "" where there is none."""
         alone = (k for k in self.links[name] if len(self.carriers[k]) == 1 and k not in self.guiding)
         return next(alone, "")
 
     def placed(self) -> dict[str, complex]:
-        """The places of all points: those that were given, and for the others generic ones around them."""
+        """Return the places of all points. Those that were given, and for the others generic ones around them."""
         letters = list(dict.fromkeys(letter for carried in self.links.values() for letter in carried))
         number = {letter: k for k, letter in enumerate(letters)}
         generic = layout(len(letters), [[number[k] for k in carried] for carried in self.links.values()])
@@ -101,6 +101,6 @@ class LetteredLinks:
 
 
 def _endless() -> Iterator[str]:
-    """A, B, ..., Z, A2, ..."""
+    """Yield a, B, ..., Z, A2, ..."""
     for turn in count(1):
         yield from (letter if turn == 1 else f"{letter}{turn}" for letter in lettered(26))

@@ -1,4 +1,4 @@
-"""Instant centres by the theorem of Aronhold and Kennedy, and the independent routes that confirm them."""
+"""Instant centres by the theorem of Aronhold and Kennedy."""
 
 from __future__ import annotations
 

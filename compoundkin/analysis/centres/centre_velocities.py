@@ -24,7 +24,7 @@ SLOWEST = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class CentreVectors:
-    """The centres of a motion as `units`, unit vectors in own coordinates, by the couples of bodies.
+    """The centres of a motion as unit vectors in own coordinates, by couples.
 
     `spread` is their magnification of errors, `lines` the two lines where other ones than the derivation's were taken.
     """
@@ -38,13 +38,13 @@ class CentreVectors:
     lines: dict[Couple, tuple[Number, Number, Number]]
 
     def trusted(self, c: Couple) -> Number:
-        """Return a centre's unit vectors by the couple of bodies, NaN where it is not known well."""
+        """Return a centre's unit vectors, NaN where it is not known well."""
         return np.where(self.spread[c] * POOR <= 1.0, self.units[c], np.nan)
 
 
 @dataclass(frozen=True)
 class Velocities:
-    """What the centres and the drivers' rates say: arrays of the motion's shape, NaN where they say nothing.
+    """What the centres and the drivers' rates say. Arrays of the motion's shape, NaN where they say nothing.
 
     `twists[link]` (3, poses) in own coordinates relative to the frame; `conditioning[link]` is near 0 where rounding
     is magnified, relative to the fastest link.
@@ -56,11 +56,11 @@ class Velocities:
     fastest: Number
 
     def angular_velocity(self, link: str) -> Number:
-        """A link's angular velocity, rad/s."""
+        """Return a link's angular velocity, rad/s."""
         return self.twists[link][2].reshape(self.centres.motion.shape)
 
     def at(self, link: str, position: Number) -> Number:
-        """The velocity of the point of a link that is at a place of the world, complex, length/s."""
+        """Return the velocity of a link's point at a place, complex, length/s."""
         x, y, w = self.twists[link]
         scale = self.centres.scale
         own = (np.broadcast_to(position, self.centres.motion.shape).reshape(-1) - scale.origin) / scale.size
@@ -69,8 +69,9 @@ class Velocities:
 
 @dataclass(frozen=True)
 class VelocityCheck:
-    """Solved velocities against those from centres, relative to the fastest link, by link and by point.
+    """Solved velocities against those from centres, relative to the fastest link.
 
+    By link and by point.
     A link's is the larger of those of its angular velocity and of the velocity of its frame's origin. NaN where the
     comparison is not made: at poses without rates, and where conditioning is below POOR.
     """
@@ -91,7 +92,7 @@ class VelocityCheck:
 
 
 def velocities_of(centres: CentreVectors) -> Velocities:
-    """The velocities that follow from the drivers' rates by centres alone."""
+    """Return the velocities that follow from the drivers' rates by centres alone."""
     with np.errstate(all="ignore"):
         rates = DriverRates(centres.plan, centres.units, centres.spread)
         rates.run(centres.places.units, centres.places.rates)
@@ -115,7 +116,7 @@ def velocities_of(centres: CentreVectors) -> Velocities:
 
 
 def velocity_check(found: Velocities, motion: Motion) -> VelocityCheck:
-    """Compare a motion's angular and point velocities with those from centres, where conditioning is not below POOR."""
+    """Compare a motion's velocities with those from centres, where conditioning is not below POOR."""
     shape = motion.shape
     regular = np.broadcast_to(motion.regular, (motion.inputs.designs, motion.inputs.poses)).reshape(shape)
     links, points = {}, {}
@@ -137,7 +138,7 @@ def velocity_check(found: Velocities, motion: Motion) -> VelocityCheck:
 
 
 def collinearity_of(centres: CentreVectors) -> dict[tuple[str, str, str], Number]:
-    """For every three links, how far their three centres are from one line: the volume of their unit vectors.
+    """Return how far the three centres of three links are from one line. The volume of their unit vectors.
 
     NaN where one of them is not known.
     """
@@ -156,5 +157,5 @@ def collinearity_of(centres: CentreVectors) -> dict[tuple[str, str, str], Number
 
 
 def _certain(value: Number) -> Number:
-    """What is not a number where it is compared is not agreement."""
+    """Return what is not a number where it is compared is not agreement."""
     return np.where(np.isnan(value), np.inf, value)

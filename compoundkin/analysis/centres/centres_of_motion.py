@@ -22,7 +22,7 @@ BLOCK = 4096
 
 
 def instant_centres(motion: Motion) -> Centres:
-    """All relative instant centres of a motion, at every pose and design, by geometry alone.
+    """Return all instant centres of a motion at every pose, by geometry alone.
 
     Pairs give the primary centres; the others follow as crossings of two lines on which three centres of three
     links lie, in an order that depends on the graph only; where that stalls, by trial positions or, with several
@@ -54,7 +54,7 @@ _Gathered = tuple[dict[Couple, Number], dict[Couple, Number], dict[Couple, tuple
 
 
 def _gathered(motion: Motion, derivation: Derivation, places: PrimaryCentres, solved: Number | None) -> _Gathered:
-    """All blocks in one."""
+    """Return all blocks in one."""
     count = motion.inputs.designs * motion.inputs.poses
     blocks = [slice(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK)]
     parts = [_block(derivation, places, solved, block) for block in blocks]
@@ -82,7 +82,7 @@ def _cut(array: Number, block: slice) -> Number:
 
 
 def _joined(parts: list[Number], blocks: list[slice]) -> Number:
-    """One array of all poses; one column where it is the same at all."""
+    """Return one array of all poses. One column where it is the same at all."""
     if all(part.shape[-1] == 1 for part in parts) and blocks[0].stop > 1:
         return parts[0]
     full = [np.broadcast_to(p, (*p.shape[:-1], b.stop - b.start)) for p, b in zip(parts, blocks, strict=True)]
@@ -99,14 +99,14 @@ def _lines(parts: list[Evaluation], blocks: list[slice]) -> dict[Couple, tuple[N
 
 
 def scale_of(motion: Motion) -> OwnCoordinates:
-    """Own coordinates around the middle of the frame's points."""
+    """Return own coordinates around the middle of the frame's points."""
     points = list(motion.mechanism.geometry.points[FRAME].values())
     middle = np.mean([np.mean(p) for p in points]) if points else 0.0
     return OwnCoordinates(complex(middle), motion.size)
 
 
 def places_of(motion: Motion, diagram: Diagram, scale: OwnCoordinates) -> PrimaryCentres:
-    """The primary centres at every pose, poses and designs in one axis."""
+    """Return the primary centres at every pose, poses and designs in one axis."""
     units, lengths = [], []
     for primary in diagram.primaries:
         pair = motion.tracker.plan.pairs[primary.pair]
@@ -125,12 +125,12 @@ def places_of(motion: Motion, diagram: Diagram, scale: OwnCoordinates) -> Primar
 
 
 def _still(pose: Pose) -> Pose:
-    """The pose without its derivatives."""
+    """Return the pose without its derivatives."""
     return pose if pose is FIXED else Pose.of(pose.z.c[0], pose.u.c[0])
 
 
 def _flat(motion: Motion, vector: Number) -> Number:
-    """(3, 1 or designs, 1 or poses) with the last two axes as one; one column where it never changes."""
+    """(3, 1 or designs, 1 or poses) with the last two axes as one. One column where it never changes."""
     if vector[0].size == 1:
         return vector.reshape(-1, 1)
     shape = (len(vector), motion.inputs.designs, motion.inputs.poses)
@@ -138,7 +138,7 @@ def _flat(motion: Motion, vector: Number) -> Number:
 
 
 def solved_twists(motion: Motion, scale: OwnCoordinates) -> Number:
-    """Every link's twist as solved, (links, 3, poses), in own coordinates.
+    """Return every link's twist as solved, (links, 3, poses), in own coordinates.
 
     Raises InvalidInput for a motion of order 0.
     """

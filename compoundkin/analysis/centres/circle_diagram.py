@@ -1,4 +1,4 @@
-"""The circle diagram: which links there are, and which of their centres the pairs give; no dimensions."""
+"""The circle diagram of links and of the centres that pairs give. No dimensions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Couple = tuple[int, int]
 
 @dataclass(frozen=True)
 class Primary:
-    """A pair as a side of the circle diagram: every two of `links` have their centre there.
+    """A pair as a side of the circle diagram. Every two of `links` have their centre there.
 
     `kind` is "point", "ideal" (a point at infinity), "line", or "weld" for two links that do not move relative to each
     other; `pair` is the name of the pair that places it. A pitch point lies on the line of the two primaries `on`.
@@ -36,7 +36,10 @@ class Primary:
 
 @dataclass(frozen=True)
 class DrivenCentre:
-    """A driven pair: `primary` moves link `second` relative to link `first` at the driver's rate times `sign`."""
+    """A driven pair that moves `second` relative to `first` about `primary`.
+
+    Its rate is the driver's rate times `sign`.
+    """
 
     driver: str
     first: int
@@ -47,7 +50,7 @@ class DrivenCentre:
 
 @dataclass(frozen=True)
 class Diagram:
-    """Links and pairs alone: two mechanisms with equal diagrams have the same derivation of centres."""
+    """Links and pairs alone. Two mechanisms with equal diagrams have the same derivation of centres."""
 
     links: tuple[str, ...]
     primaries: tuple[Primary, ...]
@@ -60,7 +63,7 @@ class Diagram:
 
     @cached_property
     def edges(self) -> tuple[tuple[int, int, int], ...]:
-        """(first link, second link, primary): each pair once, a pin of k links k - 1 times."""
+        """(first link, second link, primary). Each pair once, a pin of k links k - 1 times."""
         return tuple((p.links[0], other, k) for k, p in enumerate(self.primaries) for other in p.links[1:])
 
     def generic(self) -> list[Number]:
@@ -75,7 +78,7 @@ class Diagram:
 
 
 def couple(i: int, j: int) -> Couple:
-    """The two links in the order in which they are written.
+    """Return the two links in the order in which they are written.
 
     >>> couple(3, 1)
     (1, 3)
@@ -84,7 +87,7 @@ def couple(i: int, j: int) -> Couple:
 
 
 def diagram_of(structure: Structure) -> Diagram:
-    """The circle diagram of a structure, with the pairs' centres as its known sides.
+    """Return a structure's circle diagram, with the pairs' centres as known sides.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, link
@@ -126,13 +129,13 @@ def _primaries(structure: Structure, number: dict[str, int]) -> Iterator[Primary
 
 
 def _apart(carriers: tuple[str, ...], off: tuple[tuple[str, ...], ...]) -> list[tuple[str, ...]]:
-    """The links on a pin; those that are taken off it because others hold them already, on their own."""
+    """Return the links on a pin. Those that are taken off it because others hold them already, on their own."""
     taken = {name for links in off for name in links}
     return [tuple(name for name in carriers if name not in taken), *off]
 
 
 def _on_lines(primaries: tuple[Primary, ...], structure: Structure, number: dict[str, int]) -> Iterator[Primary]:
-    """The primaries, each pitch point with the two others on whose line it lies by the theorem of three centres.
+    """Yield the primaries, each pitch point with the centres on its line.
 
     That is where one link, such as the carrier of two gears, has a pair with both.
     """
@@ -148,13 +151,13 @@ def _on_lines(primaries: tuple[Primary, ...], structure: Structure, number: dict
 
 
 def _joining(primaries: tuple[Primary, ...], a: int, b: int) -> int | None:
-    """The first primary centre of two links."""
+    """Return the first primary centre of two links."""
     kinds = ("point", "ideal")
     return next((k for k, p in enumerate(primaries) if p.kind in kinds and {a, b} <= set(p.links)), None)
 
 
 def _kind(pair: Pair) -> str:
-    """What the pair says about the centre, asked at random geometry; "" where it says nothing."""
+    """Say what the pair says about the centre, asked at random geometry. "" where it says nothing."""
     ends = pair.generic(np.random.default_rng(0))
     centre = pair.centre(ends, (FIXED,) * len(ends))
     if centre is None:

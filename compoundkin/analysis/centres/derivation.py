@@ -1,4 +1,4 @@
-"""Which two lines give which centre, and in which order: from the circle diagram alone.
+"""Which two lines give which centre, and in which order. From the circle diagram alone.
 
 Source: the theorem of Aronhold (1872) and Kennedy (1886), that the three relative centres of three links lie on
 a line; the circle diagram that organises it is in every textbook on kinematics.
@@ -30,7 +30,7 @@ KEPT = 256
 
 @dataclass(frozen=True)
 class Derivation:
-    """The order in which the centres of a circle diagram are found, each by one rule.
+    """The order in which the centres of a circle diagram are found.
 
     `body[k]` is the first link of those that move as one with link k; rules speak of bodies. `moves` carry the
     drivers' rates to every body, once all centres are known.
@@ -47,7 +47,7 @@ class Derivation:
         return tuple(step for rule in self.rules for step in steps_of(self.diagram, rule))
 
     def own_lines(self, found: Couple) -> tuple[int, ...]:
-        """The primaries that are a line for a centre."""
+        """Return the primaries that are a line for a centre."""
         return tuple(
             k for k, p in enumerate(self.diagram.primaries)
             if p.kind == "line" and couple(*(self.body[link] for link in p.links)) == found
@@ -56,7 +56,7 @@ class Derivation:
 
 @lru_cache(KEPT)
 def derive(diagram: Diagram) -> Derivation:
-    """The derivation of a circle diagram; made once for each diagram.
+    """Return the derivation of a circle diagram; made once for each diagram.
 
     Rounds of repeated crossing until all is found; where that stalls, one centre by the drivers' rates or by
     trial, then on. Work grows with the fourth power of the number of links.
@@ -87,7 +87,7 @@ def _primary(centres: KnownCentres) -> list[Given]:
 
 
 def _round(centres: KnownCentres) -> list[Rule]:
-    """Every centre on which two lines are known by now."""
+    """Return every centre on which two lines are known by now."""
     found: list[Rule] = []
     for i, j in centres.unknown:
         lines = centres.crossing(i, j)
@@ -98,7 +98,7 @@ def _round(centres: KnownCentres) -> list[Rule]:
 
 
 def _stalled(centres: KnownCentres) -> list[Rule]:
-    """The next centres by rates or trial; what even that does not give comes from the solved velocities."""
+    """Return the next centres by rates or trial. What even that does not give comes from the solved velocities."""
     trial = trial_position(centres)
     if trial is not None:
         _note(centres, list(trial.found))

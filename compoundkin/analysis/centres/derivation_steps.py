@@ -32,7 +32,7 @@ class LineCrossing:
 
 @dataclass(frozen=True)
 class Turn:
-    """Link `k` moves relative to link `i` about their centre at a rate: that of a driver, or a trial value.
+    """Link `k` moves relative to link `i` about their centre at a rate. That of a driver, or a trial value.
 
     `parameter` is 0 for what is given (a driver's rate, or one that may be chosen freely as all motion is
     proportional to it) and counts the trial values from 1.
@@ -46,7 +46,7 @@ class Turn:
 
 @dataclass(frozen=True)
 class Join:
-    """Two sets of links of known relative motion, joined by two centres: (i k) and (j m), i and j in one set."""
+    """Two sets of links of known relative motion, joined by two centres. (i k) and (j m), i and j in one set."""
 
     i: int
     k: int
@@ -56,7 +56,10 @@ class Join:
 
 @dataclass(frozen=True)
 class Bridge:
-    """Three sets joined in a ring by three centres, (i k), (l m) and (n j): i and j, k and l, m and n in one set."""
+    """Three sets in a ring joined by (i k), (l m) and (n j).
+
+    Of one set are i and j, k and l, m and n.
+    """
 
     i: int
     k: int
@@ -68,7 +71,7 @@ class Bridge:
 
 @dataclass(frozen=True)
 class Meeting:
-    """The condition on trial values: the centre (i j), which moves along its locus, is on the line (i k)(k j)."""
+    """The condition on trial values. The centre (i j), which moves along its locus, is on the line (i k)(k j)."""
 
     i: int
     j: int
@@ -108,7 +111,7 @@ Rule: TypeAlias = Given | LineCrossing | Trial | SolvedCentre
 
 @dataclass(frozen=True)
 class DerivationStep:
-    """One line of a derivation: the centre, how it is found, and the lines that give it.
+    """One line of a derivation. The centre, how it is found, and the lines that give it.
 
     `kind` is "primary", "crossing", "rates", "trial", "velocities". Each of `lines` names the centres it runs
     through, or the pair whose normal it is. `text` says the same in words.
@@ -124,7 +127,7 @@ class DerivationStep:
 
 
 def steps_of(diagram: Diagram, rule: Rule) -> tuple[DerivationStep, ...]:
-    """A rule in words, one step for each centre it gives."""
+    """Return a rule in words, one step for each centre it gives."""
     if isinstance(rule, Trial):
         return tuple(_trial_step(diagram, rule, found) for found in rule.found)
     names = (diagram.links[rule.found[0]], diagram.links[rule.found[1]])
@@ -137,21 +140,21 @@ def steps_of(diagram: Diagram, rule: Rule) -> tuple[DerivationStep, ...]:
 
 
 def crossing_text(diagram: Diagram, found: Couple, lines: tuple[int, int]) -> str:
-    """The two lines in words."""
+    """Return the two lines in words."""
     if BY_RATES in lines:
         return "rates carried by the other centres"
     return " x ".join("line " + "".join(line_names(diagram, found, via)) for via in lines)
 
 
 def line_names(diagram: Diagram, found: Couple, via: int) -> tuple[str, ...]:
-    """The two centres a line runs through, or the pair it belongs to."""
+    """Return the two centres a line runs through, or the pair it belongs to."""
     if via < 0:
         return (f"({diagram.primaries[-1 - via].text})",)
     return centre_name(diagram, found[0], via), centre_name(diagram, via, found[1])
 
 
 def centre_name(diagram: Diagram, i: int, j: int) -> str:
-    """A centre in words, its links in the order given."""
+    """Return a centre in words, its links in the order given."""
     return f"({diagram.links[i]} {diagram.links[j]})"
 
 

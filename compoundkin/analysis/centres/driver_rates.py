@@ -1,4 +1,4 @@
-"""The drivers' rates carried to every body by centres alone: the theorem of angular velocity ratios.
+"""The drivers' rates carried to every body by centres alone. The theorem of angular velocity ratios.
 
 The rates of two links relative to a third are inversely as the distances of their common centre from the two other
 ones. In homogeneous coordinates: ``T_ij = a P_ik - b P_jk``, the relative twist of i and j split over two centres.
@@ -25,7 +25,7 @@ BETTER = 2.0
 
 
 class DriverRates:
-    """Twists of the bodies relative to each other, {body: (3, poses)}, and their errors in units of rounding.
+    """Twists of the bodies relative to each other, {body. (3, poses)}, and their errors in units of rounding.
 
     With one driver the driven pair turns at rate 1; the actual rate multiplies all.
     """
@@ -54,11 +54,11 @@ class DriverRates:
         self._improve()
 
     def relative(self, i: int, j: int) -> tuple[Number, Number]:
-        """The twist of body j relative to body i, and its error."""
+        """Return the twist of body j relative to body i, and its error."""
         return self.twists[j] - self.twists[i], self.errors[i] + self.errors[j]
 
     def fastest(self) -> Number:
-        """The length of the largest twist relative to the first body, at each pose."""
+        """Return the largest length of a twist relative to the first body."""
         base = self.twists[self.derivation.body[0]]
         return np.fmax.reduce([norm(twist - base) for twist in self.twists.values()])
 
@@ -74,7 +74,7 @@ class DriverRates:
                 break
 
     def _recarry(self, k: int, at: Number) -> bool:
-        """The best way to carry the twist to a body at some poses; whether it is better than before."""
+        """Return the best way to carry the twist to a body at some poses. Whether it is better than before."""
         if not (self.errors[k][at] > 0.0).any():
             return False
         error = self.errors[k][at]
@@ -89,7 +89,7 @@ class DriverRates:
         return changed
 
     def _ways(self, k: int, at: Number) -> Iterator[tuple[Number, Number]]:
-        """The twist of a body through every two others that are known well, with its error."""
+        """Yield a body's twist through every two others known well, with its error."""
         others = [b for b in self.errors if b != k and np.isfinite(self.errors[b][at]).any()]
         for i, j in combinations(others, 2):
             (p, dp), (q, dq) = self._place(i, k, at), self._place(j, k, at)
@@ -105,7 +105,7 @@ class DriverRates:
 
 
 def pick(array: Number, at: Number) -> Number:
-    """An array at some poses; as it is where one column stands for all.
+    """Return an array at some poses. As it is where one column stands for all.
 
     >>> pick(np.arange(4.0), np.array([1, 3])).tolist()
     [1.0, 3.0]
@@ -114,7 +114,7 @@ def pick(array: Number, at: Number) -> Number:
 
 
 def known(spread: Number) -> Number:
-    """A magnification of errors, infinite where it is not a number.
+    """Return a magnification of errors, infinite where it is not a number.
 
     >>> known(np.array([1.0, np.nan])).tolist()
     [1.0, inf]

@@ -1,4 +1,4 @@
-"""Centres at many poses at once, in homogeneous coordinates, each with how far errors are magnified in it.
+"""Centres at many poses at once, each with its magnification of errors.
 
 The magnification of a primary centre is 1. A line through two places P, Q has theirs over |P x Q|, a crossing that
 of its lines over the sine between them: errors of first order, added in quadrature. Conditioning is its inverse.
@@ -35,7 +35,7 @@ class Evaluation:
         self.drawn: dict[tuple[int, int, int], tuple[Number, Number]] = {}
 
     def run(self, solved: Sequence[Number] | None) -> None:
-        """Every rule in order; `solved` are the links' twists where geometry does not do."""
+        """Apply every rule in order. `solved` are the links' twists where geometry does not do."""
         # places that coincide make no line: what is not a number there is given as such
         with np.errstate(all="ignore"):
             self._run(solved)
@@ -55,7 +55,7 @@ class Evaluation:
                 self.keep(rule.found, np.full((3, 1), np.nan), np.full(1, np.inf))
 
     def line(self, i: int, j: int, via: int) -> tuple[Number, Number]:
-        """A line that holds the centre of i and j, a unit vector, and its magnification."""
+        """Return a line that holds the centre of i and j, and its magnification."""
         if via < 0:
             return self.units[-1 - via], np.ones(1)
         key = (*couple(i, j), via)
@@ -83,7 +83,7 @@ class Evaluation:
             self.keep((i, j), exact, np.hypot(1.0, measured(moved)))
 
     def _values(self, trial: Trial, carried: TransportedRates) -> Number:
-        """The trial values that bring each locus onto its line, a unit vector (values + 1, samples, poses)."""
+        """Return the trial values that bring each locus onto its line. A unit vector (values + 1, samples, poses)."""
         if not trial.meetings:
             return np.ones((1, 1, 1))
         rows = []
@@ -95,20 +95,20 @@ class Evaluation:
 
 
 def joining(p: Number, dp: Number, q: Number, dq: Number) -> tuple[Number, Number]:
-    """The line through two places, and its magnification of errors."""
+    """Return the line through two places, and its magnification of errors."""
     line = cross(p, q)
     length = norm(line)
     return line / length, np.hypot(dp, dq) / length
 
 
 def crossing(p: Number, dp: Number, q: Number, dq: Number) -> tuple[Number, Number]:
-    """Where two lines cross, and its magnification of errors, never less than a primary centre's."""
+    """Return where two lines cross, and its magnification of errors."""
     point, spread = joining(p, dp, q, dq)
     return point, np.sqrt(1.0 + spread * spread)
 
 
 def _null(rows: Number) -> Number:
-    """The unit null vector of (values, values + 1, samples, poses)."""
+    """Return the unit null vector of (values, values + 1, samples, poses)."""
     if len(rows) == 1:
         return np.array([-rows[0, 1], rows[0, 0]]) / np.hypot(rows[0, 0], rows[0, 1])
     good = np.isfinite(rows).all(axis=(0, 1))

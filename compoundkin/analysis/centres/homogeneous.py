@@ -1,4 +1,4 @@
-"""Points and lines of the projective plane as real 3-vectors, in the mechanism's own coordinates: shape (3, ...).
+"""Points and lines of the projective plane as real 3-vectors.
 
 A point (x, y, w) is at (x / w, y / w), at infinity where w is zero; a line (a, b, c) holds the points with
 ``a x + b y + c w = 0``. The cross product joins two points and meets two lines, parallel ones included.
@@ -16,7 +16,7 @@ from compoundkin.model.pairs.contract import Line
 
 
 def cross(a: Number, b: Number) -> Number:
-    """The line through two points, or the point on two lines; zero where they coincide.
+    """Return the line through two points, or the point on two lines. Zero where they coincide.
 
     >>> parallel = np.array([0.0, 1.0, 0.0]), np.array([0.0, 1.0, -2.0])
     >>> cross(*parallel).tolist()
@@ -30,7 +30,7 @@ def cross(a: Number, b: Number) -> Number:
 
 
 def dot(a: Number, b: Number) -> Number:
-    """The scalar product: zero where a point lies on a line.
+    """Return the scalar product: zero where a point lies on a line.
 
     >>> float(dot(np.array([0.0, 1.0, -2.0]), np.array([5.0, 2.0, 1.0])))
     0.0
@@ -39,7 +39,7 @@ def dot(a: Number, b: Number) -> Number:
 
 
 def norm(a: Number) -> Number:
-    """The Euclidean length.
+    """Return the Euclidean length.
 
     >>> float(norm(np.array([2.0, 3.0, 6.0])))
     7.0
@@ -48,7 +48,7 @@ def norm(a: Number) -> Number:
 
 
 def apart(a: Number, b: Number) -> Number:
-    """The sine of the angle between two homogeneous vectors of any length: 0 where they are the same place.
+    """Return the sine of the angle between two homogeneous vectors of any length. 0 where they are the same place.
 
     >>> float(apart(np.array([1.0, 0.0, 1.0]), np.array([-2.0, 0.0, -2.0])))
     0.0
@@ -58,7 +58,7 @@ def apart(a: Number, b: Number) -> Number:
 
 @dataclass(frozen=True)
 class OwnCoordinates:
-    """Own coordinates: a place p of the world is at ``(p - origin) / size``.
+    """Own coordinates, a place p of the world at ``(p - origin) / size``.
 
     Homogeneous vectors of order one then have errors of rounding size, wherever and however large the mechanism.
     """
@@ -67,7 +67,7 @@ class OwnCoordinates:
     size: float
 
     def own(self, x: Number, y: Number, w: Number) -> Number:
-        """A point, or a twist, of the world in own coordinates, (3, ...)."""
+        """Return a point, or a twist, of the world in own coordinates, (3, ...)."""
         shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(w))
         out = np.empty((3, *shape))
         out[0] = (x - self.origin.real * w) / self.size
@@ -76,7 +76,7 @@ class OwnCoordinates:
         return out
 
     def own_line(self, line: Line) -> Number:
-        """A line of the world in own coordinates, (3, ...)."""
+        """Return a line of the world in own coordinates, (3, ...)."""
         a, b, c = line
         shape = np.broadcast_shapes(np.shape(a), np.shape(b), np.shape(c))
         out = np.empty((3, *shape))
@@ -86,7 +86,7 @@ class OwnCoordinates:
         return out
 
     def world(self, point: Number) -> Number:
-        """Own homogeneous coordinates in the world's, (3, ...)."""
+        """Return own homogeneous coordinates in the world's, (3, ...)."""
         out = np.empty_like(point)
         out[0] = point[0] * self.size + self.origin.real * point[2]
         out[1] = point[1] * self.size + self.origin.imag * point[2]
@@ -96,7 +96,7 @@ class OwnCoordinates:
 
 @dataclass(frozen=True)
 class PrimaryCentres:
-    """The primary centres of a motion: unit vectors (3, poses or 1), and the lengths they had before.
+    """The primary centres of a motion. Unit vectors (3, poses or 1), and the lengths they had before.
 
     A driver's rate times the length is the amplitude of its twist on the unit vector; `rates` holds these.
     """

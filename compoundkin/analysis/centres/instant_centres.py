@@ -43,7 +43,7 @@ class Status(IntEnum):
 
 @dataclass(frozen=True)
 class Centre:
-    """The relative instant centre of two links; arrays of the motion's shape, NaN where `status` is not FOUND.
+    """The relative instant centre of two links. Arrays of the motion's shape, NaN where `status` is not FOUND.
 
     `homogeneous` (..., 3) is (x, y, w) in the user's length unit, a unit vector in the mechanism's own
     coordinates. `conditioning` is 1 where the centre is as exact as a pin, near 0 where rounding is magnified.
@@ -75,7 +75,7 @@ class Centre:
 
     @cached_property
     def direction(self) -> Number:
-        """The direction in which it is at infinity, a unit vector known but for its sign; NaN where it is finite."""
+        """The direction in which it is at infinity, a unit vector of either sign. NaN where it is finite."""
         x, y, _ = np.moveaxis(self.homogeneous, -1, 0)
         with np.errstate(all="ignore"):
             return np.where(self.at_infinity, (x + 1j * y) / np.hypot(x, y), complex(np.nan, np.nan))
@@ -86,7 +86,7 @@ class Centre:
         return np.asarray(self.status == Status.FOUND)
 
     def how_at(self, *pose: int) -> str:
-        """How it was found at one pose, an index into the motion's shape; raises InvalidInput outside it."""
+        """Return how it was found at one pose, an index into the motion's shape. Raises InvalidInput outside it."""
         shape = np.shape(self.status)
         if len(pose) != len(shape) or any(not -n <= k < n for k, n in zip(pose, shape, strict=True)):
             raise InvalidInput(Problem("pose", f"{pose} is not a pose of a motion of shape {shape}"))
@@ -101,10 +101,10 @@ class Centre:
 
 @dataclass(frozen=True, eq=False)
 class Centres(CentreVectors, Shows):
-    """All n (n - 1) / 2 instant centres of a motion: ``centres["crank", "bar"]``, either link first."""
+    """All n (n - 1) / 2 instant centres of a motion. ``centres["crank", "bar"]``, either link first."""
 
     def derivation(self) -> tuple[DerivationStep, ...]:
-        """The steps in order: primary centres first, then each secondary one with the lines that give it.
+        """Return the steps in order. Primary centres first, then each secondary one with the lines that give it.
 
         Links that never move relative to each other have no centre and no step.
         """
@@ -147,7 +147,7 @@ class Centres(CentreVectors, Shows):
         return velocities_of(self)
 
     def velocity_check(self, motion: Motion | None = None) -> VelocityCheck:
-        """Solved velocities (of this motion, or another of the same positions) against those from centres.
+        """Compare solved velocities with those from centres.
 
         Raises InvalidInput for a motion of order 0.
         """
@@ -156,7 +156,7 @@ class Centres(CentreVectors, Shows):
         return velocity_check(self.velocities, motion)
 
     def collinearity(self) -> dict[tuple[str, str, str], Number]:
-        """By three links, how far their three centres are from one line: 0 to 1, NaN where one is poor or unknown."""
+        """Return how far three links' centres are from one line. 0 to 1, NaN where one is poor or unknown."""
         return collinearity_of(self)
 
     @cached_property

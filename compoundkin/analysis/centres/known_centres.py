@@ -1,4 +1,4 @@
-"""What is known while centres are derived, on a generic instance of the circle diagram."""
+"""The centres known in a derivation, on a generic instance of the diagram."""
 
 from __future__ import annotations
 
@@ -57,15 +57,15 @@ class KnownCentres:
         return [c for c in self.couples if c not in self.rounds]
 
     def knows(self, i: int, j: int) -> bool:
-        """Whether the centre of two bodies is found."""
+        """Return whether the centre of two bodies is found."""
         return couple(i, j) in self.rounds
 
     def place(self, i: int, j: int) -> Vector:
-        """The centre at the generic instance, a unit vector."""
+        """Return the centre at the generic instance, a unit vector."""
         return self.places[couple(i, j)]
 
     def line(self, i: int, j: int, via: int) -> Vector | None:
-        """A line that holds the centre of i and j, a unit vector; None where its two centres are always one."""
+        """Return a line that holds the centre of i and j, a unit vector. None where its two centres are always one."""
         if via < 0:
             return self.generic[-1 - via]  # type: ignore[return-value]
         a = _cross(self.place(i, via), self.place(via, j))
@@ -73,7 +73,7 @@ class KnownCentres:
         return (a[0] / length, a[1] / length, a[2] / length) if length > GENERIC else None
 
     def vias(self, i: int, j: int) -> Iterator[int]:
-        """The lines known to hold a centre: those of the simplest centres first, a pair's own line before all."""
+        """Yield the lines known to hold a centre. Those of the simplest centres first, a pair's own line before all."""
         yield from (-1 - p for p in self.own_lines.get(couple(i, j), ()))
         through = [k for k in self.bodies if k not in (i, j) and self.knows(i, k) and self.knows(k, j)]
         yield from sorted(through, key=lambda k: self._rank(i, k, j))
@@ -83,7 +83,7 @@ class KnownCentres:
         return max(one, other), one + other, k
 
     def crossing(self, i: int, j: int) -> tuple[int, int] | None:
-        """The first two known lines of a centre that are not always the same, or None."""
+        """Return the first two known lines of a centre that differ, or None."""
         lines = [(via, line) for via in self.vias(i, j) if (line := self.line(i, j, via)) is not None]
         for second in range(1, len(lines)):
             for first in range(second):
@@ -101,7 +101,7 @@ class KnownCentres:
 
 
 def sine(a: Vector, b: Vector) -> float:
-    """The sine of the angle between two unit vectors.
+    """Return the sine of the angle between two unit vectors.
 
     >>> sine((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
     1.0

@@ -1,4 +1,4 @@
-"""Sets of bodies of known relative motion, grown along known centres on the generic instance."""
+"""Sets of bodies of known relative motion, grown along known centres."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from compoundkin.base.series import Number
 
 @dataclass
 class RateSets:
-    """How far the sets have grown: which set each body is in, and its twist in that set, (3, parameters).
+    """How far the sets have grown. Which set each body is in, and its twist in that set, (3, parameters).
 
     `rows` are the independent conditions on the parameters, `meetings` what they mean.
     """
@@ -31,7 +31,7 @@ class RateSets:
 
     @classmethod
     def of(cls, centres: KnownCentres) -> RateSets:
-        """Every body by itself; parameter 0 only."""
+        """Return every body by itself; parameter 0 only."""
         return cls(centres, {b: b for b in centres.bodies}, {b: np.zeros((3, 1)) for b in centres.bodies})
 
     @property
@@ -45,11 +45,14 @@ class RateSets:
         return len(self.rows) == self.parameters - 1
 
     def together(self) -> Iterator[Couple]:
-        """Every two bodies of one set."""
+        """Return every two bodies of one set."""
         return ((i, j) for i, j in combinations(self.member, 2) if self.member[i] == self.member[j])
 
     def turned(self, turn: Turn, amplitude: Number) -> RateSets:
-        """A copy in which the set of `turn.k` moves relative to that of `turn.i`; a new parameter if it is one."""
+        """Return a copy in which one set moves relative to another.
+
+        These are the sets of `turn.k` and `turn.i`. A new parameter if it is one.
+        """
         wide = max(self.parameters, turn.parameter + 1)
         twists = {b: np.pad(t, ((0, 0), (0, wide - t.shape[1]))) for b, t in self.twists.items()}
         grown = RateSets(self.centres, dict(self.member), twists, (*self.moves, turn), self.meetings)
@@ -75,7 +78,7 @@ class RateSets:
                     self._collect(Meeting(i, j, k))
 
     def _between(self) -> dict[Couple, list[Couple]]:
-        """The known centres between every two sets, as (body of the first set, body of the second)."""
+        """Return the known centres between every two sets. Each is (body of the first set, body of the second)."""
         found: dict[Couple, list[Couple]] = {}
         for i, j in self.centres.rounds:
             a, b = self.member[i], self.member[j]
@@ -132,7 +135,9 @@ class RateSets:
 
 
 def pair_amplitudes(p: Number, q: Number, gap: Number) -> tuple[Number, Number]:
-    """The factors a, b in ``gap = a p - b q``, where p and q are two different places on one line with the gap.
+    """Return a, b in ``gap = a p - b q``.
+
+    p and q are two different places on one line with the gap.
 
     >>> p, q = np.array([1.0, 0.0, 1.0]), np.array([3.0, 0.0, 1.0])
     >>> a, b = pair_amplitudes(p, q, 2.0 * p - 0.5 * q)
@@ -145,7 +150,9 @@ def pair_amplitudes(p: Number, q: Number, gap: Number) -> tuple[Number, Number]:
 
 
 def ring_amplitudes(p: Number, r: Number, q: Number, gap: Number) -> tuple[Number, Number, Number]:
-    """The factors a, c, b in ``gap = a p + c r + b q``, where the three places are not on one line.
+    """Return a, c, b in ``gap = a p + c r + b q``.
+
+    The three places are not on one line.
 
     >>> [float(x) for x in ring_amplitudes(*np.eye(3), np.array([5.0, 6.0, 7.0]))]
     [5.0, 6.0, 7.0]
@@ -156,7 +163,7 @@ def ring_amplitudes(p: Number, r: Number, q: Number, gap: Number) -> tuple[Numbe
 
 
 def driver_rate_sets(centres: KnownCentres, bridges: bool = True) -> RateSets:
-    """The drivers' rates, carried as far as the known centres allow; to three links at a time with `bridges`."""
+    """Return the drivers' rates, carried as far as the known centres allow. To three links at a time with `bridges`."""
     sets = RateSets.of(centres)
     for k, drive in enumerate(centres.diagram.drives):
         i, j = centres.body[drive.first], centres.body[drive.second]
@@ -168,7 +175,7 @@ def driver_rate_sets(centres: KnownCentres, bridges: bool = True) -> RateSets:
 
 
 def attach(twists: dict[int, Number], member: dict[int, int], i: int, k: int, relative: Number) -> None:
-    """Move all that belongs with body `k` so that `k` has the given twist relative to `i`, and join it to `i`."""
+    """Join body `k` and its set to body `i`, at a given relative twist."""
     shift = twists[i] + relative - twists[k]
     old, new = member[k], member[i]
     for body, owner in member.items():

@@ -1,4 +1,4 @@
-"""Relative twists carried along known centres at many poses, linear in the trial values, with their errors.
+"""Relative twists carried along known centres, linear in the trial values, with errors.
 
 Errors are taken from samples: every centre is used once as it is and twice slightly moved, by a known amount at
 random, each time it is used anew. Bounds would be useless here: along a chain of moves most errors cancel.
@@ -25,7 +25,7 @@ LINEAR = 0.1
 
 
 class TransportedRates:
-    """Twists of bodies, (3, values + 1, 1 + SAMPLES, poses), each in the set of bodies it is known with."""
+    """Twists of bodies, each in the set that it is known with. Shape (3, values + 1, 1 + SAMPLES, poses)."""
 
     def __init__(
         self, bodies: Sequence[int], values: int, points: Mapping[Couple, Number], spread: Mapping[Couple, Number]
@@ -37,25 +37,25 @@ class TransportedRates:
         self._noise = np.random.default_rng(0)
 
     def relative(self, i: int, j: int) -> Number:
-        """The twist of j relative to i."""
+        """Return the twist of j relative to i."""
         return self.twists[j] - self.twists[i]
 
     def turn(self, turn: Turn, place: Number, amplitude: Number) -> None:
-        """A twist of the given amplitude (poses) on a parameter."""
+        """Add a twist of the given amplitude (poses) on a parameter."""
         shape = np.broadcast_shapes(place.shape[-1:], amplitude.shape)
         relative = np.zeros((3, self.twists[turn.i].shape[1], 1 + SAMPLES, *shape))
         relative[:, turn.parameter] = self.sampled(place, self.spread[couple(turn.i, turn.k)]) * amplitude
         attach(self.twists, self.member, turn.i, turn.k, relative)
 
     def join(self, join: Join) -> None:
-        """Two sets through two centres."""
+        """Join two sets through two centres."""
         i, k, j, m = join.i, join.k, join.j, join.m
         p, q = self._place(i, k), self._place(j, m)
         a, _ = pair_amplitudes(p, q, self.relative(i, j) - self.relative(k, m))
         attach(self.twists, self.member, i, k, p * a)
 
     def bridge(self, bridge: Bridge) -> None:
-        """Three sets through three centres."""
+        """Join three sets through three centres."""
         p, r = self._place(bridge.i, bridge.k), self._place(bridge.l, bridge.m)
         q = self._place(bridge.n, bridge.j)
         gap = self.relative(bridge.i, bridge.j) - self.relative(bridge.k, bridge.l) - self.relative(bridge.m, bridge.n)
@@ -64,7 +64,7 @@ class TransportedRates:
         attach(self.twists, self.member, bridge.j, bridge.n, -q * b)
 
     def sampled(self, vector: Number, spread: Number) -> Number:
-        """A point or line (3, poses) as it is and moved: (3, 1 + SAMPLES, poses)."""
+        """Return a point or line (3, poses) as it is and moved. (3, 1 + SAMPLES, poses)."""
         noise = self._noise.standard_normal((3, SAMPLES, 1)) * MOVED
         poses = np.broadcast_shapes(vector.shape[1:], spread.shape)
         out = np.empty((3, 1 + SAMPLES, *poses))
@@ -73,7 +73,7 @@ class TransportedRates:
         return out
 
     def _place(self, i: int, j: int) -> Number:
-        """A known centre, (3, 1, 1 + SAMPLES, poses)."""
+        """Return a known centre, (3, 1, 1 + SAMPLES, poses)."""
         return self.sampled(self.points[couple(i, j)], self.spread[couple(i, j)])[:, None]
 
 
@@ -85,7 +85,10 @@ def transport(
     units: Sequence[Number],
     rates: Sequence[Number],
 ) -> TransportedRates:
-    """The moves in order, over a block of poses; `units` are the primary centres, `rates` the drivers' amplitudes."""
+    """Return the moves in order, over a block of poses.
+
+    `units` are the primary centres, `rates` the drivers' amplitudes.
+    """
     values = max((move.parameter for move in moves if isinstance(move, Turn)), default=0)
     carried = TransportedRates(tuple(dict.fromkeys(derivation.body)), values, points, spread)
     for move in moves:
@@ -102,7 +105,7 @@ def transport(
 
 
 def measured(difference: Number) -> Number:
-    """The magnification of errors from the largest relative difference between the samples.
+    """Return the magnification of errors from the largest relative difference between the samples.
 
     >>> measured(np.array([2e-9, 0.5])).tolist()
     [2.0, inf]

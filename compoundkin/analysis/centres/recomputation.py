@@ -1,4 +1,4 @@
-"""Other lines for a centre, at the poses where those of the derivation nearly coincide."""
+"""Other lines for centres where those of the derivation nearly coincide."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BETTER = 2.0
 
 
 def recompute(evaluation: Evaluation) -> None:
-    """Repeat, at poses with a poor centre, the best crossing of all its lines, until none gets better.
+    """Repeat the best crossing for poor centres until none gets better.
 
     Magnification grows along every chain of crossings, so that no centre comes to rest on itself.
     """
@@ -68,7 +68,7 @@ class _PoorPoses:
         return self._take(c, *self._best(c, vias))
 
     def _by_rates(self, crossed: list[Couple]) -> None:
-        """Where all lines of a centre are nearly one: the drivers' rates, carried by the other centres."""
+        """Use the drivers' rates, carried by other centres, where all lines are nearly one."""
         rates = DriverRates(self.whole.derivation, self.part.points, self.part.spread)
         rates.run(self.part.units, self.part.rates)
         none = np.full(len(self.at), BY_RATES, dtype=np.int32)
@@ -91,7 +91,7 @@ class _PoorPoses:
         return True
 
     def _best(self, c: Couple, vias: list[int]) -> tuple[Number, Number, Number, Number]:
-        """The crossing of the best line with its best partner."""
+        """Return the crossing of the best line with its best partner."""
         drawn = [self.part.line(*c, via) for via in vias]
         shape = (len(vias), len(self.at))
         lines = np.empty((3, *shape))

@@ -27,7 +27,7 @@ MOST_VALUES = 3
 
 
 def trial_position(centres: KnownCentres) -> Trial | None:
-    """The next centres by the drivers' rates, or else one by as few trial values as will do; None if none will."""
+    """Return the next centres by rates, or by as few trial values as possible. None if none will."""
     starts = list(_starts(centres))
     for start in [driver_rate_sets(centres, bridges=False), *starts]:
         inside = [c for c in start.together() if not centres.knows(*c)]
@@ -42,7 +42,7 @@ def trial_position(centres: KnownCentres) -> Trial | None:
 
 
 def _starts(centres: KnownCentres) -> Iterator[RateSets]:
-    """The rates of several drivers; with one, a rate about any known centre, for all are in proportion."""
+    """Yield the rates of several drivers. With one, a rate about any known centre, for all are in proportion."""
     if len(centres.diagram.drives) > 1:
         yield driver_rate_sets(centres)
         return
@@ -65,7 +65,7 @@ def _search(sets: RateSets, values: int) -> Trial | None:
 
 
 def _turns(sets: RateSets) -> Iterator[Turn]:
-    """The trial values that may come next: about a known centre between a moving set and what is outside."""
+    """Yield the trial values that may come next. About a known centre between a moving set and what is outside."""
     sizes: dict[int, int] = {}
     for owner in sets.member.values():
         sizes[owner] = sizes.get(owner, 0) + 1
@@ -76,7 +76,10 @@ def _turns(sets: RateSets) -> Iterator[Turn]:
 
 
 def _on_trial(sets: RateSets) -> Couple:
-    """The unknown centre whose place was tried: on the line of the first trial value's centre and one of its set."""
+    """Return the unknown centre whose place was tried.
+
+    On the line of the first trial value's centre and one of its set.
+    """
     unknown = [c for c in sets.together() if not sets.centres.knows(*c)]
     first = next(move for move in sets.moves if isinstance(move, Turn) and move.parameter == 1)
     tried = [couple(j, first.k) for j in sets.member if j != first.i and sets.centres.knows(first.i, j)]

@@ -1,4 +1,4 @@
-"""The loop equations of velocity, and the relative twists that solve them: an independent route to the centres.
+"""The loop equations of velocity, and the relative twists that solve them. An independent route to the centres.
 
 Around every loop the relative twists add up to zero: sum of ``omega (x, y, 1)`` over its pairs, a slide's
 (x, y, 0) at infinity. The null vector of these equations gives every link's twist but for one factor. A twist
@@ -21,7 +21,7 @@ Path = dict[int, int]  # edge of the diagram -> +1 or -1 as it is run through
 
 @dataclass(frozen=True)
 class TwistLoops:
-    """Independent loops and, for every link, the way to it from the first link of its part, as signed edges."""
+    """Independent loops, and the way to every link, as signed edges. The way is from the first link of its part."""
 
     loops: tuple[Path, ...]
     paths: tuple[Path, ...]
@@ -29,7 +29,7 @@ class TwistLoops:
 
 
 def loops_of(diagram: Diagram) -> TwistLoops:
-    """The fundamental loops of a breadth-first tree."""
+    """Return the fundamental loops of a breadth-first tree."""
     paths: dict[int, Path] = {0: {}}
     tree: set[int] = set()
     for link in (queue := [0]):
@@ -54,8 +54,9 @@ def _sum(there: Path, across: Path, back: Path) -> Path:
 
 
 def null_twists(diagram: Diagram, places: Sequence[Number], rates: Sequence[Number]) -> tuple[Number, Number]:
-    """Every link's twist relative to the first link, (links, 3, poses), but for a common factor; and the gap.
+    """Return every link's twist relative to the first, but for a common factor.
 
+    Of shape (links, 3, poses). And the gap.
     `places` are the primaries' unit coordinates (3, poses), `rates` the amplitudes of the drivers on them. With
     one driver the rate does not matter. The gap is the second smallest singular value over the largest: where
     it is near zero the pose is singular and the twists say nothing.
@@ -80,7 +81,7 @@ def null_twists(diagram: Diagram, places: Sequence[Number], rates: Sequence[Numb
 
 
 def _basis(place: Number, kind: str) -> list[Number]:
-    """The directions a relative twist may have: the centre itself, two points of its line, or none."""
+    """Return the directions a relative twist may have. The centre itself, two points of its line, or none."""
     if kind == "weld":
         return []
     if kind != "line":
@@ -94,7 +95,7 @@ def _basis(place: Number, kind: str) -> list[Number]:
 
 
 def _driver_rows(diagram: Diagram, starts: Number, rates: Sequence[Number]) -> list[dict[int, Number]]:
-    """One row for every two drivers: their amplitudes are in the ratio of their rates."""
+    """Return one row for every two drivers. Their amplitudes are in the ratio of their rates."""
     shares = [_amplitude(diagram, starts, k) for k in range(len(diagram.drives))]
     found = []
     for a in range(len(shares)):
@@ -107,7 +108,7 @@ def _driver_rows(diagram: Diagram, starts: Number, rates: Sequence[Number]) -> l
 
 
 def _amplitude(diagram: Diagram, starts: Number, k: int) -> dict[int, int]:
-    """The columns whose amplitudes add up to a driver's."""
+    """Return the columns whose amplitudes add up to a driver's."""
     drive = diagram.drives[k]
     share = {}
     for e, (_, second, primary) in enumerate(diagram.edges):

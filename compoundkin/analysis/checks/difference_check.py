@@ -1,4 +1,4 @@
-"""Derivatives and steps of a motion against its positions: differences at neighbouring values, and continuity."""
+"""Derivatives and steps of a motion against its positions. Differences at neighbouring values, and continuity."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LEAP = 0.5
 
 
 def difference_findings(motion: Motion) -> Iterator[Finding]:
-    """Velocity, acceleration and jerk of every link against differences, outside change points, limits and jumps."""
+    """Yield findings on each link's derivatives against differences of its positions."""
     counted = motion.regular & _away_from_change_points(motion)
     if motion.order < 1 or not counted.any():
         return
@@ -61,7 +61,7 @@ def _weights(k: int) -> Number:
 
 
 def _own_time(motion: Motion) -> Number:
-    """The time scale of the motion at each pose, which no step may exceed.
+    """Return the motion's time scale at each pose, which no step may exceed.
 
     The least over derivatives of (1 / c[k])^(1/k), and of c[k] / c[k + 1], which near a limit position is the time
     to it; c[k] being the largest k-th coefficient of any link.
@@ -76,7 +76,7 @@ def _own_time(motion: Motion) -> Number:
 
 
 def _largest(motion: Motion, k: int) -> Number:
-    """The largest k-th coefficient of any link's pose, lengths in parts of the mechanism's size."""
+    """Return the largest k-th coefficient of any pose, in parts of the size."""
     found: Number = np.zeros(motion.failed.shape)
     for pose in motion.poses.values():
         for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
@@ -92,8 +92,9 @@ def _largest(motion: Motion, k: int) -> Number:
 
 
 def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
-    """The poses at a time (designs x poses) from those of the motion, the drivers following their rates.
+    """Return the poses at a time before or after those of the motion.
 
+    The drivers follow their rates.
     Rates beyond the motion's order are left out: they do not belong to the series that tells its time scale.
     """
     given = motion.inputs
@@ -108,7 +109,7 @@ def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
 
 
 def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
-    """Poses between whose neighbours no contact passes a place where its profile's derivatives jump."""
+    """Return poses around which no contact passes a jump of its profile."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
     for pair in motion.structure.pairs:
         ends = motion.inputs.ends[pair.name]
@@ -119,7 +120,7 @@ def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
 
 
 def _away_from_change_points(motion: Motion) -> Number:
-    """Poses whose neighbours lie on the same side of every change point."""
+    """Return poses whose neighbours lie on the same side of every change point."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
     index = np.arange(motion.inputs.poses, dtype=float)
     for flips in motion.tracker.flips.values():
@@ -128,7 +129,7 @@ def _away_from_change_points(motion: Motion) -> Number:
 
 
 def _before_change_points(motion: Motion, reach: Number) -> Number:
-    """Poses from which the drivers do not come to a change point within a time."""
+    """Return poses from which no change point is reached within a time."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
     for flips in motion.tracker.flips.values():
         designs, which = np.nonzero(np.isfinite(flips))
@@ -142,7 +143,7 @@ def _before_change_points(motion: Motion, reach: Number) -> Number:
 
 
 def continuity_findings(motion: Motion) -> Iterator[Finding]:
-    """Every link's step from pose to pose against the slopes with respect to the drivers at both ends."""
+    """Yield the finding on steps from pose to pose against slopes."""
     if motion.inputs.poses < 2:
         return
     s = np.arange(motion.inputs.poses, dtype=float)
@@ -169,6 +170,6 @@ def _slopes(motion: Motion, part: Inputs, s: Number) -> dict[str, Number]:
 
 
 def _turn(motion: Motion, link: str) -> Number:
-    """The angle a link turns from each pose to the next."""
+    """Return the angle a link turns from each pose to the next."""
     u = np.broadcast_to(motion.poses[link].u.c[0], motion.failed.shape)
     return np.angle(u[:, 1:] * u[:, :-1].conj())

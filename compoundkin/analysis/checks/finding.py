@@ -13,8 +13,9 @@ from compoundkin.kinematics import Motion
 
 @dataclass(frozen=True)
 class Finding:
-    """One check: its worst value relative to the mechanism's size and speed, the limit, and where it is worst.
+    """One check with its worst value, its limit, and where it is worst.
 
+    The value is relative to the mechanism's size and speed.
     `pose` is the index into the motion's shape; a value that is not a number does not pass.
     """
 
@@ -32,7 +33,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Check(Shows):
-    """All findings about a motion; `poses` of them were checked, `singular` had no rates to check."""
+    """All findings about a motion. `poses` of them were checked, `singular` had no rates to check."""
 
     findings: tuple[Finding, ...]
     poses: int
@@ -45,8 +46,9 @@ class Check(Shows):
 
 
 def worst(motion: Motion, name: str, limit: float, parts: dict[str, Number], counted: Number) -> Finding:
-    """The worst value over all parts (each designs x poses, or broadcast to it) at the poses that count.
+    """Return the worst value over all parts at the poses that count.
 
+    Each part is designs x poses, or is broadcast to it.
     A value that is not a number is worse than any other.
     """
     found = Finding(name, 0.0, limit, "", ())

@@ -1,4 +1,4 @@
-"""Residuals of a motion in the pairs' own equations, and against the instant centres that geometry alone gives.
+"""Residuals of a motion in the pairs' own equations, and against instant centres.
 
 Positions: what a pair holds must be zero. Velocities: the pair's Jacobian times the links' velocities must
 be zero. Accelerations: so must the second derivative of what it holds. Links: orientations must stay unit
@@ -34,7 +34,7 @@ MOST_LINKS = 40
 
 
 def residuals(motion: Motion) -> Iterator[Finding]:
-    """The worst residual of pairs, links and drivers in each order, relative to size and speed."""
+    """Yield the worst residuals of pairs, links and drivers in each order."""
     for k in range(motion.order + 1):
         counted = motion.failed == 0 if k == 0 else motion.regular
         scale = _scale(motion, k, counted)
@@ -52,7 +52,7 @@ def residuals(motion: Motion) -> Iterator[Finding]:
 
 
 def _distance_errors(motion: Motion) -> Iterator[tuple[str, Number]]:
-    """By pair, how far a length is off that no pair holds, such as a pinion's distance from its rack."""
+    """Yield by pair how far a length is off that no pair holds."""
     for name, pair in motion.tracker.plan.pairs.items():
         error = pair.distance_error(motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members))
         if error is not None:
@@ -60,12 +60,12 @@ def _distance_errors(motion: Motion) -> Iterator[tuple[str, Number]]:
 
 
 def _off(name: str, gap: Number, limit: Number) -> str:
-    """A pair's name, with the length by which it is off where that is too much."""
+    """Return a pair's name, with the length by which it is off."""
     return f"{name}, off by {float(np.nanmax(gap)):.6g}" if np.any(gap > limit) else name
 
 
 def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
-    """The residuals of one order, by what is checked and by pair, link or driver."""
+    """Yield the residuals of one order by pair, link or driver."""
     redundant = {pair.name for pair in motion.structure.redundant}
     pairs = {name: pair for name, pair in motion.tracker.plan.pairs.items() if name not in redundant}
     yield ORDERS[k], {name: _pair(motion, pair, k) for name, pair in pairs.items()}
@@ -111,7 +111,7 @@ def _largest(values: list[Number]) -> Number:
 
 
 def _scale(motion: Motion, k: int, counted: Number) -> Number:
-    """The size of the mechanism, or of its fastest link's k-th derivative, at each pose."""
+    """Return the size, or the fastest link's k-th derivative, at each pose."""
     size = motion.size
     if k == 0:
         return size + max((float(np.nanmax(np.abs(p.z.c[0]), initial=0.0)) for p in motion.poses.values()), default=0.0)

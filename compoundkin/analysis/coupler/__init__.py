@@ -1,4 +1,4 @@
-"""Relative motion of any two links as geometry: pole, centrodes, inflection circle, curvature of paths."""
+"""Relative motion of any two links as geometry. Pole, centrodes, inflection circle, curvature of paths."""
 
 from compoundkin.analysis.coupler.bresse_circles import (
     BresseCircle,

@@ -1,4 +1,4 @@
-"""The canonical frame of a relative motion, the circles of Bresse and the acceleration pole."""
+"""The canonical frame of a relative motion, Bresse's circles and the acceleration pole."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from compoundkin.model.elements import FRAME
 
 @dataclass(frozen=True, eq=False)
 class CanonicalFrame:
-    """The frame at the pole whose y axis points to the inflection pole; arrays of the motion's shape.
+    """The frame at the pole whose y axis points to the inflection pole. Arrays of the motion's shape.
 
     `origin` is the pole, `tangent` and `normal` are unit vectors (``normal = i tangent``), `diameter` is that of the
     inflection circle, ``|dP/dphi|``, all in the observing link's frame. As the link turns counterclockwise the pole
@@ -30,17 +30,17 @@ class CanonicalFrame:
     defined: Number
 
     def local(self, points: Number) -> Number:
-        """Points of the observing link's frame in canonical coordinates, x along the tangent."""
+        """Return points of the observing link's frame in canonical coordinates, x along the tangent."""
         return np.conj(self.tangent) * (points - self.origin)
 
     def outer(self, points: Number) -> Number:
-        """Points given in canonical coordinates in the observing link's frame."""
+        """Return points given in canonical coordinates in the observing link's frame."""
         return self.origin + self.tangent * points
 
 
 @dataclass(frozen=True, eq=False)
 class BresseCircle:
-    """A circle, or a line, by a point it runs through; arrays of the motion's shape.
+    """A circle, or a line, by a point it runs through. Arrays of the motion's shape.
 
     `through` is the pole, or a point of the line where the pole is at infinity; `direction` the unit vector from there
     to the centre, which for a line is its normal; `diameter` is inf for a line and 0 for a pin, where the circle is the
@@ -69,11 +69,13 @@ class BresseCircle:
 
     @property
     def opposite(self) -> Number:
-        """The end of the diameter that starts at `through`: on the inflection circle, the inflection pole."""
+        """The end of the diameter that starts at `through`. On the inflection circle, the inflection pole."""
         return self._along(self.diameter)
 
     def offset(self, points: Number) -> Number:
-        """How far points are outside (positive) the circle, or beside the line away from its normal.
+        """Return how far points are outside (positive) the circle.
+
+        Or beside the line, away from its normal.
 
         >>> BresseCircle(np.array([0j]), np.array([1j]), np.array([2.0]), np.array([True])).offset(2 + 1j).tolist()
         [1.0]
@@ -88,8 +90,9 @@ class BresseCircle:
 
 @np.errstate(all="ignore")
 def canonical_frame(motion: Motion, link: str, on: str = FRAME) -> CanonicalFrame:
-    """The pole, the pole tangent and normal, and the diameter of the inflection circle of `link` seen from `on`.
+    """Return the canonical frame of `link` seen from `on`: pole, tangent, normal, diameter.
 
+    The diameter is that of the inflection circle.
     Lengths in the user's unit; independent of the driver's speed and acceleration. Raises UnknownName, and InvalidInput
     below order 2, for a link seen from itself or a driver at rest. Source: Bottema and Roth, Theoretical Kinematics,
     chapter VIII (canonical system; b2 is the diameter).
@@ -105,8 +108,9 @@ def canonical_frame(motion: Motion, link: str, on: str = FRAME) -> CanonicalFram
 
 @np.errstate(all="ignore")
 def inflection_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircle:
-    """The points of `link` whose paths on `on` have no curvature at the moment, in the frame of `on`.
+    """Return the circle of points of `link` whose paths have no curvature.
 
+    In the frame of `on`, at the moment.
     Lengths in the user's unit; independent of the driver's speed. At a pose of pure translation the pole is at
     infinity and they form a line, not defined if the translation is an exact one (no angular acceleration).
     Raises as `canonical_frame`. Source: Dijksman, Motion Geometry of Mechanisms; Bresse (1853).
@@ -126,8 +130,9 @@ def inflection_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircl
 
 @np.errstate(all="ignore")
 def tangential_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircle:
-    """The points of `link` that neither speed up nor slow down as seen from `on`, in the frame of `on`.
+    """Return the circle of points of `link` that keep their speed.
 
+    They neither speed up nor slow down, in the frame of `on`.
     The second circle of Bresse; it runs through the pole, at right angles to the inflection circle, and depends on the
     drivers' accelerations. It is a line where the angular acceleration is zero, and not defined for a pin that turns at
     constant speed, where all points qualify. Lengths in the user's unit. Raises as `canonical_frame`. Source: Bottema
@@ -151,8 +156,9 @@ def tangential_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircl
 
 @np.errstate(all="ignore")
 def acceleration_pole(motion: Motion, link: str, on: str = FRAME) -> Number:
-    """The point of `link` that has no acceleration as seen from `on`, in the frame of `on`.
+    """Return the point of `link` without acceleration as seen from `on`.
 
+    In the frame of `on`.
     Complex, in the user's length unit, of the motion's shape; inf where all points have one acceleration, NaN where all
     have none or the pose has no rates. It depends on the drivers' accelerations. Raises as `canonical_frame`.
     Source: Bottema and Roth, Theoretical Kinematics, chapter VIII: ``z - z'' / (i alpha - omega^2)``.
@@ -172,7 +178,7 @@ def acceleration_pole(motion: Motion, link: str, on: str = FRAME) -> Number:
 
 
 def canonical(seen: Relative) -> CanonicalFrame:
-    """The canonical frame of a relative motion."""
+    """Return the canonical frame of a relative motion."""
     step = np.where(pole_moves(seen), seen.pole_by_angle.c[0], 0j)
     along = direction(step)
     parts = (seen.pole.c[0], -along, -1j * along, np.abs(step))
@@ -187,7 +193,7 @@ def _translation(seen: Relative) -> tuple[Number, Number, Number]:
 
 
 def _circle(seen: Relative, towards: Number, diameter: Number, beside: Number, normal: Number) -> BresseCircle:
-    """A circle at the pole; at a pole at infinity the line through the origin's neighbour `beside`."""
+    """Return a circle at the pole. At a pole at infinity the line through the origin's neighbour `beside`."""
     line = seen.regular & ~seen.turning & ~seen.resting & np.isfinite(beside)
     defined = line | seen.turning & ~np.isnan(diameter)
     return BresseCircle(

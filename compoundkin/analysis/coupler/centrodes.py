@@ -15,7 +15,7 @@ from compoundkin.model.elements import FRAME
 
 @dataclass(frozen=True, eq=False)
 class Pole:
-    """The pole (relative instant centre) of two links at every pose; arrays of the motion's shape.
+    """The pole (relative instant centre) of two links at every pose. Arrays of the motion's shape.
 
     `fixed`, `moving`, `world`: complex, in the frame of the observing link, of the moving link and of the mechanism.
     Where the pole is at infinity (`infinite`) they are inf, and `direction` is the unit vector towards it, up to its
@@ -32,7 +32,7 @@ class Pole:
 
     @property
     def homogeneous(self) -> Number:
-        """Coordinates (x, y, w) of `fixed` in a last axis of length 3: w is 1, or 0 for a pole at infinity."""
+        """Coordinates (x, y, w) of `fixed` in a last axis of length 3. W is 1, or 0 for a pole at infinity."""
         place: Number = np.where(self.infinite, self.direction, self.fixed)
         weight = np.where(self.defined, np.where(self.infinite, 0.0, 1.0), np.nan)
         return np.stack([place.real, place.imag, weight], axis=-1)
@@ -40,7 +40,7 @@ class Pole:
 
 @dataclass(frozen=True, eq=False)
 class Centrodes:
-    """The two curves a pole runs along, and how fast; the moving centrode rolls on the fixed one.
+    """The two curves a pole runs along, and how fast. The moving centrode rolls on the fixed one.
 
     `fixed` is the locus of the pole in the observing link's frame, `moving` that in the moving link's frame, pose by
     pose. `fixed_velocity`, `moving_velocity` (length/s) are the pole's velocities along them, each in its own link's
@@ -65,8 +65,9 @@ class Centrodes:
 
 @np.errstate(all="ignore")
 def pole(motion: Motion, link: str, on: str = FRAME) -> Pole:
-    """The point of `link` that has no velocity as seen from `on`, at every pose.
+    """Return the point of `link` without velocity as seen from `on`.
 
+    At every pose.
     Lengths in the user's unit. It depends on the geometry only, not on the driver's speed. Where the links stand still
     for an instant (a rocker at the end of its swing) the limit is taken from the second derivatives, if the motion has
     them. Raises UnknownName, and InvalidInput for order 0, a link seen from itself or a driver at rest.
@@ -85,8 +86,9 @@ def pole(motion: Motion, link: str, on: str = FRAME) -> Pole:
 
 @np.errstate(all="ignore")
 def pole_velocity(motion: Motion, link: str, on: str = FRAME) -> Number:
-    """The velocity at which the pole changes its place, in the frame of `on` (pole change velocity).
+    """Return the velocity at which the pole changes its place (pole change velocity).
 
+    In the frame of `on`.
     Complex, length/s, of the motion's shape; inf where the pole is at infinity, NaN where it is not defined or a limit
     (see `pole`). Proportional to the driver's speed. Raises as `pole`, and InvalidInput below order 2.
     Source: E. A. Dijksman, Motion Geometry of Mechanisms (1976).
@@ -103,7 +105,7 @@ def pole_velocity(motion: Motion, link: str, on: str = FRAME) -> Number:
 
 @np.errstate(all="ignore")
 def centrodes(motion: Motion, link: str, on: str = FRAME) -> Centrodes:
-    """The fixed and the moving centrode of `link` as seen from `on`, point by point along the motion.
+    """Return the fixed and the moving centrode of `link` seen from `on`.
 
     Complex arrays of the motion's shape, lengths in the user's unit. The curves depend on the geometry only, the
     velocities along them on the driver's. Raises as `pole`, and InvalidInput below order 2.
@@ -121,7 +123,7 @@ def centrodes(motion: Motion, link: str, on: str = FRAME) -> Centrodes:
 
 @np.errstate(all="ignore")
 def centrode_curvature(motion: Motion, link: str, on: str = FRAME) -> tuple[Number, Number]:
-    """The curvatures of the fixed and of the moving centrode at the pole, 1/length.
+    """Return the curvatures (1/length) of both centrodes at the pole.
 
     Positive where the curve bends to the left as the pole runs along it while the links turn counterclockwise, so that
     neither depends on the driver. ``fixed - moving = 1/diameter of the inflection circle``. NaN where the pole is at
@@ -140,7 +142,7 @@ def centrode_curvature(motion: Motion, link: str, on: str = FRAME) -> tuple[Numb
 
 
 def pole_moves(seen: Relative) -> Number:
-    """Where the pole changes its place; where it does not, links are pinned, and what it does is rounding."""
+    """Return where the pole changes its place. Where it does not, links are pinned, and what it does is rounding."""
     return seen.turning & (np.abs(seen.pole_by_angle.c[0]) > seen.noise)
 
 
@@ -161,7 +163,7 @@ def _pole(seen: Relative) -> Pole:
 
 
 def _leading(seen: Relative) -> tuple[Number, Number]:
-    """The pole as a fraction; by l'Hopital's rule from the next derivatives where the links stand still."""
+    """Return the pole as a fraction. By l'Hopital's rule from the next derivatives where the links stand still."""
     number, weight = seen.numerator.c, seen.omega.c
     if len(weight) == 1:
         return seen.masked(number[0], ~seen.resting), weight[0]
@@ -172,7 +174,7 @@ def _leading(seen: Relative) -> tuple[Number, Number]:
 
 
 def _moving(seen: Relative) -> Series:
-    """The pole in the moving link's own frame."""
+    """Return the pole in the moving link's own frame."""
     order = len(seen.pole.c)
     return Series(seen.u.c[:order]).conj() * (seen.pole - Series(seen.z.c[:order]))
 
@@ -183,6 +185,6 @@ def _change(seen: Relative, place: Series) -> Number:
 
 
 def _bend(seen: Relative, by_angle: Series, omega: Series) -> Number:
-    """The curvature of a curve whose derivative by the relative angle is given."""
+    """Return the curvature of a curve whose derivative by the relative angle is given."""
     first, second = by_angle.c[0], rate(by_angle).c[0] / omega.c[0]
     return seen.masked(cross(first, second) / np.abs(first) ** 3, pole_moves(seen))

@@ -1,4 +1,4 @@
-"""Curvature of the paths of points: by derivatives, by Euler and Savary, and where it is stationary."""
+"""Curvature of the paths of points. By derivatives, by Euler and Savary, and where it is stationary."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ COINCIDENT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class PathCurvature:
-    """The curvature of a point's path at every pose, in the observing link's frame; arrays of the motion's shape.
+    """The curvature of a point's path at every pose, in the observing link's frame. Arrays of the motion's shape.
 
     `curvature` (1/length) is positive where the path bends to the left of the point's velocity; `radius` is
     ``1 / |curvature|``, `normal` the unit vector from `position` to `centre`. At an inflection (`inflection`) the
@@ -52,7 +52,7 @@ class PathCurvature:
 
 @np.errstate(all="ignore")
 def path_curvature(motion: Motion, link: str, point: Any, on: str = FRAME) -> PathCurvature:
-    """The curvature of the path of a point of `link` as seen from `on`, from its velocity and acceleration.
+    """Return the curvature of the path of a point seen from `on`.
 
     `point` as in `relative_point`; lengths in the user's unit. Independent of the driver's acceleration and, but for
     the sign of `curvature`, of its speed. Raises UnknownName for a link or letter that is not there; InvalidInput below
@@ -80,7 +80,7 @@ def path_curvature(motion: Motion, link: str, point: Any, on: str = FRAME) -> Pa
 
 @np.errstate(all="ignore")
 def euler_savary(motion: Motion, link: str, point: Any, on: str = FRAME) -> PathCurvature:
-    """The same as `path_curvature`, from the pole and the inflection circle instead of the point's own derivatives.
+    """Return what `path_curvature` does, from pole and inflection circle instead of derivatives.
 
     With r the distance from the pole, psi its angle from the pole tangent and d the diameter of the inflection circle,
     the curvature is ``(r - d sin psi) / r^2``: the second, independent way. Not defined (NaN) where the links do not
@@ -107,7 +107,7 @@ def euler_savary(motion: Motion, link: str, point: Any, on: str = FRAME) -> Path
 
 @np.errstate(all="ignore")
 def curvature_rate(motion: Motion, link: str, point: Any, on: str = FRAME) -> Number:
-    """The change of the curvature of a point's path along the path, 1/length^2, from its derivatives up to the jerk.
+    """Return the rate of a path's curvature along the path, 1/length^2.
 
     `point` as in `relative_point`; an array of the motion's shape, NaN where the point stands still or has no rates.
     It is zero on the cubic of stationary curvature. Raises as `path_curvature`, and InvalidInput below order 3.
@@ -129,12 +129,12 @@ def curvature_rate(motion: Motion, link: str, point: Any, on: str = FRAME) -> Nu
 
 
 def _length(motion: Motion, p: Number) -> Number:
-    """How far a point is from its link's origin, in a shape that meets that of the motion."""
+    """Return a point's distance from its link's origin, shaped as the motion."""
     return np.broadcast_to(np.abs(p), motion.shape) if np.ndim(p) else np.abs(p)
 
 
 def _resting(seen: Relative, speed: Number, p: Number) -> Number:
-    """Where a point stands still."""
+    """Return where a point stands still."""
     return speed <= SMALL * seen.scale(1) * (seen.reach + _length(seen.motion, p))
 
 
@@ -151,7 +151,7 @@ def _path(seen: Relative, x: Number, left: Number, curvature: Number, resting: N
 
 @dataclass(frozen=True, eq=False)
 class StationaryCurvature:
-    """The points whose paths keep their curvature for a moment, at every pose; arrays of the motion's shape.
+    """The points whose paths keep their curvature for a moment, at every pose. Arrays of the motion's shape.
 
     In the canonical frame `frame` at polar coordinates (r, psi) the cubic is ``1/r = inverse_m / sin psi + inverse_n /
     cos psi``, the two in 1/length: zero where the cubic falls apart into a circle and a line. `ball` is Ball's point,
@@ -168,7 +168,7 @@ class StationaryCurvature:
     defined: Number
 
     def residual(self, points: Number) -> Number:
-        """The cubic at points of the observing link's frame, length^2: zero for those of stationary curvature.
+        """Return the cubic at points of the observing link's frame, length^2. Zero for those of stationary curvature.
 
         `points` broadcast with the motion's shape.
         """
@@ -177,7 +177,10 @@ class StationaryCurvature:
         return np.abs(place) ** 2 * (self.inverse_m * x + self.inverse_n * y) - x * y
 
     def at(self, angle: Number) -> Number:
-        """The point of the cubic at an angle (radians) from the pole tangent, in the observing link's frame."""
+        """Return the point of the cubic at an angle from the pole tangent.
+
+        In radians, and in the observing link's frame.
+        """
         sine, cosine = np.sin(angle), np.cos(angle)
         r = sine * cosine / (self.inverse_m * cosine + self.inverse_n * sine)
         return self.frame.outer(r * (cosine + 1j * sine))
@@ -185,7 +188,7 @@ class StationaryCurvature:
 
 @np.errstate(all="ignore")
 def stationary_curvature(motion: Motion, link: str, on: str = FRAME) -> StationaryCurvature:
-    """The cubic of stationary curvature (circling-point curve) of `link` seen from `on`, and Ball's point.
+    """Return the cubic of stationary curvature (circling-point curve) and Ball's point.
 
     Lengths in the user's unit; independent of the driver's speed, acceleration and jerk. Raises UnknownName, and
     InvalidInput below order 3, for a link seen from itself or a driver at rest. Source: Dijksman, Motion Geometry of

@@ -1,4 +1,4 @@
-"""The motion of any link seen from any other, and the motion of the link's points in it."""
+"""The motion of any link and its points seen from any other."""
 
 from __future__ import annotations
 
@@ -26,8 +26,9 @@ INFINITE = complex(np.inf, np.inf)
 
 
 def relative_link(motion: Motion, link: str, on: str = FRAME) -> LinkMotion:
-    """The motion of one link as an observer on another one sees it, in the frame of the latter.
+    """Return the motion of one link as seen from another.
 
+    In the frame of the latter.
     Angles in radians, their rates in rad/s; arrays of the motion's shape. Raises UnknownName for a link that is not
     there, InvalidInput for a link seen from itself. Source: O. Bottema and B. Roth, Theoretical Kinematics (1979),
     chapter VIII, the pose being ``pose(on)^-1 pose(link)``.
@@ -42,8 +43,9 @@ def relative_link(motion: Motion, link: str, on: str = FRAME) -> LinkMotion:
 
 
 def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> PointMotion:
-    """The motion of any point of one link as an observer on another one sees it, in the frame of the latter.
+    """Return the motion of a point of one link as seen from another.
 
+    In the frame of the latter.
     `point` is a letter of the link, or a place in the link's own frame, complex or (x, y), a number or an array.
     Lengths in the user's unit, per second, s^2, s^3; complex arrays of the motion's shape. Turn them by
     ``motion.poses[on].u`` for world axes. Raises UnknownName for a link or letter that is not there, InvalidInput for a
@@ -59,7 +61,7 @@ def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> Po
 
 
 def place(motion: Motion, link: str, point: Any) -> Number:
-    """Where a point is in its link's frame: of a letter as the mechanism has it, of coordinates as they are."""
+    """Return where a point is in its link's frame. Of a letter as the mechanism has it, of coordinates as they are."""
     if isinstance(point, str):
         known = motion.mechanism.geometry.points[link]
         if point not in known:
@@ -72,19 +74,19 @@ def place(motion: Motion, link: str, point: Any) -> Number:
 
 
 def direction(vector: Number) -> Number:
-    """The unit vector of a planar vector; 0 for the vector 0."""
+    """Return the unit vector of a planar vector; 0 for the vector 0."""
     length = np.abs(vector)
     return np.where(length > 0, vector / np.where(length > 0, length, 1.0), 0j)
 
 
 def rate(series: Series) -> Series:
-    """The time derivative of a series, one order lower."""
+    """Return the time derivative of a series, one order lower."""
     return Series(tuple(k * c for k, c in enumerate(series.c[1:], 1)))
 
 
 @dataclass(frozen=True, eq=False)
 class Relative:
-    """A relative motion as series of the motion's shape, and what is large and small in it.
+    """A relative motion as series, and what is large and small in it.
 
     `z`, `u` are the pose of `link` in the frame of `on`. Everything is geometry if it is divided by powers of the
     relative angular velocity: the angle then is the parameter (instantaneous invariants).
@@ -104,7 +106,7 @@ class Relative:
 
     @cached_property
     def numerator(self) -> Series:
-        """The numerator of the pole: the pole is at ``(omega z + i z') / omega``."""
+        """The numerator of the pole. The pole is at ``(omega z + i z') / omega``."""
         return self.omega * Series(self.z.c[:-1]) + 1j * rate(self.z)
 
     @cached_property
@@ -119,7 +121,7 @@ class Relative:
 
     @cached_property
     def turning(self) -> Number:
-        """Where the links turn relative to each other: the pole is finite and rates by the angle exist."""
+        """Where the links turn relative to each other. The pole is finite and rates by the angle exist."""
         return self.regular & (self.omega.c[0] != 0)
 
     @cached_property
@@ -144,7 +146,7 @@ class Relative:
         return SMALL * self.reach * np.maximum(1.0, self.scale(2) / self.omega.c[0] ** 2)
 
     def scale(self, k: int) -> Number:
-        """How fast the two links and the drivers are at a pose, in rad/s^k: what rounding is relative to."""
+        """Return how fast links and drivers are at a pose, in rad/s^k. Rounding is relative to it."""
         size, links, drives = self.motion.size, self.motion.links, self.motion.drives.values()
         rates = [np.abs(d.derivative(k)) / (1.0 if d.is_angle else size) for d in drives]
         for name in (self.link, self.on):
@@ -153,12 +155,12 @@ class Relative:
         return largest if k == 1 else np.maximum(largest, self.scale(1) ** k)
 
     def masked(self, values: Number, where: Number) -> Number:
-        """Values where they are defined, and NaN elsewhere."""
+        """Return values where they are defined, and NaN elsewhere."""
         return np.where(where, values, UNKNOWN if np.iscomplexobj(values) else np.nan)
 
 
 def relative(motion: Motion, link: str, on: str, order: int, what: str) -> Relative:
-    """The relative motion of two links for geometry that takes derivatives up to `order`.
+    """Return the relative motion of two links with derivatives up to `order`.
 
     Raises InvalidInput where the motion was not solved to that order, or where no driver moves at some pose.
     """
@@ -171,7 +173,7 @@ def relative(motion: Motion, link: str, on: str, order: int, what: str) -> Relat
 
 
 def moving(motion: Motion, what: str) -> None:
-    """Raise InvalidInput if no driver moves at some pose: what is read off velocities is then not there."""
+    """Raise InvalidInput if no driver moves at some pose. What is read off velocities is then not there."""
     speeds = [np.broadcast_to(np.abs(drive.rate), motion.shape) for drive in motion.drives.values()]
     still = np.asarray(motion.assembled & (np.max([*speeds, np.zeros(motion.shape)], axis=0) == 0))
     if still.any():

@@ -36,7 +36,9 @@ WRITTEN: dict[str, type[Any]] = {kind.kind: kind for kind in (ConstantSpeed, Con
 
 
 def constant_speed(speed: Any, start: Any = 0.0) -> ConstantSpeed:
-    """The law of a constant speed (rad/s or length/s), from `start` at time 0.
+    """Return the law of a constant speed (rad/s or length/s).
+
+    From `start` at time 0.
 
     >>> constant_speed(2.0).speed
     2.0
@@ -45,7 +47,7 @@ def constant_speed(speed: Any, start: Any = 0.0) -> ConstantSpeed:
 
 
 def constant_acceleration(acceleration: Any, speed: Any = 0.0, start: Any = 0.0) -> ConstantAcceleration:
-    """The law of a constant acceleration, from `start` at `speed` at time 0.
+    """Return the law of a constant acceleration, from `start` at `speed` at time 0.
 
     >>> constant_acceleration(2.0).coordinate(3.0, order=0).c
     (9.0,)
@@ -54,7 +56,7 @@ def constant_acceleration(acceleration: Any, speed: Any = 0.0, start: Any = 0.0)
 
 
 def time_table(times: Any, values: Any, *, degree: int = 5, repeat: bool = False) -> TimeTable:
-    """The law of a table of values at times (seconds): a spline through them.
+    """Return the law of a table of values at times (seconds). A spline through them.
 
     >>> time_table([0, 1, 2], [0, 1, 4]).span
     (0.0, 2.0)
@@ -63,9 +65,9 @@ def time_table(times: Any, values: Any, *, degree: int = 5, repeat: bool = False
 
 
 def as_law(where: str, law: Any) -> Law | None:
-    """A law as it is, a Python function as a law; raises InvalidMechanism naming `where` for anything else.
+    """Return a law as it is, a Python function as a law. Raises InvalidMechanism naming `where` for anything else.
 
-    >>> as_law("drives.crank.law", np.sin).kind
+    >>> as_law("drives.crank.law", abs).kind
     'function'
     """
     if law is None or isinstance(law, Law):

@@ -1,4 +1,4 @@
-"""The standard cam laws, for a rise of 1 over a span of 1, and what pieces of them make.
+"""The standard cam laws over a span of 1, and what their pieces make.
 
 Every law is given by its acceleration, piece by piece: a polynomial and a sine. Integrated from rest and scaled to
 the rise, it is a polynomial and a sine again, so that one table of numbers holds any sequence of laws, and
@@ -26,7 +26,7 @@ JUMP = 1e-9
 
 @dataclass(frozen=True)
 class AccelerationPiece:
-    """A part of a law: its span, the acceleration ``sum a[k] u**k + A sin(w u + phase)``, u from its start.
+    """A part of a law. Its span, the acceleration ``sum a[k] u**k + A sin(w u + phase)``, u from its start.
 
     `wave` is (A, w, phase); `leap` a velocity taken on at once at the start.
     """
@@ -63,14 +63,19 @@ LAWS: dict[str, tuple[AccelerationPiece, ...]] = {
 
 @dataclass(frozen=True)
 class PositionPiece:
-    """A position ``sum p[k] u**k + A sin(w u + phase)``, u counted from `start`; `wave` is (A, w, phase)."""
+    """A position as a polynomial and a wave.
+
+    ``sum p[k] u**k + A sin(w u + phase)``.
+
+    `wave` is (A, w, phase).
+    """
 
     start: float
     polynomial: tuple[float, ...]
     wave: tuple[float, float, float]
 
     def derivative(self, k: int, u: float) -> float:
-        """The k-th derivative at a distance from the start.
+        """Return the k-th derivative at a distance from the start.
 
         >>> PositionPiece(0.0, (1.0, 2.0, 3.0), (0.0, 1.0, 0.0)).derivative(1, 2.0)
         14.0
@@ -82,7 +87,7 @@ class PositionPiece:
         return smooth + amplitude * frequency**k * sin(frequency * u + phase + k * pi / 2)
 
     def scaled(self, start: float, over: float, place: float, rise: float) -> PositionPiece:
-        """The same for a span and rise that are not 1, from a place."""
+        """Return the piece for a span and rise that are not 1. From a place."""
         amplitude, frequency, phase = self.wave
         polynomial = [c * rise / over**k for k, c in enumerate(self.polynomial)]
         polynomial[0] += place
@@ -91,7 +96,7 @@ class PositionPiece:
 
 @cache
 def unit_pieces(law: str) -> tuple[PositionPiece, ...]:
-    """A law with a rise of 1 over a span of 1; raises KeyError for one that there is not.
+    """Return a law with a rise of 1 over a span of 1. Raises KeyError for one that there is not.
 
     >>> [piece.start for piece in unit_pieces("modified-sine")]
     [0.0, 0.125, 0.875]
@@ -106,7 +111,7 @@ def unit_pieces(law: str) -> tuple[PositionPiece, ...]:
 
 
 def _integrated(part: AccelerationPiece, start: float, place: float, speed: float) -> PositionPiece:
-    """The position of a part that begins at a place with a speed."""
+    """Return the position of a part that begins at a place with a speed."""
     amplitude, frequency, phase = part.wave
     wave = -amplitude / frequency**2
     fixed = (place - wave * sin(phase), speed - wave * frequency * cos(phase))
@@ -116,7 +121,7 @@ def _integrated(part: AccelerationPiece, start: float, place: float, speed: floa
 
 @dataclass(frozen=True)
 class Discontinuity:
-    """A place of a program where a derivative jumps: of order 1 the velocity, 2 the acceleration."""
+    """A place of a program where a derivative jumps. Of order 1 the velocity, 2 the acceleration."""
 
     place: float
     order: int
@@ -156,7 +161,7 @@ class PieceTable:
         self.waves = np.array([piece.wave for piece in pieces]).T.copy()
 
     def taylor(self, x: Number, order: int, stops: bool) -> list[Number]:
-        """The Taylor coefficients at places x; outside it stands still, if it `stops`."""
+        """Return the Taylor coefficients at places x; outside it stands still, if it `stops`."""
         place = np.clip(x, 0.0, self.end) if stops else x
         index = np.clip(np.searchsorted(self.starts, place, side="right") - 1, 0, len(self.starts) - 1)
         u = place - self.starts[index]
@@ -170,7 +175,7 @@ class PieceTable:
         return [out[0], *(np.where(np.abs(c) <= self._rounding(k)[index], 0.0, c) for k, c in enumerate(out[1:], 1))]
 
     def _rounding(self, k: int) -> Number:
-        """Below which the k-th coefficient of each piece is the rounding of terms that cancel, as where a rise ends."""
+        """Return the sizes below which coefficients are rounding of terms that cancel."""
         spans = np.diff([*self.starts, self.end])
         smooth = sum(comb(j, k) * np.abs(p) * spans ** (j - k) for j, p in enumerate(self.powers) if j >= k)
         return ROUNDING * (smooth + np.abs(self.waves[0]) * self.waves[1] ** k / factorial(k))

@@ -1,4 +1,4 @@
-"""Driving laws of constant speed and acceleration, and what all driving laws share: numbers, Taylor polynomials."""
+"""Driving laws of constant speed and acceleration, and what all driving laws share. Numbers, Taylor polynomials."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Compared:
 
 
 def taylor(values: tuple[Number, ...], t: Number, order: int) -> Series:
-    """A coordinate that has this value, speed, acceleration ... at time 0, at times t: with all its derivatives.
+    """Return a coordinate that has this value, speed, acceleration ... at time 0, at times t: with all its derivatives.
 
     >>> taylor((1.0, 2.0, 6.0), 2.0, order=2).c
     (17.0, 14.0, 3.0)
@@ -41,7 +41,7 @@ def taylor(values: tuple[Number, ...], t: Number, order: int) -> Series:
 
 
 def from_derivatives(derivatives: list[Number]) -> Series:
-    """The series of a value and its derivatives.
+    """Return the series of a value and its derivatives.
 
     >>> from_derivatives([1.0, 2.0, 3.0, 6.0]).c
     (1.0, 2.0, 1.5, 1.0)
@@ -54,12 +54,12 @@ def from_derivatives(derivatives: list[Number]) -> Series:
 
 
 def as_number(value: Number) -> Number:
-    """A number as Python's, an array as it is."""
+    """Return a number as Python's, an array as it is."""
     return float(value) if np.ndim(value) == 0 else value
 
 
 def hold_numbers(law: Any, *names: str) -> None:
-    """Make the numbers of a law floats or arrays that cannot be written to; raises InvalidMechanism."""
+    """Make the numbers of a law floats or arrays that cannot be written to. Raises InvalidMechanism."""
     for name in names or [f.name for f in fields(law)]:
         given = getattr(law, name)
         try:
@@ -79,8 +79,9 @@ def hold_numbers(law: Any, *names: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class ConstantSpeed(Compared):
-    """The coordinate grows at a constant speed (rad/s or length/s), from `start` at time 0.
+    """The coordinate grows at a constant speed (rad/s or length/s).
 
+    From `start` at time 0.
     Numbers, or arrays for designs.
 
     >>> ConstantSpeed(10.0, start=1.0).coordinate(0.5, order=2).c
@@ -107,7 +108,9 @@ class ConstantSpeed(Compared):
 
 @dataclass(frozen=True, eq=False)
 class ConstantAcceleration(Compared):
-    """The coordinate grows at a constant acceleration (rad/s^2 or length/s^2), from `start` at `speed` at time 0.
+    """The coordinate grows at a constant acceleration (rad/s^2 or length/s^2).
+
+    From `start` at `speed` at time 0.
 
     >>> ConstantAcceleration(4.0, speed=1.0).coordinate(0.5, order=2).c
     (1.0, 3.0, 2.0)

@@ -1,4 +1,4 @@
-"""The driving law by a Python function, with its derivatives: exact where it can be followed, or by differences."""
+"""The driving law by a Python function, with its derivatives. Exact where it can be followed, or by differences."""
 
 from __future__ import annotations
 
@@ -29,8 +29,9 @@ SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class FunctionLaw(Compared):
-    """A Python function of an array of times that returns the coordinate at each, or (value, speed, ...) as a tuple.
+    """A Python function of times that returns the coordinate, or (value, speed, ...).
 
+    The latter is a tuple.
     A tuple may go to the jerk. Derivatives that it does not return are exact where the function is written with
     NumPy's ordinary functions; otherwise they are differences (see `differentiated`). Raises InvalidInput where it
     fails, or returns something of another shape or not finite.
@@ -60,12 +61,12 @@ class FunctionLaw(Compared):
         return from_derivatives([as_number(values) for values in given])
 
     def _component(self, times: Any, k: int) -> Any:
-        """One of what the function returns, unchecked."""
+        """Return one of what the function returns, unchecked."""
         made = self.f(times)
         return made[k] if isinstance(made, tuple) else made
 
     def _called(self, times: Array) -> list[Array]:
-        """What the function returns, checked."""
+        """Return what the function returns, checked."""
         try:
             made = self.f(times.copy())
         except Exception as error:
@@ -95,7 +96,7 @@ def _checked(part: Any, times: Array) -> Array:
 
 
 def differentiated(f: Callable[[Any], Any], times: Array, order: int) -> list[Array]:
-    """A function and its derivatives up to `order` (3 at most) at times: arrays of the shape of `times`.
+    """Return a function and its derivatives up to `order` (3 at most) at times. Arrays of the shape of `times`.
 
     Exact where the function is written with NumPy functions that `Jet` knows. Otherwise central differences over
     nine points, with the step at each time at which a smaller one changes least; for a function whose own time scale
@@ -117,7 +118,7 @@ def differentiated(f: Callable[[Any], Any], times: Array, order: int) -> list[Ar
 
 
 def _followed(f: Callable[[Any], Any], times: Array, order: int) -> list[Array] | None:
-    """By series arithmetic; None where the function does something that it does not know."""
+    """Differentiate by series arithmetic. None where the function does something that it does not know."""
     plain = np.asarray(f(times.copy()), dtype=float)
     try:
         with np.errstate(all="ignore"):
@@ -141,7 +142,7 @@ def _differences(f: Callable[[Any], Any], times: Array, order: int) -> list[Arra
 
 
 def _sampled(f: Callable[[Any], Any], places: Array) -> Array:
-    """The function at places, not a number where it has no value."""
+    """Return the function at places, not a number where it has no value."""
     try:
         with np.errstate(all="ignore"):
             found = np.asarray(f(places.reshape(-1)), dtype=float)
@@ -151,7 +152,7 @@ def _sampled(f: Callable[[Any], Any], places: Array) -> Array:
 
 
 def _weights(order: int) -> list[Array]:
-    """The weights of the nodes for derivatives 1 to `order`, for a step of 1."""
+    """Return the weights of the nodes for derivatives 1 to `order` at step 1."""
     powers = NODES[None, :] ** np.arange(len(NODES))[:, None]
     wanted = np.zeros((len(NODES), order))
     factor = 1.0
@@ -162,7 +163,7 @@ def _weights(order: int) -> list[Array]:
 
 
 def _best(found: Array, tried: list[Array], steps: Array, times: Array, k: int) -> Array:
-    """The difference that the next two smaller steps change least."""
+    """Return the difference that the next two smaller steps change least."""
     change = np.abs(np.diff(found, axis=0))
     change = np.maximum(change[:-1], change[1:])
     index = np.argmin(np.where(np.isnan(change), np.inf, change), axis=0)[None]

@@ -14,7 +14,7 @@ from compoundkin.base.series import Number, Series, constant
 
 
 class Jet(NDArrayOperatorsMixin):
-    """A Taylor series (to order 3) in the guise of an array: what NumPy does to it, it does to all derivatives.
+    """A Taylor series (to order 3) in the guise of an array. What NumPy does to it, it does to all derivatives.
 
     A function it does not know raises TypeError. At jumps and kinks the derivatives are those of one side.
 
@@ -53,7 +53,7 @@ def _leading(operand: Any) -> Any:
 
 
 def _function(*derivatives: Callable[[Any], Any]) -> Callable[[Any], Series]:
-    """The rule of a function, from itself and its derivatives."""
+    """Return the rule of a function, from itself and its derivatives."""
 
     def rule(operand: Any) -> Series:
         x = _series(operand)
@@ -83,7 +83,7 @@ def _where(condition: Any, yes: Any, no: Any) -> Series:
 
 
 def _constant(function: Any) -> Callable[..., Any]:
-    """The rule of a function that only looks at values."""
+    """Return the rule of a function that only looks at values."""
     return lambda *operands: function(*map(_leading, operands))
 
 

@@ -23,7 +23,7 @@ _WORDS = "write rise(...), fall(...), dwell(...)"
 
 @dataclass(frozen=True)
 class ProgramSegment:
-    """A part of a program: a law, the span it takes, and how far it rises (negative: falls; a dwell 0).
+    """A part of a program. A law, the span it takes, and how far it rises (negative: falls; a dwell 0).
 
     Raises InvalidMechanism for a law that there is not, a span that is not positive, a dwell that rises.
 
@@ -59,7 +59,7 @@ class ProgramSegment:
 
 @dataclass(frozen=True)
 class Program:
-    """Segments one after another, from place 0 and value `start`; `repeat`: begun anew after each period.
+    """Segments one after another, from place 0 and value `start`. `repeat`: begun anew after each period.
 
     It maps a coordinate (the rotation of a cam, or time in seconds) to another one, both in the user's units.
     Raises InvalidMechanism for what is not a segment.
@@ -107,8 +107,7 @@ class Program:
     @cached_property
     def values(self) -> Array:
         """Its values at the breaks."""
-        found: Array = self.start + np.cumsum([0.0, *(segment.rise for segment in self.segments)])
-        return found
+        return np.asarray(self.start + np.cumsum([0.0, *(segment.rise for segment in self.segments)]))
 
     @property
     def period(self) -> float:
@@ -122,12 +121,12 @@ class Program:
 
     @property
     def lift(self) -> float:
-        """The distance between its greatest and its least value; every law rises or falls all the way."""
+        """The distance between its greatest and its least value. Every law rises or falls all the way."""
         return float(np.ptp(self.values))
 
     @cached_property
     def repeats(self) -> bool:
-        """Whether it ends where it began, so that a cam may carry it round; or begins anew because it is told to."""
+        """Whether it ends where it began, so that a cam may carry it round. Or begins anew because it is told to."""
         return self.repeat or abs(self._advance) <= JUMP * self.lift
 
     @property
@@ -136,7 +135,7 @@ class Program:
         return float(self.values[-1] - self.values[0])
 
     def at(self, x: Series, repeat: bool | None = None) -> Series:
-        """Its value and all derivatives along a coordinate: a real series of any shape.
+        """Return its value and all derivatives along a coordinate. A real series of any shape.
 
         Before its beginning and after its end it stands still, or goes on periodically if `repeat`
         (None: if it `repeats`); a period that does not end where it began goes on from there. At a jump
@@ -154,7 +153,7 @@ class Program:
         return composed(outer if isinstance(value, np.ndarray) else [float(c) for c in outer], x)
 
     def coordinate(self, t: Number, order: int) -> Series:
-        """As a law in time: value and derivatives at times t (seconds); it goes on after its end if `repeat`."""
+        """Evaluate it as a law at times t (seconds). It goes on after its end if `repeat`."""
         return self.at(Series((t, 1.0, *[0.0] * (order - 1))[: order + 1]), self.repeat)
 
     @cached_property
@@ -168,7 +167,7 @@ class Program:
         return PieceTable(self.pieces, self.period)
 
     def discontinuities(self, repeat: bool | None = None) -> tuple[Discontinuity, ...]:
-        """The places where velocity or acceleration jump, its beginning and end included, in order.
+        """Return the places where velocity or acceleration jump, both ends included.
 
         >>> [(d.place, d.order) for d in program(rise(1.0, over=2.0, law="parabolic")).discontinuities()]
         [(0.0, 2), (1.0, 2), (2.0, 2)]
@@ -179,7 +178,7 @@ class Program:
 
 
 def program(*segments: ProgramSegment, start: float = 0.0, repeat: bool = False) -> Program:
-    """A program of dwells, rises and falls.
+    """Return a program of dwells, rises and falls.
 
     >>> program(dwell(1.0), rise(2.0, over=1.0), start=3.0).values.tolist()
     [3.0, 3.0, 5.0]
@@ -188,7 +187,7 @@ def program(*segments: ProgramSegment, start: float = 0.0, repeat: bool = False)
 
 
 def rise(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
-    """A rise by an amount over a span.
+    """Return a rise by an amount over a span.
 
     >>> rise(10.0, over=2.0, law="3-4-5").law
     '3-4-5'
@@ -197,7 +196,7 @@ def rise(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
 
 
 def fall(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
-    """A fall by an amount over a span: a rise by its opposite.
+    """Return a fall by an amount over a span: a rise by its opposite.
 
     >>> fall(10.0, over=2.0).rise
     -10.0
@@ -208,7 +207,7 @@ def fall(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
 
 
 def dwell(over: float) -> ProgramSegment:
-    """A dwell over a span.
+    """Return a dwell over a span.
 
     >>> dwell(2.0).law
     'dwell'
@@ -217,5 +216,5 @@ def dwell(over: float) -> ProgramSegment:
 
 
 def _is_real(value: Any) -> bool:
-    """Whether it is one finite number."""
+    """Return whether it is one finite number."""
     return isinstance(value, int | float | np.number) and not isinstance(value, bool) and isfinite(value)

@@ -20,7 +20,7 @@ DEGREES = (3, 5)
 
 @dataclass(frozen=True, eq=False)
 class TimeTable(Compared):
-    """A spline through values at times: quintic, with continuous jerk, or cubic (`degree` 3); ends not-a-knot.
+    """A spline through values at times: quintic, with continuous jerk, or cubic (`degree` 3). Ends not-a-knot.
 
     With `repeat` it is periodic and goes on after the table's end from the value reached. A table too short for
     its degree is the one polynomial through it. Outside the table it raises InvalidInput.
@@ -72,7 +72,7 @@ class TimeTable(Compared):
 
     @property
     def _ramp(self) -> float:
-        """The mean speed of a periodic table: what is left without it ends where it begins."""
+        """The mean speed of a periodic table. What is left without it ends where it begins."""
         first, last = self.span
         return float(self.values[-1] - self.values[0]) / (last - first) if self.repeat else 0.0
 

@@ -17,7 +17,7 @@ NO_AREA = 1e-9
 
 
 class Profile(ABC):
-    """A profile; kinds are frozen dataclasses with the keys that a file holds for them."""
+    """A profile. Kinds are frozen dataclasses with the keys that a file holds for them."""
 
     kind: ClassVar[str]  # what it is called in a file
     keys: ClassVar[tuple[Key, ...]]  # none: it cannot be written to a file
@@ -37,11 +37,11 @@ class Profile(ABC):
 
     @property
     def circle(self) -> tuple[complex, float] | None:
-        """Middle and radius where the profile is a circle all round, for which there are exact formulas."""
+        """Middle and radius of a profile that is a circle all round."""
         return None
 
     def problems(self, where: str) -> Iterator[Problem]:
-        """What makes it no profile: points too few, a curve that crosses itself."""
+        """Find what makes it no profile: points too few, a curve that crosses itself."""
         try:
             found = self.curve.crosses_itself()
         except InvalidMechanism as error:
@@ -55,10 +55,10 @@ class Profile(ABC):
             yield Problem(where, "the profile encloses no area: it runs back over itself", "say it is open")
 
     def _without_loop(self) -> str:
-        """How to get rid of a loop."""
+        """Return how to get rid of a loop."""
         return "change the points that make the loop"
 
 
 def side_of(curve: Curve) -> float:
-    """+1 where the normal of a closed curve points outward, -1 where inward; of an open one +1."""
+    """Return +1 where the normal of a closed curve points outward, -1 where inward. Of an open one +1."""
     return 1.0 if not curve.closed or curve.is_counterclockwise else -1.0

@@ -27,20 +27,20 @@ FULL_TURN = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class Lift:
-    """How far the follower has risen from the base circle, by the cam's angle: a motion program laid round the cam."""
+    """How far the follower has risen from the base circle, by the cam's angle. A motion program laid round the cam."""
 
     program: Program
     start: float
     clockwise: bool
 
     def at(self, s: Series) -> Series:
-        """The lift and its derivatives."""
+        """Return the lift and its derivatives."""
         turned = self.start - s if self.clockwise else s - self.start
         return self.program.at(turned, repeat=True)
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """The cam's angles at which a law or a part of it begins, so that derivatives may jump."""
+        """The cam's angles at which a law begins and derivatives may jump."""
         sense = -1.0 if self.clockwise else 1.0
         return tuple((self.start + sense * piece.start) % FULL_TURN for piece in self.program.pieces)
 
@@ -60,16 +60,19 @@ class FollowerGuide(ABC):
 
     @abstractmethod
     def middle(self, coordinate: Series) -> Series:
-        """The knife edge or the middle of the roller, in the carrier's frame."""
+        """Return the knife edge or the middle of the roller, in the carrier's frame."""
 
     @abstractmethod
     def facing(self, coordinate: Series) -> tuple[Series, Series]:
-        """A flat face in the carrier's frame: its normal, away from the cam, and its distance from the cam's axis."""
+        """Return a flat face in the carrier's frame.
+
+        Its normal, away from the cam, and its distance from the cam's axis.
+        """
 
 
 @dataclass(frozen=True)
 class Translating(FollowerGuide):
-    """Along a guide in a direction, `offset` to its left; `prime` is the distance of the edge or face at home."""
+    """Along a guide in a direction, `offset` to its left. `prime` is the distance of the edge or face at home."""
 
     prime: float
     angle: float
@@ -82,11 +85,11 @@ class Translating(FollowerGuide):
         return self.prime if self.flat else sqrt(self.prime**2 - self.offset**2)
 
     def middle(self, coordinate: Series) -> Series:
-        """On the guide."""
+        """Return a place on the guide."""
         return (coordinate + 1j * self.offset) * self._along
 
     def facing(self, coordinate: Series) -> tuple[Series, Series]:
-        """Square to the guide."""
+        """Return a face square to the guide."""
         return constant(self._along), coordinate
 
     @property
@@ -110,7 +113,7 @@ class Oscillating(FollowerGuide):
 
     @property
     def opening(self) -> float:
-        """The angle at home between the arm and the line from the pivot to the cam's axis."""
+        """The angle at home between arm and line from pivot to cam's axis."""
         apart = abs(self.pivot)
         if self.flat:
             return asin((self.prime - self.face) / apart)
@@ -127,11 +130,11 @@ class Oscillating(FollowerGuide):
         return float(self.side)
 
     def middle(self, coordinate: Series) -> Series:
-        """At the end of the arm."""
+        """Return the end of the arm."""
         return coordinate.turn() * self.arm + self.pivot
 
     def facing(self, coordinate: Series) -> tuple[Series, Series]:
-        """Square to the arm."""
+        """Return a face square to the arm."""
         normal = coordinate.turn() * (1j * self.side)
         return normal, normal.dot(self.pivot) + self.face
 
@@ -145,30 +148,30 @@ class Envelope:
     roller: float
 
     def coordinate(self, s: Series) -> Series:
-        """The follower's coordinate by the cam's angle."""
+        """Return the follower's coordinate by the cam's angle."""
         return self.lift.at(s) * self.guide.sense + self.guide.home
 
     def pitch(self) -> Analytic:
-        """The way of the knife edge or of the roller's middle, in the cam's frame."""
+        """Return the path of the knife edge or the roller's middle on the cam. In the cam's frame."""
         return self._curve(lambda s: self.guide.middle(self.coordinate(s)) * (-s).turn())
 
     def rolled(self) -> Analytic:
-        """What the roller leaves: the parallel curve on the cam's side."""
+        """Return what the roller leaves: the parallel curve on the cam's side."""
         return self.pitch().offset(self.roller) if self.roller else self.pitch()
 
     def faced(self) -> Analytic:
-        """What the face leaves.
+        """Return what the face leaves.
 
         With the face at n . C = h, the envelope has n' . C = h' too: C = n (h + i h' / w), w the rate at which n turns.
         """
         return self._curve(self._touched)
 
     def turning(self, s: Number) -> Number:
-        """By how much the face turns in the cam's frame as the cam turns, a rate; it must be negative throughout."""
+        """Return the rate at which the face turns in the cam's frame. It must be negative throughout."""
         return self._facing(_along(s, 1))[0].turning().c[0]
 
     def radius(self, s: Number) -> Number:
-        """The radius of curvature that a flat face leaves; where it is negative the envelope turns back."""
+        """Return the radius of curvature that a flat face leaves. Where it is negative the envelope turns back."""
         normal = self._facing(_along(s, 1))[0]
         along = self.faced().derivatives(s, 1)[1]
         return dot(along, -1j * normal.c[0]) / np.abs(normal.turning().c[0])
@@ -188,12 +191,12 @@ class Envelope:
 
 
 def _along(s: Number, order: int) -> Series:
-    """The parameter itself as a series."""
+    """Return the parameter itself as a series."""
     return Series((s, 1.0, *[0.0] * (order - 1)))
 
 
 def reach(pivot: complex, arm: float) -> tuple[float, float]:
-    """The least and the greatest distance from the cam's axis that the end of an arm can have.
+    """Return the least and greatest distance of an arm's end from the cam's axis.
 
     >>> reach(4j, 3.0)
     (1.0, 7.0)

@@ -32,7 +32,7 @@ Span = tuple[float, float]
 
 
 def faults(made: Synthesised) -> Iterator[Problem]:
-    """What is wrong with the words: each with its key."""
+    """Find what is wrong with the words: each with its key."""
     wrong = list(_numbers(made)) or list(_words(made))
     yield from wrong
     if not wrong:
@@ -108,7 +108,7 @@ def _program(made: Synthesised) -> Iterator[Problem]:
 
 
 def _dimensions(made: Synthesised) -> Iterator[Problem]:
-    """What cannot be assembled on the base circle, or at the greatest lift."""
+    """Find what cannot be assembled on the base circle, or at the greatest lift."""
     if made.pivot is None:
         if made.follower != "flat" and abs(made.offset) >= made.prime:
             what = f"an offset of {made.offset:g} does not meet the prime circle of radius {made.prime:g}"
@@ -145,7 +145,7 @@ def _face(made: Synthesised, apart: float) -> Iterator[Problem]:
 
 
 def _highest(made: Synthesised) -> float:
-    """The greatest angle between the arm or face and the line from the pivot to the cam's axis."""
+    """Return the greatest angle of the arm or face from the cam's axis."""
     guide = made.guide
     assert isinstance(guide, Oscillating)
     return guide.opening + float(np.max(made.program.values))
@@ -155,7 +155,7 @@ def _highest(made: Synthesised) -> float:
 
 
 def undercuts(made: Synthesised) -> Iterator[Problem]:
-    """A profile that would turn back on itself: between which angles of the cam, and which base circle will do."""
+    """Find a profile that would turn back on itself. Between which angles of the cam, and which base circle will do."""
     found = undercut_spans(made)
     if not found:
         return
@@ -171,7 +171,7 @@ def undercuts(made: Synthesised) -> Iterator[Problem]:
 
 
 def undercut_spans(made: Synthesised) -> tuple[Span, ...]:
-    """The angles of the cam between which its profile would turn back."""
+    """Return the angles of the cam between which its profile would turn back."""
     envelope = made.envelope
     if made.follower != "flat":
         return envelope.pitch().undercut(made.roller) if made.roller else ()
@@ -181,7 +181,7 @@ def undercut_spans(made: Synthesised) -> tuple[Span, ...]:
 
 
 def least_base(made: Synthesised) -> float | None:
-    """The least radius of the base circle without undercut, to six digits; None if none is found."""
+    """Return the least radius of the base circle without undercut, to six digits. None if none is found."""
     size = max(made.prime, abs(made.pivot or 0.0), abs(made.offset), made.program.lift)
     low, high = made.base, made.base
     while not _will_do(replace(made, base=high)):
@@ -196,7 +196,7 @@ def _will_do(made: Synthesised) -> bool:
 
 
 def _upwards(value: float) -> str:
-    """A number rounded up, to six digits."""
+    """Return a number rounded up, to six digits."""
     step = 10.0 ** (np.floor(np.log10(value)) - 5)
     return f"{np.ceil(value / step) * step:.6g}"
 

@@ -1,4 +1,4 @@
-"""Profiles of a given shape: a round disc, a smooth curve through points, the curve of a Python function."""
+"""Profiles of a given shape. A round disc, a smooth curve through points, the curve of a Python function."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from compoundkin.model.profiles.contract import Profile
 
 @dataclass(frozen=True)
 class DiscProfile(Profile):
-    """A round disc, an eccentric if its `middle` is not the axis of its link."""
+    """A round disc, an eccentric if its `middle` is not its link's axis."""
 
     radius: float
     middle: complex = 0j
@@ -37,7 +37,7 @@ class DiscProfile(Profile):
         return Analytic(lambda s: s.turn() * self.radius + self.middle, 0.0, 2.0 * np.pi, closed=True)
 
     def problems(self, where: str) -> Iterator[Problem]:
-        """A radius that is none, a middle that is nowhere."""
+        """Find a radius that is none, a middle that is nowhere."""
         if not (np.isfinite(self.radius) and self.radius > 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a positive length")
         if not np.isfinite(self.middle):
@@ -45,7 +45,7 @@ class DiscProfile(Profile):
 
 
 def disc(radius: float, middle: Any = 0j) -> DiscProfile:
-    """The profile of a round disc of a radius about a point of its link, (x, y) or complex.
+    """Return the profile of a round disc about a point of its link.
 
     Raises InvalidMechanism for what is no number or no point.
 
@@ -73,7 +73,7 @@ class PointsProfile(Profile):
 
 
 def profile(points: Any, *, closed: bool = True) -> PointsProfile:
-    """The profile through points, complex or (x, y): closed as of a cam, or open as of a slot.
+    """Return the profile through points, complex or (x, y). Closed as of a cam, or open as of a slot.
 
     Raises InvalidMechanism for what are not points; fewer than four are told when the mechanism is built.
 
@@ -87,7 +87,7 @@ def profile(points: Any, *, closed: bool = True) -> PointsProfile:
 
 @dataclass(frozen=True)
 class FormulaProfile(Profile):
-    """A curve by a Python function of a parameter from `low` to `high`: complex points for an array of parameters."""
+    """A curve by a Python function of a parameter from `low` to `high`. Complex points for an array of parameters."""
 
     function: Callable[[Any], Any]
     low: float
@@ -102,7 +102,7 @@ class FormulaProfile(Profile):
 
 
 def formula(function: Callable[[Any], Any], low: float, high: float, *, closed: bool = True) -> FormulaProfile:
-    """The profile that a Python function traces: complex points for an array of parameters.
+    """Return the profile that a Python function traces. Complex points for an array of parameters.
 
     >>> import numpy as np
     >>> formula(lambda s: 2 * np.cos(s) + 1j * np.sin(s), 0, 2 * np.pi).curve.closed

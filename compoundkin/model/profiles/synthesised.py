@@ -1,4 +1,4 @@
-"""The profile made for a motion program: the cam that gives its follower a wanted motion."""
+"""The profile made for a motion program. The cam that gives its follower a wanted motion."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Synthesised(Profile):
 
     @property
     def prime(self) -> float:
-        """The radius of the circle of the edge, the roller's middle or the face at home."""
+        """The radius of the edge, the roller's middle or the face at home."""
         return self.base + self.roller
 
     @property
@@ -90,12 +90,13 @@ class Synthesised(Profile):
 
     @cached_property
     def pitch_curve(self) -> Analytic | None:
-        """The way of the knife edge or of the roller's middle in the cam's frame; None for a flat face."""
+        """The path of the knife edge or roller's middle on the cam. In the cam's frame. None for a flat face."""
         return None if self.follower == "flat" else self.envelope.pitch()
 
     def coordinate(self, angle: Series | Any) -> Series:
-        """The follower's coordinate at an angle of the cam (radians, from its carrier), with all its derivatives.
+        """Return the follower's coordinate at a cam angle (radians), with all derivatives.
 
+        The angle is from the cam's carrier.
         A displacement along the guide from the foot of the cam's axis, or the angle of the arm or face.
         """
         return self.envelope.coordinate(as_series(angle))
@@ -107,7 +108,7 @@ class Synthesised(Profile):
         return self.envelope.faced() if self.follower == "flat" else self.envelope.rolled()
 
     def problems(self, where: str) -> Iterator[Problem]:
-        """What makes it no profile: a program that does not close, a base circle too small."""
+        """Find what makes it no profile. A program that does not close, a base circle too small."""
         yield from super().problems(where)
 
     def _without_loop(self) -> str:
@@ -129,7 +130,7 @@ def synthesise(
     clockwise: bool = False,
     start: float = 0.0,
 ) -> Synthesised:
-    """The profile of a cam that moves its follower by a motion program over one turn.
+    """Return the cam profile that moves a follower by a program over a turn.
 
     The cam's link is pinned to its carrier at its origin and turns with its angle s (radians), counterclockwise as the
     program goes on or `clockwise`; at s = `start` the program begins. The parameter of the curve is s: the follower

@@ -1,4 +1,4 @@
-"""The atlas of kinematic chains, and names by it: graphs of links and pairs, no coordinates."""
+"""The atlas of kinematic chains, and names by it. Graphs of links and pairs, no coordinates."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""One code for all drawings of a graph: equal exactly for isomorphic graphs; and the symmetries of a graph.
+"""One code for all drawings of a graph: equal exactly for isomorphic graphs. And the symmetries of a graph.
 
-Vertices are told apart by colours, then by how many neighbours of each kind they have (refinement). Where
+Vertices are distinguished by colours, then by how many neighbours of each kind they have (refinement). Where
 that leaves alike vertices in one cell, each of them is singled out in turn (individualisation), which makes
 a tree whose leaves are orderings of the vertices; the best leaf is the canonical one. Two leaves that read
 the same are a symmetry, and what symmetries show to be alike is tried once.
@@ -26,7 +26,7 @@ from compoundkin.synthesis.chains.coloured_graphs import (
 
 
 def canonical(graph: Coloured) -> Canonical:
-    """The canonical form of a graph.
+    """Return the canonical form of a graph.
 
     >>> path, same = [(0, 1), (1, 2), (2, 3)], [(2, 0), (0, 3), (3, 1)]
     >>> canonical(Coloured.of("aaaa", path)).code == canonical(Coloured.of("aaaa", same)).code
@@ -47,7 +47,7 @@ def canonical(graph: Coloured) -> Canonical:
 
 @dataclass(frozen=True)
 class _Leaf:
-    """An ordering of the vertices and the adjacency matrix it gives, after the cell sizes on the way there."""
+    """An ordering of the vertices, the adjacency matrix it gives, and its trace."""
 
     trace: tuple[tuple[int, ...], ...]
     adjacency: int
@@ -60,7 +60,7 @@ class _Leaf:
 
 @dataclass
 class _Search:
-    """The tree of orderings: the first leaf, the best one so far, and the symmetries found between leaves."""
+    """The tree of orderings. The first leaf, the best one so far, and the symmetries found between leaves."""
 
     masks: Sequence[int]
     leaves: list[_Leaf] = field(default_factory=list)
@@ -72,7 +72,7 @@ class _Search:
         return self.leaves[-1]
 
     def visit(self, cells: Cells, prefix: tuple[int, ...], trace: tuple[tuple[int, ...], ...]) -> bool:
-        """Go through a node where the vertices of `prefix` are singled out; whether the first leaf came up again.
+        """Go through a node where the vertices of `prefix` are singled out. Whether the first leaf came up again.
 
         It came up as the image of a symmetry that carries the whole way from the first path to here: nothing
         on that way can be new.
@@ -98,7 +98,7 @@ class _Search:
         return False
 
     def _hopeless(self, trace: tuple[tuple[int, ...], ...]) -> bool:
-        """Whether no leaf below can be better than the best, nor be like the first (a symmetry)."""
+        """Return whether no leaf below can be best, nor like the first."""
         depth = len(trace)
         return bool(self.leaves) and trace > self.best.trace[:depth] and trace != self.leaves[0].trace[:depth]
 
@@ -119,7 +119,7 @@ class _Search:
         return False
 
     def symmetries(self) -> int:
-        """The order of the group: the product of orbits, each under the symmetries that fix those before."""
+        """Return the order of the group. The product of orbits, each under the symmetries that fix those before."""
         total, fixing = 1, self.generators
         for vertex in self.singled:
             total *= next(len(members) for members in orbits(len(self.masks), fixing) if vertex in members)
@@ -128,13 +128,16 @@ class _Search:
 
 
 def _profile(masks: Sequence[int], cells: Cells) -> tuple[int, ...]:
-    """What two nodes of the tree must share for a symmetry between them: sizes of cells, and how they are joined."""
+    """Return what two nodes of the tree must share for a symmetry between them.
+
+    Sizes of cells, and how they are joined.
+    """
     firsts = [masks[cell.bit_length() - 1] for cell in cells]
     return (*(cell.bit_count() for cell in cells), *((mask & cell).bit_count() for mask in firsts for cell in cells))
 
 
 def _adjacency(masks: Sequence[int], cells: Cells) -> int:
-    """The adjacency matrix above its diagonal, column by column, as one number."""
+    """Return the adjacency matrix above its diagonal, column by column, as one number."""
     number = 0
     for column, cell in enumerate(cells):
         mask = masks[cell.bit_length() - 1]

@@ -1,4 +1,4 @@
-"""A kinematic chain of links and revolute pairs, each pair between two links: its count, its symmetry, its parts.
+"""A kinematic chain of links and revolute pairs, each pair between two links. Its count, its symmetry, its parts.
 
 Links are numbered from 0; no link is the frame before one is chosen (an inversion of the chain).
 """
@@ -41,12 +41,12 @@ class Chain:
 
     @classmethod
     def of(cls, links: int, pairs: Iterable[tuple[int, int]]) -> Chain:
-        """The chain with these pairs, whichever link of a pair and whichever pair is named first."""
+        """Return the chain of these pairs, named in any order."""
         return cls(links, tuple(sorted((min(pair), max(pair)) for pair in pairs)))
 
     @classmethod
     def from_code(cls, code: str) -> Chain:
-        """The chain that a graph6 text stands for, at most 62 links.
+        """Return the chain that a graph6 text stands for, at most 62 links.
 
         >>> Chain.from_code("Bw").pairs
         ((0, 1), (0, 2), (1, 2))
@@ -60,7 +60,7 @@ class Chain:
 
     @property
     def loops(self) -> int:
-        """The number of independent loops L = p - n + 1 of a connected chain."""
+        """The number of independent loops, L = p - n + 1 if connected."""
         return len(self.pairs) - self.links + 1
 
     @property
@@ -112,7 +112,7 @@ class Chain:
 
     @cached_property
     def code(self) -> str:
-        """The graph6 text of the canonical form: equal exactly for chains that are the same but for their numbering.
+        """The graph6 text of the canonical form. Equal exactly for chains that are the same but for their numbering.
 
         >>> Chain.of(3, [(0, 1), (1, 2)]).code == Chain.of(3, [(1, 0), (0, 2)]).code
         True
@@ -131,12 +131,12 @@ class Chain:
 
     @property
     def symmetries(self) -> int:
-        """The order of the automorphism group: in how many ways the chain can be laid upon itself."""
+        """The order of the automorphism group. In how many ways the chain can be laid upon itself."""
         return self.canonical.symmetries
 
     @property
     def inversions(self) -> tuple[tuple[int, ...], ...]:
-        """Classes of equivalent links: fixing either of two links of one class gives the same mechanism.
+        """Classes of equivalent links. Fixing either of two links of one class gives the same mechanism.
 
         >>> len(Chain.from_code("DFw").inversions)
         2
@@ -144,7 +144,7 @@ class Chain:
         return self.canonical.orbits
 
     def equivalent_pairs(self, frame: int | None = None) -> tuple[tuple[tuple[int, int], ...], ...]:
-        """Classes of pairs that symmetries carry into each other; with a frame, those that leave it where it is.
+        """Classes of pairs that symmetries carry into each other. With a frame, those that leave it where it is.
 
         With a frame the classes are the essentially different places for a driver.
 
@@ -164,7 +164,7 @@ class Chain:
 
     @cached_property
     def joints_of_parts(self) -> tuple[int, ...]:
-        """The links at which a fractionated chain falls apart into chains that move on their own.
+        """The links at which a fractionated chain falls apart into movable chains.
 
         >>> Chain.of(7, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (4, 5), (5, 6), (6, 0)]).joints_of_parts
         (0,)
@@ -180,7 +180,7 @@ class Chain:
 
     @cached_property
     def variety(self) -> int:
-        """The degree of variety: by how much the least mobility of a part with a loop is below the chain's.
+        """The degree of variety. By how much the least mobility of a part with a loop is below the chain's.
 
         In a chain of variety 0 no driver can be without effect on any loop.
         Source: C. R. Tischler, A. E. Samuel and K. H. Hunt, Kinematic chains for robot hands I, Mechanism and
@@ -193,11 +193,11 @@ class Chain:
 
     @property
     def has_rigid_part(self) -> bool:
-        """Whether some of its links hold each other so that they cannot move among themselves."""
+        """Whether some of its links cannot move among themselves."""
         return any(mobility < 1 for mobility, _ in self._parts_with_loops())
 
     def _parts_with_loops(self) -> Iterable[tuple[int, tuple[int, ...]]]:
-        """The mobility of every set of links with at least as many pairs as links, and the set."""
+        """Yield the mobility of every set of links that has a loop."""
         for size in range(2, self.links + 1):
             for chosen in combinations(range(self.links), size):
                 members = frozenset(chosen)
@@ -206,7 +206,7 @@ class Chain:
                     yield 3 * (size - 1) - 2 * inside, chosen
 
     def graph(self) -> nx.Graph:
-        """The chain as NetworkX has it: links are nodes, pairs are edges with the attribute `code`."""
+        """Return the chain as NetworkX has it. Links are nodes, pairs are edges with the attribute `code`."""
         import networkx
 
         graph = networkx.MultiGraph()

@@ -34,7 +34,7 @@ _OWN_GROUPS = {"dyad": "2-link group 1", "triad": "4-link group 2", "class iii t
 
 @dataclass(frozen=True)
 class AssurGroup:
-    """A Baranov truss without one of its links: what was joined to it are the outer pairs.
+    """A Baranov truss without one of its links. What was joined to it are the outer pairs.
 
     >>> triad = assur_groups(4)[1]
     >>> triad.links, triad.outer, triad.inner
@@ -61,20 +61,20 @@ class AssurGroup:
 
     @property
     def code(self) -> str:
-        """A code equal exactly for groups that are the same but for the numbering of their links."""
+        """A code equal exactly for groups that differ in numbering only."""
         colours = ["outside" if link == self.removed else "link" for link in range(self.truss.links)]
         return canonical(Coloured.of(colours, self.truss.pairs)).code
 
     @property
     def joined(self) -> list[tuple[int | None, int]]:
-        """Its pairs by the links they join, the outer ones first: None stands for what it is attached to."""
+        """Its pairs by the links they join, the outer ones first. None stands for what it is attached to."""
         left = [k for k in range(self.truss.links) if k != self.removed]
         outside = self.truss.neighbours[self.removed]
         inner = [(left.index(a), left.index(b)) for a, b in self.truss.pairs if self.removed not in (a, b)]
         return [*((None, left.index(k)) for k in left if k in outside), *inner]
 
     def graph(self) -> nx.MultiGraph:
-        """The group as NetworkX has it; the attribute `outer` of a link says how many outer pairs it has."""
+        """Return the group as NetworkX has it. The attribute `outer` of a link says how many outer pairs it has."""
         graph = self.truss.graph()
         outside = self.truss.neighbours[self.removed]
         graph.remove_node(self.removed)
@@ -85,14 +85,16 @@ class AssurGroup:
 
 @dataclass(frozen=True)
 class Inversion:
-    """A chain with one of its links as the frame: the first of those that are equivalent to it."""
+    """A chain with one of its links as the frame. The first of those that are equivalent to it."""
 
     chain: Chain
     frame: int
 
 
 def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
-    """All chains with so many links, in the order that numbers them; those of mobility 3 with a bridging pair too.
+    """Return all chains with so many links, in the order that numbers them.
+
+    Those of mobility 3 with a bridging pair too.
 
     >>> [len(chains(links)) for links in (4, 6, 8, 10)]
     [1, 2, 16, 230]
@@ -103,7 +105,7 @@ def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
 
 
 def trusses(links: int) -> tuple[Chain, ...]:
-    """All Baranov trusses with so many links: no mobility, but every part of them has.
+    """Return all Baranov trusses with so many links. No mobility, but every part of them has.
 
     >>> [len(trusses(links)) for links in (3, 5, 7, 9)]
     [1, 1, 3, 28]
@@ -112,7 +114,7 @@ def trusses(links: int) -> tuple[Chain, ...]:
 
 
 def inversions(links: int, mobility: int = 1) -> tuple[Inversion, ...]:
-    """All mechanisms that fixing one link of a chain gives, equivalent links once.
+    """Return all mechanisms that fixing one link of a chain gives, equivalent links once.
 
     >>> [len(inversions(links)) for links in (4, 6, 8, 10)]
     [1, 5, 71, 1834]
@@ -121,7 +123,7 @@ def inversions(links: int, mobility: int = 1) -> tuple[Inversion, ...]:
 
 
 def assur_groups(links: int) -> tuple[AssurGroup, ...]:
-    """All Assur groups of revolute pairs with so many links: every truss without one link, equivalent ones once.
+    """Return all Assur groups of revolute pairs with so many links. Every truss without one link, equivalent ones once.
 
     Source: E. E. Peisakh, Structural analysis of planar jointed mechanisms: current state and problems,
     J. Machinery Manufacture and Reliability 37 (2008) 207.
@@ -133,8 +135,9 @@ def assur_groups(links: int) -> tuple[AssurGroup, ...]:
 
 
 def assur_group(name: str, also: Iterable[str] = ()) -> AssurGroup:
-    """A group of revolute pairs by its name: "4-link group 2", or "triad" for that one, the class III group of order 3.
+    """Return a group of revolute pairs by its name.
 
+    "4-link group 2", or "triad" for that one, the class III group of order 3.
     The number is its place in `assur_groups`. Raises UnknownName; `also` are names that the caller knows.
 
     >>> assur_group("triad").outer, assur_group("4-link group 1").outer
@@ -155,7 +158,9 @@ def assur_group(name: str, also: Iterable[str] = ()) -> AssurGroup:
 
 
 def group_name(group: AssurGroup) -> str:
-    """The name of a group by its place in the list of those with as many links; "" where it is in none.
+    """Return the name of a group by its place in its list.
+
+    "" where it is in none.
 
     >>> group_name(assur_group("triad"))
     '4-link group 2'
@@ -170,7 +175,7 @@ def _group_codes(links: int) -> tuple[str, ...]:
 
 
 def number_of(chain: Chain) -> int | None:
-    """The place of a chain in its list, from 1; None if its list is not shipped or does not hold it.
+    """Return the place of a chain in its list, from 1. None if its list is not shipped or does not hold it.
 
     >>> number_of(Chain.of(4, [(0, 1), (1, 2), (2, 3), (3, 0)]))
     1
@@ -180,7 +185,7 @@ def number_of(chain: Chain) -> int | None:
 
 
 def read(lines: Iterable[str]) -> dict[tuple[int, int], tuple[Chain, ...]]:
-    """The chains of a list by links and mobility: a line "links mobility code" each, other lines are comments.
+    """Return the chains of a list by links and mobility. A line "links mobility code" each, other lines are comments.
 
     >>> [chain.links for chain in read(["# a comment", "3 0 Bw"])[3, 0]]
     [3]

@@ -1,4 +1,4 @@
-"""Names of chains of revolute pairs between two links, of their inversions, and of what derives from them.
+"""Names of chains of revolute pairs, of inversions, and of what derives from them.
 
 The six-bar chains are those of Watt (the ternary links are joined) and Stephenson (they are not); their
 inversions are counted as in K. H. Hunt, Kinematic Geometry of Mechanisms, 1978, and J. M. McCarthy,
@@ -23,7 +23,7 @@ MOST_CHAINS = 2000
 
 
 def chain_name(chain: Chain, frame: int | None = None) -> str:
-    """The name of a chain of revolute pairs between two links each, or of its inversion if a frame is given.
+    """Return the name of a chain, or of its inversion with a frame.
 
     "" for a chain that is in no list: too large, rigid in a part, open.
 
@@ -48,7 +48,7 @@ def chain_name(chain: Chain, frame: int | None = None) -> str:
 
 
 def inversion_number(chain: Chain, frame: int) -> int:
-    """The number of the inversion that a frame gives: the class of its link in the listed chain, from 1.
+    """Return the number of the inversion that a frame gives. The class of its link in the listed chain, from 1.
 
     >>> inversion_number(Chain.of(4, [(0, 1), (1, 2), (2, 3), (3, 0)]), 2)
     1
@@ -84,7 +84,7 @@ def number_of_derived_chains(joints: Joints) -> int:
 
 
 def derived_chains(joints: Joints) -> Iterator[Chain]:
-    """Yield the chains of revolute pairs it derives from; links keep their numbers, new ones come after them.
+    """Yield the chains of revolute pairs it derives from. Links keep their numbers, new ones come after them.
 
     Chains in which two links would be joined twice are left out.
 
@@ -108,7 +108,7 @@ def derived_chains(joints: Joints) -> Iterator[Chain]:
 
 
 def trees(links: Sequence[int]) -> Iterator[tuple[tuple[int, int], ...]]:
-    """All trees on some links, by their Pruefer sequences.
+    """Yield all trees on some links, by their Pruefer sequences.
 
     >>> len(list(trees(range(4))))
     16
@@ -130,7 +130,7 @@ def _tree(links: list[int], sequence: Sequence[int]) -> tuple[tuple[int, int], .
 
 
 def derived_names(joints: Joints, frame: int | None) -> tuple[str, ...]:
-    """The names of the chains it derives from, each once, in alphabetical order, numbers by their value."""
+    """Return the names of the chains it derives from, sorted."""
     if number_of_derived_chains(joints) > MOST_CHAINS or 1 in joints.degrees or joints.pieces > 1:
         return ()
     names = {chain_name(chain, frame): None for chain in derived_chains(joints) if chain.links}
@@ -138,7 +138,7 @@ def derived_names(joints: Joints, frame: int | None) -> tuple[str, ...]:
 
 
 def variety_of(joints: Joints) -> int | None:
-    """The degree of variety of the one chain that it is or derives from; None where there is none or several."""
+    """Return the degree of variety of the one chain it derives from. None where there is none or several."""
     if joints.mobility < 1 or number_of_derived_chains(joints) > 1 or joints.has_loop_of_slides:
         return None
     chains = [chain for chain in derived_chains(joints) if chain.links <= MOST_LINKS and chain.is_connected]
@@ -146,7 +146,7 @@ def variety_of(joints: Joints) -> int | None:
 
 
 def has_rigid_part(joints: Joints) -> bool:
-    """Whether a movable mechanism, small enough to look, is rigid in a part whatever chain its pins are taken for."""
+    """Return whether a small movable mechanism has a rigid part in any case."""
     if joints.mobility < 1 or len(joints.links) > MOST_LINKS or number_of_derived_chains(joints) > MOST_CHAINS:
         return False
     return all(chain.has_rigid_part for chain in derived_chains(joints))

@@ -1,4 +1,4 @@
-"""Graphs with coloured vertices: their canonical forms as data, the orbits of their symmetries, and refinement."""
+"""Graphs with coloured vertices. Their canonical forms as data, the orbits of their symmetries, and refinement."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _ORDINALS = ("", "singular", "binary", "ternary", "quaternary", "quinary", "sena
 
 @dataclass(frozen=True)
 class Coloured:
-    """A graph with coloured vertices 0, 1, ...: the colour of each, and its neighbours as the bits of an integer."""
+    """A graph with coloured vertices 0, 1, .... The colour of each, and its neighbours as the bits of an integer."""
 
     colours: tuple[str, ...]
     masks: tuple[int, ...]
 
     @classmethod
     def of(cls, colours: Iterable[str], edges: Iterable[tuple[int, int]]) -> Coloured:
-        """The graph with these colours and edges; no edge may be there twice.
+        """Return the graph with these colours and edges; no edge may be there twice.
 
         >>> Coloured.of("aab", [(0, 1), (1, 2)]).masks
         (2, 5, 2)
@@ -40,7 +40,7 @@ class Coloured:
 
 @dataclass(frozen=True)
 class Canonical:
-    """The canonical form of a graph: its code, the vertices in canonical order, and its symmetries.
+    """The canonical form of a graph. Its code, the vertices in canonical order, and its symmetries.
 
     `adjacency` is the adjacency matrix in canonical order above its diagonal, column by column, as one number;
     `code` puts the colours with their numbers of vertices before it. A generator g moves vertex v to g[v];
@@ -60,7 +60,7 @@ class Canonical:
 
 
 def orbits(size: int, generators: Sequence[Sequence[int]]) -> tuple[tuple[int, ...], ...]:
-    """The classes into which permutations of 0, 1, ... part their points, in the order of their least.
+    """Return the classes into which permutations of 0, 1, ... part their points, in the order of their least.
 
     >>> orbits(4, [(1, 0, 2, 3), (0, 1, 3, 2)])
     ((0, 1), (2, 3))
@@ -77,7 +77,7 @@ def orbits(size: int, generators: Sequence[Sequence[int]]) -> tuple[tuple[int, .
 
 
 def refined(masks: Sequence[int], cells: Cells, splitters: Sequence[int]) -> Cells:
-    """The coarsest splitting of cells in which all vertices of one have equally many neighbours in each other."""
+    """Return the coarsest splitting in which vertices of a cell have equal neighbours."""
     cells, waiting = list(cells), list(splitters)
     while waiting:
         splitter = waiting.pop(0)
@@ -92,7 +92,7 @@ def refined(masks: Sequence[int], cells: Cells, splitters: Sequence[int]) -> Cel
 
 
 def _parts(masks: Sequence[int], cell: int, splitter: int) -> list[int]:
-    """A cell's vertices by their number of neighbours among the splitter's, fewest first."""
+    """Return a cell's vertices by their number of neighbours among the splitter's, fewest first."""
     parts: dict[int, int] = {}
     for vertex in vertices_of(cell):
         count = (masks[vertex] & splitter).bit_count()
@@ -116,7 +116,7 @@ def bits_of(vertices: Iterable[int]) -> int:
 
 
 def graph6_text(links: int, adjacency: int) -> str:
-    """The text for a number whose bits are the adjacency matrix above its diagonal, column by column."""
+    """Return the graph6 text of an adjacency matrix given as a number."""
     places = links * (links - 1) // 2
     filled = places + -places % _SIX
     number = adjacency << (filled - places)
@@ -125,7 +125,7 @@ def graph6_text(links: int, adjacency: int) -> str:
 
 
 def read_graph6(code: str) -> tuple[int, list[tuple[int, int]]]:
-    """Return the number of vertices and the edges that a graph6 text stands for, at most 62 vertices.
+    """Return the vertices and edges of a graph6 text, at most 62 vertices.
 
     >>> read_graph6("Bw")
     (3, [(0, 1), (0, 2), (1, 2)])
@@ -137,7 +137,7 @@ def read_graph6(code: str) -> tuple[int, list[tuple[int, int]]]:
 
 
 def is_connected(size: int, edges: Sequence[tuple[int, int]]) -> bool:
-    """Whether edges join the vertices 0, 1, ... to one piece.
+    """Return whether edges join the vertices 0, 1, ... to one piece.
 
     >>> is_connected(3, [(0, 1)]), is_connected(3, [(0, 1), (2, 1)])
     (False, True)
@@ -151,7 +151,7 @@ def is_connected(size: int, edges: Sequence[tuple[int, int]]) -> bool:
 
 
 def ordinal(degree: int) -> str:
-    """What a link with so many pairs is called.
+    """Say what a link with so many pairs is called.
 
     >>> ordinal(3), ordinal(9)
     ('ternary', 'of 9 pairs')

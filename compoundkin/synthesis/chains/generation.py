@@ -1,4 +1,4 @@
-"""All kinematic chains, or all Baranov trusses, of a number of links: each once, none twice.
+"""All kinematic chains, or all Baranov trusses, of a number of links. Each once, none twice.
 
 The links with more than two pairs, joined by strings of binary links, are a small multigraph, the contracted
 chain. There is one way back: put a number of binary links on each of its edges. Two chains are the same
@@ -31,7 +31,7 @@ Integers = npt.NDArray[np.int64]
 
 
 def chains_of(links: int, mobility: int = 1, bridged: bool = False) -> tuple[Chain, ...]:
-    """All connected chains of a mobility in which no link has one pair only and no part is rigid.
+    """Return all connected chains of a mobility without loose links or rigid parts.
 
     For mobility 0 these are the Baranov trusses: rigid, but no part of them is. Fractionated chains, which
     there are from mobility 2 on, are among them; those with a pair that lies in no loop, which there are from
@@ -56,12 +56,12 @@ def chains_of(links: int, mobility: int = 1, bridged: bool = False) -> tuple[Cha
 
 
 def classical_order(chain: Chain) -> tuple[int, tuple[int, ...], str]:
-    """Chains with few binary links first, as atlases have them; then by their codes."""
+    """Return chains with few binary links first, as atlases have them. Then by their codes."""
     return chain.links, chain.assortment, chain.code
 
 
 def assortments(links: int, mobility: int = 1) -> tuple[tuple[int, ...], ...]:
-    """The numbers of pairs that the links with more than two can have: one tuple for each assortment.
+    """Return the numbers of pairs that the links with more than two can have. One tuple for each assortment.
 
     >>> assortments(8)
     ((3, 3, 3, 3), (3, 3, 4), (3, 5), (4, 4), (6,))
@@ -74,7 +74,7 @@ def assortments(links: int, mobility: int = 1) -> tuple[tuple[int, ...], ...]:
 
 @dataclass(frozen=True)
 class Contracted:
-    """A contracted chain: links with more than two pairs, and the strings between them; the same link twice is a loop.
+    """A contracted chain: links with more than two pairs, and the strings between them. The same link twice is a loop.
 
     >>> Contracted(2, ((0, 1), (0, 1), (0, 1))).canonical.symmetries
     12
@@ -85,13 +85,13 @@ class Contracted:
 
     @cached_property
     def canonical(self) -> Canonical:
-        """The canonical form with the strings as vertices of a second colour, the last ones."""
+        """The canonical form with the strings as vertices of a second colour."""
         colours = ["link"] * self.links + ["string"] * len(self.strings)
         ends = [(end, self.links + k) for k, string in enumerate(self.strings) for end in string]
         return canonical(Coloured.of(colours, ends))
 
     def string_permutations(self) -> Integers:
-        """All ways in which symmetries permute the strings, a row each."""
+        """Return all ways in which symmetries permute the strings, a row each."""
         generators = [tuple(v - self.links for v in g[self.links :]) for g in self.canonical.generators]
         return np.array(_closure(len(self.strings), generators))
 
@@ -101,7 +101,7 @@ class Contracted:
         return all(is_connected(self.links, self.strings[:k] + self.strings[k + 1 :]) for k in range(len(self.strings)))
 
     def expanded(self, numbers: Sequence[int]) -> Chain:
-        """The chain with these numbers of binary links on the strings."""
+        """Return the chain with these numbers of binary links on the strings."""
         pairs, free = [], self.links
         for (first, second), number in zip(self.strings, numbers, strict=True):
             string = [first, *range(free, free + number), second]
@@ -111,7 +111,7 @@ class Contracted:
 
 
 def contracted_chains(degrees: Sequence[int], looped: bool = True) -> tuple[Contracted, ...]:
-    """The contracted chains whose links have these numbers of pairs, with strings from a link to itself or without.
+    """Return the contracted chains whose links have these numbers of pairs.
 
     >>> len(contracted_chains((3, 3))), len(contracted_chains((3, 3), looped=False))
     (2, 1)
@@ -125,7 +125,7 @@ def contracted_chains(degrees: Sequence[int], looped: bool = True) -> tuple[Cont
 
 
 def _filled(contracted: Contracted, links: int, mobility: int) -> list[Chain]:
-    """The chains with so many links that contract to this one, each once."""
+    """Return the chains with so many links that contract to this one, each once."""
     ways = _ways(links - contracted.links, len(contracted.strings))
     ways = ways[_moves(contracted, ways, mobility)]
     if not len(ways):
@@ -135,7 +135,7 @@ def _filled(contracted: Contracted, links: int, mobility: int) -> list[Chain]:
 
 
 def _moves(contracted: Contracted, ways: Integers, mobility: int) -> npt.NDArray[np.bool_]:
-    """Whether every part has a mobility of one at least; the whole may have less, if that is asked for."""
+    """Return whether every part has a mobility of one at least. The whole may have less, if that is asked for."""
     strings = len(contracted.strings)
     parts = (np.arange(1, 2**strings)[:, None] >> np.arange(strings)) & 1
     touched = np.array([[link in string for string in contracted.strings] for link in range(contracted.links)])
@@ -148,7 +148,7 @@ def _moves(contracted: Contracted, ways: Integers, mobility: int) -> npt.NDArray
 
 
 def _is_least(ways: Integers, permutations: Integers) -> npt.NDArray[np.bool_]:
-    """Whether a way is, read as digits of a number, not more than any that symmetries make of it."""
+    """Return whether a way is the least of those that symmetries make."""
     base = int(ways.max(initial=0)) + 1
     digits = base ** np.arange(ways.shape[1])
     images = np.array([ways[:, permutation] @ digits for permutation in permutations])
@@ -157,7 +157,7 @@ def _is_least(ways: Integers, permutations: Integers) -> npt.NDArray[np.bool_]:
 
 
 def _ways(number: int, places: int) -> Integers:
-    """All ways of putting a number of binary links on so many strings, a row each."""
+    """Return all ways of putting binary links on strings, a row each."""
     chosen = np.array([*combinations(range(number + places - 1), places - 1)], dtype=np.int64)
     chosen = chosen.reshape(-1, places - 1)
     first, last = np.full((len(chosen), 1), -1), np.full((len(chosen), 1), number + places - 1)
@@ -165,7 +165,7 @@ def _ways(number: int, places: int) -> Integers:
 
 
 def _multigraphs(free: Sequence[int], untouched: Sequence[bool], looped: bool) -> Iterator[tuple[tuple[int, int], ...]]:
-    """All sets of strings that use up the free ends of the links, link by link; some come up in several numberings."""
+    """Yield the sets of strings that use up all free ends. Some come up in several numberings."""
     if not free:
         yield ()
         return
@@ -181,7 +181,10 @@ def _multigraphs(free: Sequence[int], untouched: Sequence[bool], looped: bool) -
 
 
 def _in_order(used: Sequence[int], free: Sequence[int], untouched: Sequence[bool]) -> bool:
-    """Whether of links that nothing tells apart yet the first ones are taken; the others would be repetitions."""
+    """Return whether the first ones of links not yet distinguished are taken.
+
+    The others would be repetitions.
+    """
     return all(
         used[k] >= used[k + 1]
         for k in range(len(used) - 1)
@@ -190,7 +193,7 @@ def _in_order(used: Sequence[int], free: Sequence[int], untouched: Sequence[bool
 
 
 def _partitions(number: int, least: int = 1) -> Iterator[tuple[int, ...]]:
-    """All ways of writing a number as a sum, terms not falling, those with many terms first."""
+    """Yield all ways of writing a number as a sum, long ones first."""
     if number == 0:
         yield ()
     for first in range(least, number + 1):

@@ -1,4 +1,4 @@
-"""A mechanism's graph as links and joints, which say from what chains of revolute pairs it derives.
+"""A mechanism's graph as links and joints.
 
 A slide counts as a revolute pair at infinity, a higher pair as a binary link between two revolute pairs, and
 a pin of k links as k - 1 pairs: one of the trees of pairs on its links, each of which is a chain of its own.
@@ -27,7 +27,7 @@ LOWER_HOLDS = 2
 
 @dataclass(frozen=True)
 class Joint:
-    """Where links are joined: their numbers, the letter of the pair, how much it holds.
+    """Where links are joined. Their numbers, the letter of the pair, how much it holds.
 
     `guide` is the link that carries the guide of a slide, if that is known; `kind` is what a pair is called
     that is neither revolute nor a slide.
@@ -59,7 +59,7 @@ class Joints:
 
     @property
     def mobility(self) -> int:
-        """The mobility F = 3 (n - 1) - the sum of what the pairs hold."""
+        """The mobility F by the count of Chebyshev and Gruebler."""
         return 3 * (len(self.links) - 1) - sum(joint.held * joint.pairs for joint in self.joints)
 
     @cached_property
@@ -77,13 +77,13 @@ class Joints:
         return tuple(joint for joint in self.joints if joint.pairs > 1)
 
     def canonical(self, marks: Mapping[int, str] | None = None) -> Canonical:
-        """The canonical form: links by their marks ("frame", ...), joints by their letters; links come first."""
+        """Return the canonical form: links by their marks ("frame", ...), joints by their letters. Links come first."""
         links = [(marks or {}).get(link, "link") for link in range(len(self.links))]
         ends = [(link, len(links) + k) for k, joint in enumerate(self.joints) for link in joint.links]
         return canonical(Coloured.of([*links, *(f"pair {joint.code}" for joint in self.joints)], ends))
 
     def merged(self, link: str, into: str) -> Joints:
-        """The same with one link taken for a part of another: what joins the two is gone.
+        """Return the same with one link taken for a part of another. What joins the two is gone.
 
         >>> Joints(("a", "b", "c"), (Joint((0, 1)), Joint((1, 2)))).merged("b", "a").joints[0].links
         (0, 1)
@@ -117,7 +117,7 @@ class Joints:
 
     @property
     def has_loop_of_slides(self) -> bool:
-        """Whether slides alone close a loop: no link of it turns, and it moves where the count says it does not.
+        """Whether slides alone close a loop. No link of it turns, and it moves where the count says it does not.
 
         >>> Joints(("a", "b", "c"), tuple(Joint(ends, "P") for ends in ((0, 1), (1, 2), (2, 0)))).has_loop_of_slides
         True
@@ -132,7 +132,7 @@ class Joints:
         return False
 
     def distances(self, start: int) -> list[int]:
-        """How many joints each link is away from one of them; links that cannot be reached are farthest.
+        """Return how many joints each link is away from one of them. Links that cannot be reached are farthest.
 
         >>> Joints(("a", "b", "c"), (Joint((0, 1)), Joint((1, 2)))).distances(0)
         [0, 1, 2]
@@ -149,7 +149,7 @@ class Joints:
         return found
 
     def part(self, links: Sequence[int]) -> Joints:
-        """Some of the links, with the joints that join two of them at least."""
+        """Return some of the links, with the joints between them."""
         number = {link: k for k, link in enumerate(links)}
         kept = []
         for joint in self.joints:
@@ -160,7 +160,7 @@ class Joints:
         return Joints(tuple(self.links[link] for link in links), tuple(kept))
 
     def names(self, numbers: Iterable[int]) -> tuple[str, ...]:
-        """The names of links by their numbers; joints are numbered after them, and named by the links they join.
+        """Return the names of links by their numbers. Joints are numbered after them, and named by the links they join.
 
         >>> Joints(("a", "b"), (Joint((0, 1)),)).names([1, 2])
         ('b', 'a-b')
@@ -169,7 +169,7 @@ class Joints:
         return tuple(named[k] for k in numbers)
 
     def blocks(self) -> tuple[tuple[int, ...], ...]:
-        """The links of each part that has a loop and hangs together by more than one link or joint with the rest."""
+        """Return the links of each part that has a loop of its own."""
         found = []
         for nodes in _blocks(len(self.links), self.joints):
             links = tuple(sorted(node for node in nodes if node < len(self.links)))

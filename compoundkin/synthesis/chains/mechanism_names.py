@@ -1,4 +1,4 @@
-"""What a mechanism is called by its structure: its chain, its inversion, what it derives from, its symmetries."""
+"""What a mechanism is called by its structure. Its chain, its inversion, what it derives from, its symmetries."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class ChainName:
 
 
 def named(joints: Joints, frame: str | None = None, driver: str | Iterable[str] | None = None) -> ChainName:
-    """The name of a mechanism given by its links and joints, as `name_of` reads them off a graph.
+    """Return the name of a mechanism given by its links and joints.
 
     >>> named(Joints(("frame", "crank", "rod"), (Joint((0, 1)), Joint((1, 2)), Joint((0, 2))))).title
     '3-link truss 1'
@@ -70,7 +70,7 @@ def named(joints: Joints, frame: str | None = None, driver: str | Iterable[str] 
 
 
 def _compared(name: ChainName, joints: Joints, frame: int | None, drivers: Sequence[int]) -> ChainName:
-    """The name with what follows from comparing links: parts, symmetries, code."""
+    """Return the name with what follows from comparing links: parts, symmetries, code."""
     marks = {**dict.fromkeys(drivers, "driver"), **({} if frame is None else {frame: "frame"})}
     form, links, blocks = joints.canonical(), len(joints.links), joints.blocks()
     parts = () if blocks == (tuple(range(links)),) else blocks
@@ -87,7 +87,7 @@ def _compared(name: ChainName, joints: Joints, frame: int | None, drivers: Seque
 
 
 def titled(joints: Joints, frame: int | None = None, driver: int | None = None) -> str:
-    """The name alone, of links by their numbers, without what takes comparing.
+    """Return the name alone, of links by their numbers, without what takes comparing.
 
     >>> titled(Joints(tuple("abcd"), tuple(Joint((k, (k + 1) % 4)) for k in range(4))), 0)
     'four-bar'
@@ -96,7 +96,7 @@ def titled(joints: Joints, frame: int | None = None, driver: int | None = None) 
 
 
 def _titled(joints: Joints, frame: int | None, driver: int | None) -> ChainName:
-    """The name with what counting and looking up give."""
+    """Return the name with what counting and looking up give."""
     if joints.has_loop_of_slides:
         return _with_loop_of_slides(joints)
     derived, chains, changed = derived_names(joints, frame), derived_names(joints, None), _changes(joints)
@@ -116,7 +116,10 @@ def _titled(joints: Joints, frame: int | None, driver: int | None) -> ChainName:
 
 
 def _with_loop_of_slides(joints: Joints) -> ChainName:
-    """A name that promises nothing: a slide in a loop of slides is no pin at infinity, and the count is too low."""
+    """Return a name that promises nothing.
+
+    A slide in a loop of slides is no pin at infinity, and the count is too low.
+    """
     if len(joints.links) == len(joints.joints) == _WEDGE and all(joint.code == SLIDE for joint in joints.joints):
         title = "wedge mechanism (3 slides)"
     else:
@@ -125,7 +128,7 @@ def _with_loop_of_slides(joints: Joints) -> ChainName:
 
 
 def _changes(joints: Joints) -> str:
-    """What a mechanism has that a chain of revolute pairs between two links has not, in words."""
+    """Say what a mechanism has that simple chains of revolute pairs lack."""
     texts = []
     for pairs in sorted({joint.pairs for joint in joints.multiple}):
         number = sum(joint.pairs == pairs for joint in joints.multiple)
@@ -142,7 +145,7 @@ def _kind(joint: Joint) -> str:
 
 
 def _described(joints: Joints) -> str:
-    """A name from the numbers alone, for what is in no list."""
+    """Return a name from the numbers alone, for what is in no list."""
     blocks, pieces = joints.blocks(), joints.pieces
     if pieces > 1:
         return f"{len(joints.links)} links in {pieces} separate pieces"
@@ -158,14 +161,14 @@ def _described(joints: Joints) -> str:
 
 
 def _part_name(joints: Joints, block: tuple[int, ...], frame: int | None) -> str:
-    """The name of a part; its frame is the frame, or the link that is nearest to it."""
+    """Return the name of a part. Its frame is the frame, or the link that is nearest to it."""
     part = joints.part(block)
     own = None if frame is None else block.index(min(block, key=lambda link: joints.distances(frame)[link]))
     return _titled(part, own, None).title
 
 
 def _shared(joints: Joints, blocks: tuple[tuple[int, ...], ...]) -> list[int]:
-    """The links and, numbered after them, the joints that two parts at least have in common."""
+    """Return the links and joints that two parts have in common."""
     links = [k for k in range(len(joints.links)) if sum(k in block for block in blocks) > 1]
     # a part that has two links of a joint has the joint
     held = [sum(len({*joint.links} & {*block}) > 1 for block in blocks) for joint in joints.joints]
@@ -173,7 +176,7 @@ def _shared(joints: Joints, blocks: tuple[tuple[int, ...], ...]) -> list[int]:
 
 
 def _driven(joints: Joints, frame: int | None, driver: int) -> str:
-    """Which kind of link is driven, and whether it is joined to the frame."""
+    """Say which kind of link is driven, and whether next to the frame."""
     kind = f"{ordinal(joints.degrees[driver])} link"
     if frame is None:
         return kind

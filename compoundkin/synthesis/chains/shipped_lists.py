@@ -18,7 +18,7 @@ HEADING = (
 
 
 def lines(most_links: int = MOST_LINKS) -> Iterator[str]:
-    """The lines of the list, by mobility, then by links.
+    """Yield the lines of the list, by mobility, then by links.
 
     >>> list(lines(most_links=4))[2:6]
     ['3 0 Bw', '4 1 C]']

@@ -1,4 +1,4 @@
-"""A drawn mechanism to start from, made of a chain: one of its links the frame, drivers at some of its pairs.
+"""A drawn mechanism to start from, made of a chain. One of its links the frame, drivers at some of its pairs.
 
 Its pins are spread out, no two links alike, the same on every machine: the distance between two pins is made to be
 the number of links between them, as far as that can be.
@@ -40,7 +40,7 @@ NEAREST = 0.15
 
 
 def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = "") -> Mechanism:
-    """A mechanism with the structure of a chain and generic dimensions, as drawn: pins A, B, C, ...
+    """Return a mechanism with the structure of a chain and generic dimensions, as drawn. Pins A, B, C, ...
 
     Link k of the chain is "link k", but for the frame. A driver is a link that is joined to the frame, or two joined
     links; without any, the first that determine the motion are taken, those on the frame if possible. They hold the
@@ -77,7 +77,7 @@ def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = 
 
 
 def lettered(number: int) -> list[str]:
-    """So many names for points: A to Z, then A2 to Z2 and so on.
+    """So many names for points. A to Z, then A2 to Z2 and so on.
 
     >>> lettered(28)[-3:]
     ['Z', 'A2', 'B2']
@@ -103,7 +103,7 @@ def _known(chain: Chain, frame: int, drivers: Sequence[Driver]) -> None:
 
 
 def _drive(items: Sequence[Item], names: Sequence[str], on: int, driven: int) -> Drive:
-    """A driver at the drawn angle."""
+    """Return a driver at the drawn angle."""
     drawing = Mechanism("as drawn", *items).geometry.drawn
     angle = [float(drawing[names[k]].angle.c[0]) for k in (on, driven)]
     middle = float(wrapped(angle[1] - angle[0]))
@@ -111,7 +111,7 @@ def _drive(items: Sequence[Item], names: Sequence[str], on: int, driven: int) ->
 
 
 def symmetric_drivers(chain: Chain, frame: int) -> Iterator[tuple[int, int]]:
-    """The essentially different places for one driver, each once: on which link, and which is driven.
+    """Yield the essentially different places for one driver, each once. On which link, and which is driven.
 
     >>> len(list(symmetric_drivers(Chain.of(4, [(0, 1), (1, 2), (2, 3), (3, 0)]), 0)))
     2
@@ -121,7 +121,7 @@ def symmetric_drivers(chain: Chain, frame: int) -> Iterator[tuple[int, int]]:
 
 
 def layout(pins: int, links: Sequence[Sequence[int]]) -> list[complex]:
-    """Generic places for pins 0, 1, ..., given the pins of each link; a length of one is that of a link.
+    """Generic places for pins 0, 1, ..., given the pins of each link. A length of one is that of a link.
 
     >>> places = layout(4, [(0, 1), (1, 2), (2, 3), (3, 0)])
     >>> len(places), min(abs(places[k] - places[k - 1]) for k in range(4)) > NEAREST
@@ -144,7 +144,7 @@ def _spiral(pins: int) -> Number:
 
 
 def _distances(pins: int, links: Sequence[Sequence[int]]) -> Number:
-    """How many links there are between every two pins; those that nothing joins are as far as all pins."""
+    """Return how many links there are between every two pins. Those that nothing joins are as far as all pins."""
     on: list[list[int]] = [[] for _ in range(pins)]
     for number, carried in enumerate(links):
         for pin in carried:

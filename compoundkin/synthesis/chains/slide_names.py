@@ -1,4 +1,4 @@
-"""Names of four links in a loop with slides, by the letters around the loop and the link that is the frame.
+"""Names of loops of four links with slides, by their letters and frame.
 
 Source: F. Reuleaux, The Kinematics of Machinery, 1876, ch. VIII (chains of three turning pairs and a sliding
 pair, of two and two, and their inversions); J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines
@@ -26,8 +26,9 @@ _CHAINS = {"RRRP": "slider-crank chain", "RRPP": "double slider chain", "RPRP": 
 
 
 def loop_letters(joints: Joints) -> str:
-    """The letters around the only loop, from where and in the direction in which they come first: R before P.
+    """Return the letters around the only loop, those with R first.
 
+    That is from where and in the direction in which they come first.
     "" where the links do not form one loop.
 
     >>> from compoundkin.synthesis.chains.joints import Joint
@@ -52,7 +53,7 @@ def loop_letters(joints: Joints) -> str:
 
 @dataclass(frozen=True)
 class SliderName:
-    """The name of a four-link loop with slides, of its chain, and of well-known mechanisms with that structure."""
+    """The name of a four-link loop with slides, and of its chain."""
 
     title: str
     chain: str
@@ -60,9 +61,9 @@ class SliderName:
 
 
 def slider_name(joints: Joints, frame: int | None, driver: int | None) -> SliderName | None:
-    """The name of a four-link loop with slides; None for any other mechanism.
+    """Return the name of a four-link loop with slides; None for any other mechanism.
 
-    A pump's lever is a connecting rod: the slider-crank driven there is told apart. Which link of a slide is
+    A pump's lever is a connecting rod: the slider-crank driven there is distinguished. Which link of a slide is
     the block and which one carries the guide is a matter of design, not of motion; where it is known it tells
     a lever with a slot (or a cylinder) that turns on the frame from a block that does.
     """
@@ -101,5 +102,5 @@ def _is_connecting_rod(joints: Joints, frame: int, link: int) -> bool:
 
 
 def _letters_of(joints: Joints, link: int) -> str:
-    """The letters of a link's joints, R first."""
+    """Return the letters of a link's joints, R first."""
     return "".join(sorted((joint.code for joint in joints.joints if link in joint.links), reverse=True))

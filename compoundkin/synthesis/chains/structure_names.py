@@ -1,4 +1,4 @@
-"""Graphs, structures and Assur groups read as links and joints: their names, and in how many ways they assemble."""
+"""Graphs, structures and Assur groups read as links and joints. Their names, and in how many ways they assemble."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MOST_COUNTED = 8
 
 
 def structure_name(structure: Structure) -> ChainName:
-    """What a mechanism is called, with its frame and its drivers; a roller is a part of its follower.
+    """Return what a mechanism is called, with its frame and its drivers. A roller is a part of its follower.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.structure import decompose
@@ -38,7 +38,7 @@ def structure_name(structure: Structure) -> ChainName:
 
 
 def structure_joints(structure: Structure) -> Joints:
-    """Its links and joints, rollers taken for a part of the links that carry them."""
+    """Return a structure's links and joints, rollers merged with their followers."""
     joints = joints_of(structure.graph)
     for spin in structure.passive:
         joints = joints.merged(spin.link, spin.on)
@@ -46,7 +46,7 @@ def structure_joints(structure: Structure) -> Joints:
 
 
 def group_truss(group: Group) -> tuple[str, ...]:
-    """The Baranov trusses that a group is made of: what it is attached to taken for one link more.
+    """Return the Baranov trusses that a group is made of. What it is attached to taken for one link more.
 
     Several where multiple pins stand for several; none where no list has it. Higher pairs count as binary links.
 
@@ -63,7 +63,7 @@ def group_truss(group: Group) -> tuple[str, ...]:
 
 
 def group_joints(group: Group) -> Joints:
-    """A group's bodies by their first links, joined to each other and to one link for all that is known."""
+    """Return a group's bodies and known links, joined as its pairs join them."""
     known = len(group.bodies)
     number = {link: k for k, body in enumerate(group.bodies) for link in body.links}
     pins: dict[str, dict[int, None]] = {}
@@ -79,7 +79,7 @@ def group_joints(group: Group) -> Joints:
 
 
 def name_of(graph: nx.MultiGraph, frame: str | None = None, driver: str | Iterable[str] | None = None) -> ChainName:
-    """The name of a mechanism, given its kinematic graph, the link that is its frame and the one or ones driven.
+    """Return the name of a mechanism from its kinematic graph.
 
     Edges are read as by `joints_of`. Raises UnknownName for a frame or driver that is not in the graph.
 
@@ -95,7 +95,7 @@ def name_of(graph: nx.MultiGraph, frame: str | None = None, driver: str | Iterab
 
 
 def joints_of(graph: nx.MultiGraph) -> Joints:
-    """Read a graph of links and pairs; edges of one pin have one attribute `pin`, or pairs with one letter.
+    """Read a graph of links and pairs. Edges of one pin have one attribute `pin`, or pairs with one letter.
 
     Of the edges' other attributes `code` is read ("R" where it is missing), and the `pair` where there is
     one, or else `held`: how much the pair holds (2 where it is missing).
@@ -115,7 +115,7 @@ def joints_of(graph: nx.MultiGraph) -> Joints:
 
 
 def _pin(data: Mapping[str, Any]) -> object:
-    """What edges of one pin have in common; None for a pair of its own."""
+    """Return what edges of one pin have in common. None for a pair of its own."""
     if data.get("code", REVOLUTE) != REVOLUTE:
         return None
     pair = data.get("pair")
@@ -132,7 +132,7 @@ def _joint(ends: Sequence[int], data: Mapping[str, Any], number: Mapping[str, in
 
 
 def group_count(group: Group) -> int | None:
-    """The number of complex configurations of a group for generic dimensions; None with slides, or where large.
+    """Return the number of complex configurations of a group for generic dimensions. None with slides, or where large.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.structure import decompose
@@ -154,7 +154,7 @@ _COUNTS: dict[str, int | None] = {}
 
 
 def _connections(group: Group) -> GroupGraph:
-    """The group's pins between its bodies; letters tell which pins of a body coincide."""
+    """Return the group's pins between its bodies. Letters tell which pins of a body coincide."""
     body = {link: k for k, one in enumerate(group.bodies) for link in one.links}
     pairs: tuple[Pair, ...] = (*group.inner, *group.outer)
     bodies = tuple((body.get(pair.members[0]), body.get(pair.members[1])) for pair in pairs)
@@ -172,7 +172,7 @@ def _connections(group: Group) -> GroupGraph:
 
 
 def configurations_of(structure: Structure) -> tuple[int | None, bool]:
-    """In how many ways all groups together can be assembled, and whether all are solved in closed form."""
+    """Count the ways to assemble all groups, and tell whether all are closed forms."""
     order = SolvingOrder(structure)
     numbers = [solver.modes or group_count(solver.group) for solver in order.solvers]
     known = [number for number in numbers if number is not None]
