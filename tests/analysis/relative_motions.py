@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,16 @@ FASTEST = 40.0
 
 
 def catalog(name: str, **words: Any) -> ck.Motion:
-    """A shipped mechanism over its own motion, all drivers at unit speed."""
+    """A shipped mechanism over its own motion, all drivers at unit speed; solved once where nothing else is asked."""
+    return _solved(name, **words) if words else _own_motion(name)
+
+
+@cache
+def _own_motion(name: str) -> ck.Motion:
+    return _solved(name)
+
+
+def _solved(name: str, **words: Any) -> ck.Motion:
     mechanism = load_named(name)
     return ck.solve(mechanism, speed={drive.name: 1.0 for drive in mechanism.drives}, **words)
 
