@@ -18,7 +18,7 @@ CONTENTS: dict[str, tuple[str, ...]] = {
     "Understand it": ("theory", "notation"),
     "Examples": ("gallery/index", "catalog"),
     "Refer to it": ("api/index",),
-    "Add to it": ("adding", "architecture"),
+    "Add to it": ("adding", "architecture", "modules"),
 }
 
 

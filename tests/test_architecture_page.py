@@ -1,0 +1,24 @@
+"""The page on the architecture is short, and what it says of files is what the files say of themselves."""
+
+from __future__ import annotations
+
+import ast
+
+from tests.architecture_page import PAGE, pages
+from tests.source import FILES, tree, where
+from tests.test_architecture import only_shrinks
+
+
+def test_its_tables_are_up_to_date() -> None:
+    """If not: run `python -m tests.architecture_page`."""
+    only_shrinks(path.name for path, text in pages().items() if path.read_text(encoding="utf-8") != text)
+
+
+def test_it_is_one_page() -> None:
+    assert len(PAGE.read_text(encoding="utf-8").splitlines()) <= 250
+
+
+def test_every_module_begins_with_a_sentence() -> None:
+    """Of one line, with a full stop or a colon at its end."""
+    first = {path: (ast.get_docstring(tree(path)) or "").split("\n")[0] for path in FILES}
+    only_shrinks(where(path) for path, line in first.items() if not line.endswith((".", ":")))
