@@ -1,11 +1,12 @@
-"""The page on the architecture is short, and what it says of files is what the files say of themselves."""
+"""The page on the architecture is short, what it says of files is what they say of themselves; CONTRIBUTING too is true."""
 
 from __future__ import annotations
 
 import ast
+import re
 
 from tests.architecture_page import PAGE, pages
-from tests.source import FILES, tree, where
+from tests.source import FILES, ROOT, tree, where
 from tests.test_architecture import only_shrinks
 
 
@@ -22,3 +23,10 @@ def test_every_module_begins_with_a_sentence() -> None:
     """Of one line, with a full stop or a colon at its end."""
     first = {path: (ast.get_docstring(tree(path)) or "").split("\n")[0] for path in FILES}
     only_shrinks(where(path) for path, line in first.items() if not line.endswith((".", ":")))
+
+
+def test_contributing_names_files_that_exist() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"\b((?:compoundkin|tests|docs)/[\w/.-]*\w)", text))
+    assert len(named) > 20
+    only_shrinks(place for place in named if "NAME" not in place and not (ROOT / place).exists())
