@@ -57,9 +57,7 @@ def list_of_modules() -> str:
     for folder in (PACKAGE, *folders()):
         title = "The package" if folder == PACKAGE else f"{name(folder)}/"
         rows = "\n".join(f"| `{path.stem}` | {sentence(path)} |" for path in modules_in(folder))
-        parts.append(
-            f"## {title}\n\n{sentence(folder / INIT)}.\n\n| file | what it holds |\n|---|---|\n{rows}"
-        )
+        parts.append(f"## {title}\n\n{sentence(folder / INIT)}.\n\n| file | what it holds |\n|---|---|\n{rows}")
     return "\n\n".join(parts)
 
 

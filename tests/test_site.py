@@ -216,7 +216,9 @@ def anchors(path: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
-@pytest.mark.parametrize("page", [Path("docs") / page for page in PAGES] + [Path("README.md"), Path("CONTRIBUTING.md")], ids=str)
+@pytest.mark.parametrize(
+    "page", [Path("docs") / page for page in PAGES] + [Path("README.md"), Path("CONTRIBUTING.md")], ids=str
+)
 def test_links_between_pages(page: Path) -> None:
     path = ROOT / page
     for link in re.findall(r"\]\(([^)\s]+)\)", markdown(path)):
