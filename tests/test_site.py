@@ -216,9 +216,10 @@ def anchors(path: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
-@pytest.mark.parametrize(
-    "page", [Path("docs") / page for page in PAGES] + [Path("README.md"), Path("CONTRIBUTING.md")], ids=str
-)
+READ_ALONE = (Path("README.md"), Path("CONTRIBUTING.md"))
+
+
+@pytest.mark.parametrize("page", [*(Path("docs") / page for page in PAGES), *READ_ALONE], ids=str)
 def test_links_between_pages(page: Path) -> None:
     path = ROOT / page
     for link in re.findall(r"\]\(([^)\s]+)\)", markdown(path)):
