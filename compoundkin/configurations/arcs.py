@@ -1,18 +1,18 @@
 """Arc-length continuation of many paths at once, each from one slice across a strip to the next, or back.
 
-Predictor along the null vector of the Jacobian, corrector with the tangent as one more row; a step of its own for
-each path. Source: E. L. Allgower and K. Georg, Introduction to Numerical Continuation Methods, SIAM 2003, chapter 2.
+Predictor along the null vector of the Jacobian, corrector with the tangent as one more row.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.linear import solve
+from compoundkin.base.bracketing import false_position
+from compoundkin.base.continuation import StepLengths, Taken, corrected_across, follow, tangent
+from compoundkin.base.newton import NewtonResult
 from compoundkin.base.series import Number
 from compoundkin.configurations.segment_closure import Equations
 
@@ -53,66 +53,66 @@ class Paths:
         self.low = np.where(ahead > 0, at, at - 1)
         self.y = np.array(y)
         self.arcs = [Arc([start]) for start in y]
-        self.alive = np.ones(len(y), dtype=bool)
         self.turnings: list[_Turning] = []
-        self.h = np.full(len(y), LONGEST)
         matrix = equations.at(rows, y)[1]
         forward = np.zeros_like(y)
         forward[:, -1] = ahead
-        self.tangent, self.side = _tangent(matrix, forward)
+        self.tangent, self.side = tangent(matrix, forward)
         self.tangent *= np.where(self.tangent[:, -1] * ahead < 0, -1.0, 1.0)[:, None]
 
     def go(self, longest: float = LONGEST) -> list[Arc]:
         """Follow all of them to the next slice."""
-        self.h[:] = longest
-        self.alive &= np.isfinite(self.tangent).all(axis=1)
-        for _ in range(MOST_STEPS):
-            alive = np.flatnonzero(self.alive)
-            if not len(alive):
-                break
-            self._step(alive, longest)
+        lengths = StepLengths(longest, longest, SHORTEST, easy=1, most=MOST_STEPS)
+        follow(self._step, np.isfinite(self.tangent).all(axis=1), lengths)
         self._find_turnings()
         return self.arcs
 
-    def _step(self, i: Number, longest: float) -> None:
+    def _step(self, i: Number, longest: Number) -> Taken:
+        """Try one step of the paths `i`: to the next slice, or as long as may be."""
         y, t = self.y[i], self.tangent[i]
         goal = self.low[i] + (t[:, -1] > 0)
         with np.errstate(divide="ignore"):
             far = (self.slices[goal] - y[:, -1]) / t[:, -1]
-        arriving = far <= self.h[i]
-        h = np.where(arriving, far, self.h[i])
+        arriving = far <= longest
+        h = np.where(arriving, far, longest)
         guess = y + h[:, None] * t
         guess[:, -1] = np.where(arriving, self.slices[goal], guess[:, -1])
         across = np.where(arriving[:, None], np.eye(y.shape[1])[-1], t)
-        new, matrix, moved, good = corrected(self.equations, self.rows[i], guess, across)
-        tangent, side = _tangent(matrix, t)
-        good &= (np.einsum("ij,ij->i", tangent, t) > TURNED) & (moved <= STRAYED * h + CONVERGED)
-        good &= ~arriving | (tangent[:, -1] * t[:, -1] > 0)
+        found = self._corrected(self.rows[i], guess, across)
+        new, moved = found.x, np.sqrt(np.sum((found.x - guess) ** 2, axis=1))
+        along, side = tangent(found.matrix, t)
+        good = (found.last <= CONVERGED) & np.isfinite(moved)
+        good &= (np.einsum("ij,ij->i", along, t) > TURNED) & (moved <= STRAYED * h + CONVERGED)
+        good &= ~arriving | (along[:, -1] * t[:, -1] > 0)
         inside = (new[:, -1] > self.slices[self.low[i]]) & (new[:, -1] < self.slices[self.low[i] + 1])
         good &= inside | arriving
-        self._take(i, good, new, tangent, side, arriving, goal)
-        self.h[i] = np.where(good, np.minimum(2.0 * self.h[i], longest), h / 2.0)
-        self.alive[i] &= self.h[i] > SHORTEST
+        self._note_turnings(i, good, h, new, along)
+        self._take(i, good, new, along, side, np.where(arriving, goal, -1))
+        return Taken(h, good, good & arriving)
 
-    def _take(self, i: Number, good: Number, new: Number, tangent: Number, side: Number, arriving: Number,
-              goal: Number) -> None:  # fmt: skip
-        turned = good & (tangent[:, -1] * self.tangent[i, -1] < 0)
+    def _corrected(self, rows: Number, guess: Number, across: Number) -> NewtonResult:
+        return corrected_across(lambda y: self.equations.at(rows, y), guess, across, CONVERGED, CORRECTIONS)
+
+    def _note_turnings(self, i: Number, good: Number, h: Number, new: Number, along: Number) -> None:
+        turned = good & (along[:, -1] * self.tangent[i, -1] < 0)
         for a in np.flatnonzero(turned).tolist():
             arc, j = self.arcs[i[a]], int(i[a])
             self.turnings.append(
-                _Turning(j, len(arc.nodes), self.y[j].copy(), self.tangent[j].copy(), self.h[j], tangent[a, -1])
+                _Turning(j, len(arc.nodes), self.y[j].copy(), self.tangent[j].copy(), h[a], along[a, -1])
             )
             arc.turns.append(len(arc.nodes))
             arc.nodes.append(new[a])
+
+    def _take(self, i: Number, good: Number, new: Number, along: Number, side: Number, arrived: Number) -> None:
+        """Add the good steps to their arcs; `arrived` are the slices reached, -1 between two."""
         for a in np.flatnonzero(good).tolist():
             arc = self.arcs[i[a]]
             arc.nodes.append(new[a])
             arc.changes += int(side[a] != self.side[i[a]])
-            if arriving[a]:
-                arc.end = int(goal[a])
+            if arrived[a] >= 0:
+                arc.end = int(arrived[a])
         done = i[good]
-        self.y[done], self.tangent[done], self.side[done] = new[good], tangent[good], side[good]
-        self.alive[done] = ~arriving[good]
+        self.y[done], self.tangent[done], self.side[done] = new[good], along[good], side[good]
 
     def _find_turnings(self) -> None:
         """Put the turning points in their places, all found at once."""
@@ -122,11 +122,12 @@ class Paths:
         y, t = (np.array([getattr(one, name) for one in self.turnings]) for name in ("y", "tangent"))
         end, after = (np.array([getattr(one, name) for one in self.turnings]) for name in ("h", "after"))
 
-        def slope(h: Number) -> tuple[Number, Number]:
-            new, matrix, _, _ = corrected(self.equations, rows, y + h[:, None] * t, t)
-            return _tangent(matrix, t)[0][:, -1], new
+        def slope(h: Number) -> Number:
+            return tangent(self._corrected(rows, y + h[:, None] * t, t).matrix, t)[0][:, -1]
 
-        for one, state in zip(self.turnings, _false_position(slope, end, t[:, -1], after), strict=True):
+        h = false_position(slope, end, t[:, -1], after, FLAT, MOST_TRIALS)
+        states = self._corrected(rows, y + h[:, None] * t, t).x
+        for one, state in zip(self.turnings, states, strict=True):
             self.arcs[one.path].nodes[one.place] = state
 
 
@@ -139,52 +140,3 @@ class _Turning(NamedTuple):
     tangent: Number
     h: float
     after: float
-
-
-def _false_position(
-    slope: Callable[[Number], tuple[Number, Number]], end: Number, first: Number, last: Number
-) -> Number:
-    """The states where a slope is zero between 0 and `end`; the Illinois method, for all at once."""
-    low, high, f_low, f_high = np.zeros_like(end), end, first, last
-    moved = np.zeros(len(end))
-    for _ in range(MOST_TRIALS):
-        h = low - f_low * (high - low) / (f_high - f_low)
-        f, states = slope(h)
-        if not np.any((np.abs(f) > FLAT) & (high - low > FLAT)):
-            break
-        before = f * f_low > 0
-        # the end that stays a second time counts half, so that it gives way
-        f_low, f_high = (
-            np.where(before, f, np.where(moved < 0, f_low / 2.0, f_low)),
-            np.where(before, np.where(moved > 0, f_high / 2.0, f_high), f),
-        )
-        low, high = np.where(before, h, low), np.where(before, high, h)
-        moved = np.where(before, 1.0, -1.0)
-    return states
-
-
-def corrected(
-    equations: Equations, rows: Number, guess: Number, across: Number
-) -> tuple[Number, Number, Number, Number]:
-    """The states nearest to guesses in the hyperplanes across a direction: states, Jacobians, distances, which are."""
-    y = guess
-    for _ in range(CORRECTIONS):
-        found, matrix = equations.at(rows, y)
-        whole = np.concatenate([matrix, across[:, None]], axis=1)
-        step = -solve(whole, np.concatenate([found, np.zeros((len(y), 1))], axis=1))
-        y = y + step
-        size = np.abs(step).max(axis=1)
-        if not np.any(size > CONVERGED):
-            break
-    moved = np.sqrt(np.sum((y - guess) ** 2, axis=1))
-    return y, matrix, moved, (size <= CONVERGED) & np.isfinite(moved)
-
-
-def _tangent(matrix: Number, along: Number) -> tuple[Number, Number]:
-    """The unit null vectors that go along a direction, and the side of a singularity that they are on."""
-    whole = np.concatenate([matrix, along[:, None]], axis=1)
-    right = np.zeros(along.shape)
-    right[:, -1] = 1.0
-    tangent = solve(whole, right)
-    tangent = tangent / np.sqrt(np.sum(tangent**2, axis=1))[:, None]
-    return tangent, np.linalg.slogdet(np.nan_to_num(whole))[0]
