@@ -8,7 +8,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.linear import solve
+from compoundkin.base.linear import Inverse, solve
 
 # A system at some unknowns: its residuals (..., d) and their derivatives (..., d, d).
 System: TypeAlias = Callable[[Number], tuple[Number, Number]]
@@ -61,6 +61,66 @@ def newton(
         if not np.any(last > converged):
             break
     return NewtonResult(x, matrix, last, longest)
+
+
+class ChordStop(NamedTuple):
+    """When chord steps stop, and how they are taken; steps are weighted, so that they are pure numbers.
+
+    A start has `converged` where no unknown's last step was larger and no residual is above `closed`. After a step
+    below `chord` the matrix has hardly changed and is used once more. No single step is longer than `longest`.
+    """
+
+    converged: float
+    closed: float
+    chord: float
+    steps: int
+    longest: float = np.inf
+
+
+# The residuals of a system, a list as long as its unknowns, and what makes the inverse of its matrix.
+ListSystem: TypeAlias = Callable[[list[Number]], tuple[list[Number], Callable[[], Inverse]]]
+
+
+def chord_newton(
+    system: ListSystem, start: list[Number], weights: Number, stop: ChordStop
+) -> tuple[list[Number], Number]:
+    """Solve square systems from many starts, each unknown an array of its own: the unknowns, and which converged.
+
+    For few unknowns this is much faster than `newton`, as no matrix is stacked and one serves several steps.
+
+    >>> system = lambda x: ([x[0] ** 2 - 2.0], lambda: Inverse([{0: 2.0 * x[0]}], 1))
+    >>> found, closed = chord_newton(system, [np.array([1.0, 3.0])], [1.0], ChordStop(1e-8, 1e-12, 1e-3, 12))
+    >>> found[0].round(9).tolist(), closed.tolist()
+    ([1.414213562, 1.414213562], [True, True])
+    """
+    found, inverse, last = start, None, np.inf
+    residual, invert = system(found)
+    for _ in range(stop.steps):
+        if inverse is None or np.any(last > stop.chord):
+            inverse = invert()
+        step = inverse.times(residual)
+        last = largest_of([c * w for c, w in zip(step, weights, strict=True)])
+        if stop.longest < np.inf:
+            share = np.minimum(1.0, stop.longest / last)
+            step = [c * share for c in step]
+        found = [v - c for v, c in zip(found, step, strict=True)]
+        residual, invert = system(found)
+        closed = (last <= stop.converged) & (largest_of(residual) <= stop.closed)
+        if not np.any(~closed & np.isfinite(last)):
+            break
+    return found, closed
+
+
+def largest_of(values: list[Number]) -> Number:
+    """Return the largest size of any of some arrays, entry by entry.
+
+    >>> largest_of([np.array([1.0, -3.0]), -2.0]).tolist()
+    [2.0, 3.0]
+    """
+    found = np.abs(values[0])
+    for value in values[1:]:
+        found = np.maximum(found, np.abs(value))
+    return found
 
 
 class Rest(NamedTuple):

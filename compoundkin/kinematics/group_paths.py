@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from compoundkin.base.continuation import StepLengths, Taken, follow
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.group_equations import GroupEquations
@@ -31,6 +32,8 @@ SPACINGS = 6.0
 # The continuation gives up where its step falls below this part of the distance between two poses; what
 # is left is then known to be nearer to a limit than that.
 SHORTEST = 1e-12
+# The other lengths are those of the prediction; a step that fails is halved.
+LENGTHS = StepLengths(first=np.inf, longest=np.inf, shortest=0.0, easy=1, most=1_000_000_000)
 # Drivers that take less than this part of a spacing a pose stand still.
 SLOWEST = 1e-9
 
@@ -115,32 +118,33 @@ class _March:
 
     def go(self, stops: Number) -> _March:
         """Step from stop to stop; stops that lie within one stride of each other are passed over."""
-        here = float(stops[0])
-        rates, side = self._rates(self.state, self._block(here))
-        self._note(here, rates[0])
-        self.reached = np.where(self.alive, here, np.nan)
-        goal = 1
-        step = np.inf
-        while goal < len(stops) and self.alive.any():
-            farthest = min(self._stride(rates), self.longest)
-            within = int(np.searchsorted(np.abs(stops[goal:] - here), min(step, farthest), side="right"))
-            goal = min(goal + max(within - 1, 0), len(stops) - 1)
-            ahead = float(stops[goal]) - here
-            h = np.sign(ahead) * min(abs(ahead), step, farthest)
-            state, new_rates, new_side, good = self._step(here, h, rates, side)
-            if good[self.alive].all():
-                here, step = here + h, abs(h) * 2.0
-                self.state = np.where(self.alive[:, None, None], state, self.state)
-                rates, side = new_rates, new_side
-                self._note(here, rates[0])
-                self.reached = np.where(self.alive, here, self.reached)
-                goal += here == stops[goal]
-            elif abs(h) > SHORTEST * max(1.0, abs(here)):
-                step = abs(h) / 2.0
-            else:
-                self.alive = self.alive & good
-                step = np.inf
+        self.here, self.goal, self.stops = float(stops[0]), 1, stops
+        self.rates, self.side = self._rates(self.state, self._block(self.here))
+        self._note()
+        self.reached = np.where(self.alive, self.here, np.nan)
+        while self.goal < len(stops) and self.alive.any():
+            # all designs are one path; where it ends, those that are not good any more stay behind
+            if not follow(self._toward_goal, np.ones(1, dtype=bool), LENGTHS).all():
+                self.alive = self.alive & self.good
         return self
+
+    def _toward_goal(self, _: Number, longest: Number) -> Taken:
+        """Try a step, so long that the prediction is good, to the farthest stop within it if there is one."""
+        most = min(float(longest[0]), self._stride(self.rates), self.longest)
+        within = int(np.searchsorted(np.abs(self.stops[self.goal :] - self.here), most, side="right"))
+        self.goal = min(self.goal + max(within - 1, 0), len(self.stops) - 1)
+        ahead = float(self.stops[self.goal]) - self.here
+        h = np.sign(ahead) * min(abs(ahead), most)
+        state, rates, side, self.good = self._step(self.here, h, self.rates, self.side)
+        is_good = bool(self.good[self.alive].all())
+        length = abs(h) if is_good or abs(h) > SHORTEST * max(1.0, abs(self.here)) else 0.0
+        if is_good:
+            self.here, self.rates, self.side = self.here + h, rates, side
+            self.state = np.where(self.alive[:, None, None], state, self.state)
+            self._note()
+            self.reached = np.where(self.alive, self.here, self.reached)
+            self.goal += self.here == self.stops[self.goal]
+        return Taken(np.array([length]), np.array([is_good]), np.array([self.goal == len(self.stops)]))
 
     def _stride(self, rates: list[Number]) -> float:
         """How far the prediction is good: by the farthest move that each of its terms may make."""
@@ -186,7 +190,7 @@ class _March:
             np.stack([begin, self.reached], axis=1),
         )
 
-    def _note(self, s: float, slope: Number) -> None:
-        self.s.append(s)
+    def _note(self) -> None:
+        self.s.append(self.here)
         self.states.append(self.state)
-        self.slopes.append(slope)
+        self.slopes.append(self.rates[0])

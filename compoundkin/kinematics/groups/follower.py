@@ -75,6 +75,7 @@ class FollowerSolver(GroupSolver):
 
     def _polished(self, ends: Ends, placing: Placing, start: Number) -> tuple[Number, Number, Number]:
         """Return the coordinate, where it closes the contact, and the slope of the contact's distance there."""
+        # one unknown: a division makes a step, for which the matrices of the workbench would be slow
         coordinate, before = start, np.inf
         for k in range(HALVINGS):
             gap, slope = self._gap(ends, placing, coordinate)

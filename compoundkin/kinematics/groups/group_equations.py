@@ -12,13 +12,14 @@ Evaluating Derivatives, section 13.3.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import joined
 from compoundkin.base.linear import Inverse, Row, stacked
+from compoundkin.base.newton import ChordStop, chord_newton, largest_of
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
@@ -85,28 +86,19 @@ class GroupEquations:
 
         No single correction is longer than `longest` (of the size, or radians).
         """
-        leading = block.leading()
-        weights = self.weights
-        start = found = [np.asarray(v) for v in np.moveaxis(np.asarray(state, dtype=float), -1, 0)]
-        bodies = self._kept_poses(found)
-        residual = self._residual(bodies, leading, 0)
-        inverse, largest = None, np.inf
-        for _ in range(steps):
-            if inverse is None or np.any(largest > CHORD):
-                inverse = Inverse(self._rows(bodies, leading), self.width)
-            correction = inverse.times(residual)
-            largest = _largest([c * w for c, w in zip(correction, weights, strict=True)])
-            if longest < np.inf:
-                share = np.minimum(1.0, longest / largest)
-                correction = [c * share for c in correction]
-            found = [v - c for v, c in zip(found, correction, strict=True)]
-            bodies = self._kept_poses(found)
-            residual = self._residual(bodies, leading, 0)
-            closed = (largest <= CONVERGED) & (_largest(residual) <= CLOSED * self.size)
-            if not np.any(~closed & np.isfinite(largest)):
-                break
+        leading, weights = block.leading(), self.weights
+        start = [np.asarray(v) for v in np.moveaxis(np.asarray(state, dtype=float), -1, 0)]
+        bodies: dict[int, Pose] = {}
+
+        def system(values: list[Number]) -> tuple[list[Number], Callable[[], Inverse]]:
+            nonlocal bodies
+            bodies = here = self._kept_poses(values)
+            return self._residual(here, leading, 0), lambda: Inverse(self._rows(here, leading), self.width)
+
+        stop = ChordStop(CONVERGED, CLOSED * self.size, CHORD, steps, longest)
+        found, closed = chord_newton(system, start, weights, stop)
         closed = closed & self._properly_assembled(bodies, leading)
-        moved = _largest([(v - s) * w for v, s, w in zip(found, start, weights, strict=True)])
+        moved = largest_of([(v - s) * w for v, s, w in zip(found, start, weights, strict=True)])
         return Solution(np.stack(np.broadcast_arrays(*found), axis=-1), closed, moved)
 
     def series(self, state: Number, block: Block, order: int) -> list[Pose]:
@@ -206,13 +198,6 @@ class GroupEquations:
             pair = self.pairs[number]
             good = good & pair.is_properly_assembled(block.ends[pair.name], self._links(number, bodies, block, 0))
         return good
-
-
-def _largest(values: list[Number]) -> Number:
-    found = np.abs(values[0])
-    for value in values[1:]:
-        found = np.maximum(found, np.abs(value))
-    return found
 
 
 def _turned(z: tuple[Number, ...], theta: tuple[Number, ...]) -> Pose:
