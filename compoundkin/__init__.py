@@ -14,90 +14,61 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import compoundkin.view  # noqa: F401  (says how objects show themselves)
-from compoundkin.base.errors import (
-    CompoundkinError,
-    InvalidInput,
-    InvalidMechanism,
-    NotAssembled,
-    NotDetermined,
-    UnassembledPoses,
-    UnknownName,
-)
 from compoundkin.base.version import VERSION
-from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.gaps import Gap, gaps
+from compoundkin.kinematics import solve
+from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.elements import drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
-from compoundkin.model.laws import constant_acceleration, constant_speed, dwell, fall, program, rise, time_table
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
-from compoundkin.model.profiles import disc, formula, profile, synthesise
-from compoundkin.structure import Structure, decompose
-from compoundkin.structure.redundancy import MobilityAnalysis, mobility_analysis
+from compoundkin.structure import decompose
+from compoundkin.structure.redundancy import mobility_analysis
 
 if TYPE_CHECKING:
-    from compoundkin.analysis.cam_analysis import CamAnalysis, cam_analysis
+    from compoundkin import advantage as advantage
+    from compoundkin import cams as cams
+    from compoundkin import catalog as catalog
+    from compoundkin import chains as chains
+    from compoundkin import composing as composing
+    from compoundkin import coupler as coupler
+    from compoundkin import equivalents as equivalents
+    from compoundkin import errors as errors
+    from compoundkin import laws as laws
+    from compoundkin import plots as plots
+    from compoundkin import profiles as profiles
+    from compoundkin import results as results
     from compoundkin.analysis.centres import instant_centres
-    from compoundkin.analysis.checks import Check, Finding, verify
+    from compoundkin.analysis.checks import verify
     from compoundkin.analysis.equations import loop_equations
-    from compoundkin.analysis.equivalents import equivalent_linkage
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.files import load, save
     from compoundkin.synthesis.alternatives import alternatives
-    from compoundkin.synthesis.composer import Composer, random_mechanism
     from compoundkin.synthesis.inversion import with_driver, with_frame
-    from compoundkin.view.animation import Animation, animate
-    from compoundkin.view.page import Page
+    from compoundkin.view.animation import animate
     from compoundkin.view.plot import plot
     from compoundkin.view.report import page, report
-    from compoundkin.view.sketch import Picture, draw
+    from compoundkin.view.sketch import draw
 
 __version__ = VERSION
 
 __all__ = [
-    "Animation",
-    "CamAnalysis",
-    "Check",
-    "Composer",
-    "CompoundkinError",
-    "Finding",
-    "Gap",
-    "InvalidInput",
-    "InvalidMechanism",
     "Mechanism",
-    "MobilityAnalysis",
-    "Motion",
-    "NotAssembled",
-    "NotDetermined",
-    "Page",
-    "Picture",
-    "Structure",
-    "UnassembledPoses",
-    "UnknownName",
     "alternatives",
     "animate",
     "arc",
     "belt",
     "cam",
-    "cam_analysis",
     "circuits",
     "configurations",
-    "constant_acceleration",
-    "constant_speed",
     "decompose",
     "deg",
-    "disc",
     "draw",
     "drawn",
     "drive",
-    "dwell",
-    "equivalent_linkage",
     "expect",
     "face",
-    "fall",
-    "formula",
     "gaps",
     "gear",
     "instant_centres",
@@ -109,21 +80,15 @@ __all__ = [
     "page",
     "plot",
     "polar",
-    "profile",
-    "program",
     "quantity",
     "rack",
-    "random_mechanism",
     "report",
-    "rise",
     "roll",
     "roll_around",
     "save",
     "slide",
     "slot",
     "solve",
-    "synthesise",
-    "time_table",
     "verify",
     "with_driver",
     "with_frame",
@@ -136,42 +101,78 @@ globals().pop("configurations", None)
 
 # What only some programs need is imported when they ask for it: the module of each such word.
 _LATE = {
-    "Animation": "view.animation",
+    "alternatives": "synthesis.alternatives",
     "animate": "view.animation",
     "circuits": "configurations.circuit_search",
     "configurations": "configurations.enumeration",
-    "CamAnalysis": "analysis.cam_analysis",
-    "cam_analysis": "analysis.cam_analysis",
-    "instant_centres": "analysis.centres",
-    "Check": "analysis.checks",
-    "Finding": "analysis.checks",
-    "verify": "analysis.checks",
-    "alternatives": "synthesis.alternatives",
-    "Composer": "synthesis.composer",
-    "random_mechanism": "synthesis.composer",
-    "Picture": "view.sketch",
     "draw": "view.sketch",
-    "loop_equations": "analysis.equations",
-    "equivalent_linkage": "analysis.equivalents",
+    "instant_centres": "analysis.centres",
     "load": "files",
-    "save": "files",
-    "with_driver": "synthesis.inversion",
-    "with_frame": "synthesis.inversion",
-    "Page": "view.page",
+    "loop_equations": "analysis.equations",
     "page": "view.report",
     "plot": "view.plot",
     "report": "view.report",
+    "save": "files",
+    "verify": "analysis.checks",
+    "with_driver": "synthesis.inversion",
+    "with_frame": "synthesis.inversion",
 }
 
+# The modules that hold all other public names: no rooms, each a list of what rooms have.
+_MODULES = (
+    *("advantage", "cams", "catalog", "chains", "composing", "coupler"),
+    *("equivalents", "errors", "laws", "plots", "profiles", "results"),
+)
 
-_MODULES = {"chains": "synthesis.chains", "catalog": "files.shipped_mechanisms", "plots": "view.plot"}
+# Names of version 0.1 and what is written for them now.
+_MOVED = {
+    "Animation": "compoundkin.results.Animation",
+    "CamAnalysis": "compoundkin.cams.CamAnalysis",
+    "Check": "compoundkin.results.Check",
+    "Composer": "compoundkin.composing.Composer",
+    "CompoundkinError": "compoundkin.errors.CompoundkinError",
+    "Finding": "compoundkin.results.Finding",
+    "Gap": "compoundkin.results.Gap",
+    "InvalidInput": "compoundkin.errors.InvalidInput",
+    "InvalidMechanism": "compoundkin.errors.InvalidMechanism",
+    "MobilityAnalysis": "compoundkin.results.MobilityAnalysis",
+    "Motion": "compoundkin.results.Motion",
+    "NotAssembled": "compoundkin.errors.NotAssembled",
+    "NotDetermined": "compoundkin.errors.NotDetermined",
+    "Page": "compoundkin.results.Page",
+    "Picture": "compoundkin.results.Picture",
+    "Structure": "compoundkin.results.Structure",
+    "UnassembledPoses": "compoundkin.errors.UnassembledPoses",
+    "UnknownName": "compoundkin.errors.UnknownName",
+    "cam_analysis": "compoundkin.cams.cam_analysis",
+    "constant_acceleration": "compoundkin.laws.constant_acceleration",
+    "constant_speed": "compoundkin.laws.constant_speed",
+    "disc": "compoundkin.profiles.disc",
+    "draw_structure": 'compoundkin.draw(mechanism, kind="groups")',
+    "dwell": "compoundkin.laws.dwell",
+    "equivalent_linkage": "compoundkin.equivalents.equivalent_linkage",
+    "fall": "compoundkin.laws.fall",
+    "formula": "compoundkin.profiles.formula",
+    "profile": "compoundkin.profiles.profile",
+    "program": "compoundkin.laws.program",
+    "random_mechanism": "compoundkin.composing.random_mechanism",
+    "rendered": "compoundkin.report(mechanism).text()",
+    "rise": "compoundkin.laws.rise",
+    "save_table": 'compoundkin.save(motion.table(), "motion.csv")',
+    "synthesise": "compoundkin.profiles.synthesise",
+    "time_table": "compoundkin.laws.time_table",
+    "to_pandas": "motion.to_pandas()",
+    "vector_polygon": 'compoundkin.draw(motion, kind="polygon")',
+}
 
 
 def __getattr__(name: str) -> Any:
     if name in _LATE:
         return getattr(import_module(f"compoundkin.{_LATE[name]}"), name)
     if name in _MODULES:
-        return import_module(f"compoundkin.{_MODULES[name]}")
+        return import_module(f"compoundkin.{name}")
+    if name in _MOVED:
+        raise AttributeError(f"compoundkin.{name} is now {_MOVED[name]}")
     raise AttributeError(f"module 'compoundkin' has no attribute {name!r}")
 
 

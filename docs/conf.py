@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import sys
 from pathlib import Path
+
+import compoundkin
 
 # the extensions of this site stand beside it
 sys.path.insert(0, str(Path(__file__).parent / "_ext"))
@@ -12,7 +13,7 @@ sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 project = "compoundkin"
 author = "the authors of compoundkin"
 project_copyright = author
-release = importlib.metadata.version("compoundkin")
+release = compoundkin.__version__
 language = "en"
 
 extensions = [

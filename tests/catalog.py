@@ -17,12 +17,12 @@ def mechanism(name: str) -> ck.Mechanism:
 
 
 @cache
-def structure(name: str) -> ck.Structure:
+def structure(name: str) -> ck.results.Structure:
     return ck.decompose(mechanism(name))
 
 
 @cache
-def motion(name: str) -> ck.Motion:
+def motion(name: str) -> ck.results.Motion:
     """The motion over the range that the file gives."""
     return ck.solve(mechanism(name))
 

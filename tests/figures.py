@@ -24,33 +24,33 @@ FIRST = Path(__file__).parents[1] / "docs" / "index.md"
 SIX_BAR, AT = load_named("six-bar"), ck.deg(35)
 
 
-def crank_rocker() -> ck.Picture:
+def crank_rocker() -> ck.results.Picture:
     """What the first page makes: its code, run here."""
     code = re.findall(r"```python\n(.*?)```", FIRST.read_text(encoding="utf-8"), re.DOTALL)
     names: dict[str, Any] = {}
     with TemporaryDirectory() as folder, contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()):
         exec("".join(code), names)
-    found: ck.Picture = names["picture"]
+    found: ck.results.Picture = names["picture"]
     return found
 
 
-def six_bar() -> ck.Picture:
+def six_bar() -> ck.results.Picture:
     """The six-bar at 35 degrees, with the path of G."""
     return ck.draw(SIX_BAR, AT, paths="G")
 
 
-def posed() -> ck.Motion:
+def posed() -> ck.results.Motion:
     """The six-bar at that pose alone."""
     return ck.solve(SIX_BAR, {"crank": [AT]})
 
 
-def modes() -> ck.Picture:
+def modes() -> ck.results.Picture:
     """A four-bar in both assembly modes of its dyad, the second one faint."""
     mechanism, values = load_named("crank-rocker"), {"crank": [ck.deg(60)]}
     return with_ghosts(*(ck.solve(mechanism, values, modes={"rocker": sign}) for sign in (1, -1)))
 
 
-def limit() -> ck.Picture:
+def limit() -> ck.results.Picture:
     """A triple rocker at a limit position, where its two modes meet; faint both modes before it."""
     mechanism = load_named("triple-rocker")
     (greatest,) = {limit.value for limit in ck.circuits(mechanism).limits if limit.greatest and limit.value > 0}
@@ -59,7 +59,7 @@ def limit() -> ck.Picture:
     return with_ghosts(at_limit, *before)
 
 
-def with_ghosts(motion: ck.Motion, *others: ck.Motion) -> ck.Picture:
+def with_ghosts(motion: ck.results.Motion, *others: ck.results.Motion) -> ck.results.Picture:
     """The sketch of a motion of one pose, others drawn faintly behind it."""
     shown, *ghosts = (scene_of(one, None, None, 0) for one in (motion, *others))
     window = window_on(shown, ghosts)
@@ -69,10 +69,10 @@ def with_ghosts(motion: ck.Motion, *others: ck.Motion) -> ck.Picture:
     wide, high = complex(window.width), complex(0.0, window.height)
     paper = Polygon((0j, wide, wide + high, high), "paper")
     shapes = (paper, *(ghost(scene, window) for scene in ghosts), *sketch, *names)
-    return ck.Picture(shapes, window.width, window.height, motion.mechanism.title, window=window)
+    return ck.results.Picture(shapes, window.width, window.height, motion.mechanism.title, window=window)
 
 
-FIGURES: dict[str, Callable[[], ck.Picture | ck.Animation]] = {
+FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "moving": lambda: ck.animate(SIX_BAR, paths="G"),
     "crank-rocker": crank_rocker,
     "six-bar": six_bar,

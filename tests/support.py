@@ -64,7 +64,7 @@ def sample(kind: type[Pair], tag: str = "") -> Pair:
 
 
 # Flat enough for its centres of curvature to keep away from the random points of most tests.
-OVAL = ck.formula(lambda s: 0.3 * np.cos(s) + 0.25j * np.sin(s), 0.0, 2 * np.pi)
+OVAL = ck.profiles.formula(lambda s: 0.3 * np.cos(s) + 0.25j * np.sin(s), 0.0, 2 * np.pi)
 
 
 def ends_at(pair: Pair, rng: np.random.Generator, poses: tuple[Pose, ...]) -> tuple[End, ...]:
@@ -205,7 +205,7 @@ def well_conditioned(mechanism: ck.Mechanism, limit: float, reach: float) -> boo
     """Whether no link is much faster than the driver within some reach of the drawn pose: no limit position is near."""
     values = {name: value + reach * np.linspace(-1.0, 1.0, 9) for name, value in home(mechanism).items()}
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         motion = ck.solve(mechanism, values, order=2)
     if not np.all(motion.assembled):
         return False

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import compoundkin as ck
+
 ROOT = Path(__file__).parent.parent
 
 
@@ -35,10 +37,15 @@ def test_it_holds_all_of_the_catalog_and_the_types_marker(unpacked):
     assert (unpacked / "compoundkin" / "py.typed").is_file()
 
 
+def test_its_version_is_that_of_the_package(unpacked):
+    assert [path.name for path in unpacked.glob("*.dist-info")] == [f"compoundkin-{ck.__version__}.dist-info"]
+
+
 def test_it_holds_what_pages_are_made_with(unpacked):
-    assets = ROOT / "compoundkin" / "pages" / "assets"
+    assets = ROOT / "compoundkin" / "view" / "page" / "assets"
     held = {path.relative_to(assets) for path in assets.rglob("*") if path.is_file()}
-    there = unpacked / "compoundkin" / "pages" / "assets"
+    assert held
+    there = unpacked / "compoundkin" / "view" / "page" / "assets"
     assert {path.relative_to(there) for path in there.rglob("*") if path.is_file()} == held
     page = run(unpacked, "-m", "compoundkin", "report", "crank-rocker", "--format", "html").stdout
     assert page.startswith("<!DOCTYPE html>")

@@ -146,7 +146,7 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
     >>> eccentric = ck.Mechanism(
     ...     "Eccentric", ck.link("frame", A=0), ck.link("cam", A=0), ck.link("follower", P=0),
     ...     ck.slide("follower", on="frame", through="A", angle=ck.deg(90)),
-    ...     ck.cam("follower", on="cam", profile=ck.disc(20, (10, 0)), radius=5), ck.drive("cam"))
+    ...     ck.cam("follower", on="cam", profile=ck.profiles.disc(20, (10, 0)), radius=5), ck.drive("cam"))
     >>> found = cam_analysis(ck.solve(eccentric, {"cam": ck.deg([0, 90])}), "follower/cam")
     >>> np.rad2deg(found.pressure_angle).round(6).tolist()  # arcsin(10 / 25)
     [23.578178, 0.0]

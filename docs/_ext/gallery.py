@@ -97,11 +97,11 @@ def files_of(name: str, mechanism: ck.Mechanism) -> dict[str, str]:
     return found
 
 
-def taken_apart(shown: ck.Motion | ck.Mechanism) -> ck.Picture | None:
+def taken_apart(shown: ck.results.Motion | ck.Mechanism) -> ck.results.Picture | None:
     """The picture of its groups; none for what is not determined."""
     try:
         return ck.draw(shown, kind="groups")
-    except ck.NotDetermined:
+    except ck.errors.NotDetermined:
         return None
 
 
@@ -120,7 +120,7 @@ def structure_of(mechanism: ck.Mechanism) -> str:
     return f"{len(mechanism.links)} links; {mobility_of(structure)}; {many} {', '.join(groups)}; {name}"
 
 
-def mobility_of(structure: ck.Structure) -> str:
+def mobility_of(structure: ck.results.Structure) -> str:
     """The count, and where that is not true the mobility of the mechanism's own dimensions."""
     count = structure.mobility.freedoms
     if not structure.faults:

@@ -10,14 +10,17 @@ from sphinx.application import Sphinx
 from sphinx.domains.python import PyXRefRole
 
 import compoundkin as ck
-from compoundkin.base import errors
 
+# Where every public name is described: the package, its named modules, not those whose names are words of all days.
+NAMED = ("results", "errors", "laws", "profiles", "chains", "composing", "coupler", "advantage", "cams", "equivalents")
+PLACES = {name: f"compoundkin.{part}.{name}" for part in NAMED for name in getattr(ck, part).__all__}
+PLACES |= {name: f"compoundkin.{name}" for name in ck.__all__}
 # `Motion`, `Pair.glyph`: never parameters or words of files, which are written in lower case.
 NAME_OF_CLASS = re.compile(r"[A-Z]\w*[a-z]\w*(\.\w+)*")
 # `gaps()` is a function; `gaps` may be a parameter.
 CALL = re.compile(r"(\w+)\(\)")
 # What a function raises stands in its docstring without backticks.
-RAISED = re.compile(rf"(?<![`\w.])({'|'.join(name for name in ck.__all__ if hasattr(errors, name))})\b(?!`)")
+RAISED = re.compile(rf"(?<![`\w.])({'|'.join(set(ck.errors.__all__) - {'Problem'})})\b(?!`)")
 # Nobody makes these but the program: what they are made of says nothing to a reader.
 MADE = ("Motion", "PointMotion", "LinkMotion", "PairMotion", "Centres")
 # How Sphinx writes an alias that is part of a longer type.
@@ -30,11 +33,12 @@ class Name(PyXRefRole):
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
         """A link or a literal."""
         call = CALL.fullmatch(self.text)
-        known = call is not None and call[1] in ck.__all__
+        known = call is not None and call[1] in PLACES
         if known or NAME_OF_CLASS.fullmatch(self.text):
             own = call[1] if call else self.text
             self.name = "py:obj"
-            self.target = f"compoundkin.{own}" if own.split(".")[0] in ck.__all__ else own
+            first, *members = own.split(".")
+            self.target = ".".join((PLACES.get(first, first), *members))
             return super().run()
         return [nodes.literal(self.rawtext, self.text, classes=["code"])], []
 

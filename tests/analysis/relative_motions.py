@@ -17,17 +17,17 @@ KINDS = [("RRR",), ("RRP",), ("RPR",), ("RRR", "RPR"), ("RRP", "RRR"), ("PRP", "
 FASTEST = 40.0
 
 
-def catalog(name: str, **words: Any) -> ck.Motion:
+def catalog(name: str, **words: Any) -> ck.results.Motion:
     """A shipped mechanism over its own motion, all drivers at unit speed; solved once where nothing else is asked."""
     return _solved(name, **words) if words else _own_motion(name)
 
 
 @cache
-def _own_motion(name: str) -> ck.Motion:
+def _own_motion(name: str) -> ck.results.Motion:
     return _solved(name)
 
 
-def _solved(name: str, **words: Any) -> ck.Motion:
+def _solved(name: str, **words: Any) -> ck.results.Motion:
     mechanism = load_named(name)
     return ck.solve(mechanism, speed={drive.name: 1.0 for drive in mechanism.drives}, **words)
 
@@ -44,7 +44,7 @@ def random_mechanism(seed: int, change: Callable[[complex], complex] = complex) 
     raise AssertionError("no well-conditioned mechanism was drawn")
 
 
-def turning_pairs(motion: ck.Motion, least: float = 1e-3) -> list[tuple[str, str]]:
+def turning_pairs(motion: ck.results.Motion, least: float = 1e-3) -> list[tuple[str, str]]:
     """All ordered pairs of links that turn relative to each other at every pose, at `least` so fast."""
     links = motion.links
     found = []
@@ -56,7 +56,7 @@ def turning_pairs(motion: ck.Motion, least: float = 1e-3) -> list[tuple[str, str
     return found
 
 
-def fastest(motion: ck.Motion) -> Any:
+def fastest(motion: ck.results.Motion) -> Any:
     """The rate of the fastest link at each pose, rad/s."""
     rates = [np.abs(link.angular_velocity) for link in motion.links.values()]
     rates += [link.origin.speed / motion.size for link in motion.links.values()]

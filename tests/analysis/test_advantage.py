@@ -12,7 +12,7 @@ from compoundkin.files.shipped_mechanisms import load_named
 from tests.analysis.relative_motions import catalog, random_mechanism
 from tests.support import differences, home
 
-pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.base.errors.UnassembledPoses")
+pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
 
 
 def test_four_bar_of_norton() -> None:
@@ -134,19 +134,19 @@ def test_both_at_rest_is_not_defined() -> None:
 
 def test_bad_input_says_what_is_wrong() -> None:
     motion = catalog("crank-rocker")
-    with pytest.raises(ck.UnknownName, match="no moving link, pair or driver 'rockr'; did you mean 'rocker'"):
+    with pytest.raises(ck.errors.UnknownName, match="no moving link, pair or driver 'rockr'; did you mean 'rocker'"):
         mechanical_advantage(motion, "rockr", "crank")
-    with pytest.raises(ck.UnknownName, match="input: there is no moving link"):
+    with pytest.raises(ck.errors.UnknownName, match="input: there is no moving link"):
         mechanical_advantage(motion, "rocker", "frame")
-    with pytest.raises(ck.UnknownName, match="no such point"):
+    with pytest.raises(ck.errors.UnknownName, match="no such point"):
         mechanical_advantage(motion, ForcePort("coupler", "Q", 0.0), "crank")
-    with pytest.raises(ck.InvalidInput, match="output: 3 is no place"):
+    with pytest.raises(ck.errors.InvalidInput, match="output: 3 is no place"):
         mechanical_advantage(motion, 3, "crank")  # type: ignore[arg-type]
-    with pytest.raises(ck.InvalidInput, match=r"output.angle: 'up' is not an angle"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"output.angle: 'up' is not an angle"):
         mechanical_advantage(motion, ForcePort("coupler", "C", "up"), "crank")
-    with pytest.raises(ck.InvalidInput, match="no driver moves"):
+    with pytest.raises(ck.errors.InvalidInput, match="no driver moves"):
         mechanical_advantage(ck.solve(load_named("crank-rocker"), speed=0.0), "rocker", "crank")
-    with pytest.raises(ck.InvalidInput, match="solved to order 0"):
+    with pytest.raises(ck.errors.InvalidInput, match="solved to order 0"):
         mechanical_advantage(ck.solve(load_named("crank-rocker"), order=0), "rocker", "crank")
-    with pytest.raises(ck.InvalidInput, match="several drivers move at once"):
+    with pytest.raises(ck.errors.InvalidInput, match="several drivers move at once"):
         mechanical_advantage(catalog("five-bar"), "left", "right")

@@ -12,22 +12,29 @@ import pytest
 import compoundkin as ck
 from tests.model.test_profiles import mechanism
 
-RISE = ck.program(ck.rise(30, ck.deg(120)), ck.dwell(ck.deg(60)), ck.fall(30, ck.deg(120)), ck.dwell(ck.deg(60)))
-SWING = ck.program(
-    ck.rise(ck.deg(25), ck.deg(120)), ck.dwell(ck.deg(60)), ck.fall(ck.deg(25), ck.deg(120)), ck.dwell(ck.deg(60))
+RISE = ck.laws.program(
+    ck.laws.rise(30, ck.deg(120)), ck.laws.dwell(ck.deg(60)), ck.laws.fall(30, ck.deg(120)), ck.laws.dwell(ck.deg(60))
+)
+SWING = ck.laws.program(
+    ck.laws.rise(ck.deg(25), ck.deg(120)),
+    ck.laws.dwell(ck.deg(60)),
+    ck.laws.fall(ck.deg(25), ck.deg(120)),
+    ck.laws.dwell(ck.deg(60)),
 )
 
 
-def analysed(cam: Any, angles: Any, speed: float = 1.0) -> ck.CamAnalysis:
+def analysed(cam: Any, angles: Any, speed: float = 1.0) -> ck.cams.CamAnalysis:
     motion = ck.solve(mechanism(cam), {"cam": angles}, speed=speed)
-    return ck.cam_analysis(motion, motion.mechanism.written_pairs[-1].name)
+    return ck.cams.cam_analysis(motion, motion.mechanism.written_pairs[-1].name)
 
 
 def test_pressure_angle_of_an_offset_roller() -> None:
     """tan(phi) = (S' - e) / (S + y0): E. Soylemez, Mechanisms, section 8.5."""
     for offset in (12.0, -12.0):
         for clockwise in (False, True):
-            cam = ck.synthesise(RISE, base=40, follower="roller", roller=10, offset=offset, clockwise=clockwise)
+            cam = ck.profiles.synthesise(
+                RISE, base=40, follower="roller", roller=10, offset=offset, clockwise=clockwise
+            )
             angles = ck.deg(np.array([0, 30, 60, 90, 120])) * (-1 if clockwise else 1)
             found = analysed(cam, angles)
             u = np.array([0, 0.25, 0.5, 0.75, 1.0])
@@ -42,10 +49,10 @@ def test_pressure_angle_of_an_offset_roller() -> None:
 
 def test_greatest_pressure_angles() -> None:
     angles = ck.deg(np.linspace(0, 120, 12_001))
-    best = analysed(ck.synthesise(RISE, base=40, follower="roller", roller=10, offset=-12), angles)
+    best = analysed(ck.profiles.synthesise(RISE, base=40, follower="roller", roller=10, offset=-12), angles)
     assert abs(np.rad2deg(best.greatest_pressure_angle) - 14.870873) < 1e-6
     assert not best.warnings
-    worst = analysed(ck.synthesise(RISE, base=40, follower="roller", roller=10, offset=12), angles)
+    worst = analysed(ck.profiles.synthesise(RISE, base=40, follower="roller", roller=10, offset=12), angles)
     u = np.linspace(0, 1, 120_001)
     s = 30 * (u - np.sin(2 * np.pi * u) / (2 * np.pi)) + np.sqrt(50**2 - 12**2)
     greatest = np.rad2deg(np.max(np.arctan((30 * (1 - np.cos(2 * np.pi * u)) / ck.deg(120) + 12) / s)))
@@ -53,7 +60,7 @@ def test_greatest_pressure_angles() -> None:
     assert warning == f"The pressure angle reaches {greatest:.4g} degrees, more than the customary 30."
     # an oscillating roller, centre distance 80, arm 60: two ways of turning
     for side, greatest in ((1, 18.843680), (-1, 29.868069)):
-        cam = ck.synthesise(SWING, base=40, follower="roller", roller=10, pivot=80, arm=60, side=side)
+        cam = ck.profiles.synthesise(SWING, base=40, follower="roller", roller=10, pivot=80, arm=60, side=side)
         found = analysed(cam, angles)
         assert abs(np.rad2deg(found.greatest_pressure_angle) - greatest) < 2e-6
         assert found.oscillates is True
@@ -61,7 +68,7 @@ def test_greatest_pressure_angles() -> None:
 
 def test_radii_of_curvature_of_an_offset_roller() -> None:
     """rho of the pitch curve by its polar-like formula, least 47.365; the profile's is less by the roller's."""
-    cam = ck.synthesise(RISE, base=40, follower="roller", roller=10, offset=-12)
+    cam = ck.profiles.synthesise(RISE, base=40, follower="roller", roller=10, offset=-12)
     found = analysed(cam, ck.deg(np.linspace(0, 120, 12_001)))
     u = np.linspace(0, 1, 12_001)
     s = 30 * (u - np.sin(2 * np.pi * u) / (2 * np.pi)) + np.sqrt(50**2 - 12**2)
@@ -76,7 +83,9 @@ def test_radii_of_curvature_of_an_offset_roller() -> None:
 
 def test_a_flat_face_has_no_pressure_angle_and_slides() -> None:
     """On a face square to its guide the normal is along it; the contact is S' from the guide."""
-    cam = ck.synthesise(ck.program(ck.rise(20, np.pi), ck.fall(20, np.pi)), base=40, follower="flat")
+    cam = ck.profiles.synthesise(
+        ck.laws.program(ck.laws.rise(20, np.pi), ck.laws.fall(20, np.pi)), base=40, follower="flat"
+    )
     angles = np.linspace(0.2, 6.0, 50)
     found = analysed(cam, angles, speed=3.0)
     assert np.max(np.abs(found.pressure_angle)) < 1e-12
@@ -97,11 +106,11 @@ def test_a_roller_spins_as_it_rolls() -> None:
         ck.link("cam", A=0, M=10),
         ck.link("follower", P=0),
         ck.slide("follower", on="frame", through="A", angle=np.pi / 2),
-        ck.cam("follower", on="cam", profile=ck.disc(20, 10), radius=5),
+        ck.cam("follower", on="cam", profile=ck.profiles.disc(20, 10), radius=5),
         ck.drive("cam", speed=2.0),
     )
     motion = ck.solve(mechanism_, {"cam": np.linspace(0.0, 6.0, 25)})
-    found = ck.cam_analysis(motion, "follower/cam")
+    found = ck.cams.cam_analysis(motion, "follower/cam")
     bar = motion.points["P"].position - 10 * np.exp(1j * np.linspace(0.0, 6.0, 25))
     speed = motion.points["P"].velocity - 20j * np.exp(1j * np.linspace(0.0, 6.0, 25))
     turning = (np.conj(bar) * speed).imag / np.abs(bar) ** 2
@@ -111,12 +120,12 @@ def test_a_roller_spins_as_it_rolls() -> None:
 
 def test_hollows_that_are_bridged() -> None:
     """A bean: a flat face bridges its hollow, a large roller too; a small one goes through it."""
-    bean = ck.formula(lambda s: (30 + 8 * np.cos(2 * s)) * np.exp(1j * s), 0.0, 2 * np.pi)
+    bean = ck.profiles.formula(lambda s: (30 + 8 * np.cos(2 * s)) * np.exp(1j * s), 0.0, 2 * np.pi)
     base = ck.link("frame", A=0), ck.link("cam", A=0), ck.link("follower", P=0), ck.drive("cam")
     slide = ck.slide("follower", on="frame", through="A", angle=np.pi / 2)
 
-    def analysis(pair: Any) -> ck.CamAnalysis:
-        return ck.cam_analysis(ck.solve(ck.Mechanism("bean", *base, slide, pair)), "follower/cam")
+    def analysis(pair: Any) -> ck.cams.CamAnalysis:
+        return ck.cams.cam_analysis(ck.solve(ck.Mechanism("bean", *base, slide, pair)), "follower/cam")
 
     face = analysis(ck.face("follower", on="cam", profile=bean, angle=np.pi / 2))
     assert len(face.untouched) == 2
@@ -150,27 +159,27 @@ def test_the_end_of_an_open_profile() -> None:
         ck.link("pin", P=0),
         ck.slide("plate", on="frame", through="A"),
         ck.slide("pin", on="frame", through="X", angle=np.pi / 2),
-        ck.cam("pin", on="plate", profile=ck.profile(x + 1j * x**2 / 40, closed=False)),
+        ck.cam("pin", on="plate", profile=ck.profiles.profile(x + 1j * x**2 / 40, closed=False)),
     )
     for reach, near in ((30.0, False), (49.5, True)):
         drive = ck.drive("plate", values=np.linspace(-20.0, reach, 50))
-        found = ck.cam_analysis(ck.solve(ck.Mechanism("slot", *parts, drive)), "pin/plate")
+        found = ck.cams.cam_analysis(ck.solve(ck.Mechanism("slot", *parts, drive)), "pin/plate")
         assert any("end of the open profile" in w for w in found.warnings) is near
 
 
 def test_what_cannot_be_analysed() -> None:
-    cam = ck.synthesise(RISE, base=40)
+    cam = ck.profiles.synthesise(RISE, base=40)
     motion = ck.solve(mechanism(cam))
-    with pytest.raises(ck.UnknownName, match="did you mean 'follower/cam'"):
-        ck.cam_analysis(motion, "folower/cam")
-    with pytest.raises(ck.InvalidInput, match="a prismatic pair has no profile"):
-        ck.cam_analysis(motion, "guide")
-    with pytest.raises(ck.InvalidInput, match="no velocities"):
-        ck.cam_analysis(ck.solve(mechanism(cam), order=0), "follower/cam")
+    with pytest.raises(ck.errors.UnknownName, match="did you mean 'follower/cam'"):
+        ck.cams.cam_analysis(motion, "folower/cam")
+    with pytest.raises(ck.errors.InvalidInput, match="a prismatic pair has no profile"):
+        ck.cams.cam_analysis(motion, "guide")
+    with pytest.raises(ck.errors.InvalidInput, match="no velocities"):
+        ck.cams.cam_analysis(ck.solve(mechanism(cam), order=0), "follower/cam")
 
 
 def test_the_report_has_a_section_on_cams() -> None:
-    cam = ck.synthesise(RISE, base=40, follower="roller", roller=10, offset=12)
+    cam = ck.profiles.synthesise(RISE, base=40, follower="roller", roller=10, offset=12)
     report = ck.report(ck.solve(mechanism(cam), {"cam": ck.deg(np.arange(0, 361, 1))}))
     section = report.section("cams")
     assert section is not None

@@ -13,7 +13,7 @@ from compoundkin.files.shipped_mechanisms import load_named, names
 from tests.analysis.relative_motions import catalog, fastest, random_mechanism, turning_pairs
 from tests.support import differences, home
 
-pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.base.errors.UnassembledPoses")
+pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
 
 
 def test_elliptic_trammel_has_the_circles_of_cardan() -> None:
@@ -119,7 +119,7 @@ def test_three_poles_of_three_links_lie_on_a_line(name: str) -> None:
                 assert np.abs(np.linalg.det(np.stack(rows, axis=-2)[good])) == pytest.approx(0.0, abs=1e-9)
 
 
-def _world(motion: ck.Motion, link: str, on: str) -> Any:
+def _world(motion: ck.results.Motion, link: str, on: str) -> Any:
     found = coupler.pole(motion, link, on)
     far = np.exp(1j * motion.links[on].angle) * found.direction
     place = np.where(found.infinite, far, np.where(found.infinite, 0.0, found.world) / motion.size)
@@ -276,21 +276,23 @@ def test_links_that_never_move_relative_to_each_other_have_no_pole() -> None:
 def test_bad_input_says_what_is_wrong() -> None:
     mechanism = load_named("crank-rocker")
     motion = ck.solve(mechanism, order=1)
-    with pytest.raises(ck.UnknownName, match="did you mean 'coupler'"):
+    with pytest.raises(ck.errors.UnknownName, match="did you mean 'coupler'"):
         coupler.pole(motion, "couplr")
-    with pytest.raises(ck.UnknownName, match="did you mean 'rocker'"):
+    with pytest.raises(ck.errors.UnknownName, match="did you mean 'rocker'"):
         coupler.relative_point(motion, "coupler", "B", on="rockr")
-    with pytest.raises(ck.UnknownName, match="link 'coupler' has no such point; known: B, C"):
+    with pytest.raises(ck.errors.UnknownName, match="link 'coupler' has no such point; known: B, C"):
         coupler.relative_point(motion, "coupler", "Q")
-    with pytest.raises(ck.InvalidInput, match="does not move relative to itself"):
+    with pytest.raises(ck.errors.InvalidInput, match="does not move relative to itself"):
         coupler.relative_link(motion, "coupler", on="coupler")
-    with pytest.raises(ck.InvalidInput, match="not a point"):
+    with pytest.raises(ck.errors.InvalidInput, match="not a point"):
         coupler.relative_point(motion, "coupler", (1, 2, 3))
-    with pytest.raises(ck.InvalidInput, match="does not broadcast"):
+    with pytest.raises(ck.errors.InvalidInput, match="does not broadcast"):
         coupler.relative_point(motion, "coupler", np.zeros(5, complex))
-    with pytest.raises(ck.InvalidInput, match=r"order 2; the motion was solved to order 1; solve\(..., order=2\)"):
+    with pytest.raises(
+        ck.errors.InvalidInput, match=r"order 2; the motion was solved to order 1; solve\(..., order=2\)"
+    ):
         coupler.centrodes(motion, "coupler")
-    with pytest.raises(ck.InvalidInput, match="order 1"):
+    with pytest.raises(ck.errors.InvalidInput, match="order 1"):
         coupler.pole(ck.solve(mechanism, order=0), "coupler")
-    with pytest.raises(ck.InvalidInput, match=r"no driver moves at pose \(3,\)"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"no driver moves at pose \(3,\)"):
         coupler.pole(ck.solve(mechanism, {"crank": np.arange(5.0)}, speed=[1, 1, 1, 0, 1]), "coupler")

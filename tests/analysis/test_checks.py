@@ -94,7 +94,7 @@ def test_not_a_number_does_not_pass():
 
 
 def test_a_motion_without_any_assembled_pose_does_not_pass():
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(FOUR_BAR.replace(ck.link("rocker", D=0, C=30)))
     assert not ck.verify(motion).passed
 

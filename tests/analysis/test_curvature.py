@@ -17,18 +17,18 @@ pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.base.errors.Unassem
 SEEDS = range(12)
 
 
-def random_motion(seed: int, **words: Any) -> ck.Motion:
+def random_motion(seed: int, **words: Any) -> ck.results.Motion:
     mechanism = random_mechanism(seed)
     return ck.solve(mechanism, home(mechanism), **{"speed": 1.0, "order": 3, **words})
 
 
-def local(motion: ck.Motion, link: str, on: str, points: Any) -> Any:
+def local(motion: ck.results.Motion, link: str, on: str, points: Any) -> Any:
     """Points of the observing link's frame in the moving link's own."""
     seen = coupler.relative_link(motion, link, on)
     return np.exp(-1j * seen.angle) * (points - np.asarray(seen.origin.position))
 
 
-def well_placed(motion: ck.Motion, link: str, point: Any, on: str, rate: Any) -> Any:
+def well_placed(motion: ck.results.Motion, link: str, point: Any, on: str, rate: Any) -> Any:
     """Poses at which neither the point nor the turning is nearly at rest: there curvature is ill-conditioned."""
     seen = coupler.relative_link(motion, link, on)
     speed = np.asarray(coupler.relative_point(motion, link, point, on).speed)
@@ -313,15 +313,15 @@ def test_bad_input_says_what_is_wrong() -> None:
     low, still = ck.solve(mechanism, order=1), ck.solve(mechanism, speed=0.0, acceleration=1.0)
     circles = (coupler.inflection_circle, coupler.tangential_circle)
     for found in (coupler.canonical_frame, *circles, coupler.acceleration_pole):
-        with pytest.raises(ck.InvalidInput, match=r"solve\(..., order=2\)"):
+        with pytest.raises(ck.errors.InvalidInput, match=r"solve\(..., order=2\)"):
             found(low, "coupler")
-        with pytest.raises(ck.InvalidInput, match="every driver's speed is zero"):
+        with pytest.raises(ck.errors.InvalidInput, match="every driver's speed is zero"):
             found(still, "coupler")
-    with pytest.raises(ck.InvalidInput, match=r"solve\(..., order=3\)"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"solve\(..., order=3\)"):
         coupler.stationary_curvature(ck.solve(mechanism), "coupler")
-    with pytest.raises(ck.InvalidInput, match=r"solve\(..., order=3\)"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"solve\(..., order=3\)"):
         coupler.curvature_rate(ck.solve(mechanism), "coupler", "B")
-    with pytest.raises(ck.UnknownName, match="'coupler'"):
+    with pytest.raises(ck.errors.UnknownName, match="'coupler'"):
         coupler.path_curvature(ck.solve(mechanism), "copler", "B")
-    with pytest.raises(ck.UnknownName, match="no such point"):
+    with pytest.raises(ck.errors.UnknownName, match="no such point"):
         coupler.euler_savary(ck.solve(mechanism), "coupler", "A")

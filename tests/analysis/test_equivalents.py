@@ -7,18 +7,19 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.equivalents import equivalent_linkage, replaced
+from compoundkin.model.elements import Link
 from compoundkin.model.pairs import Pair
 from tests import catalog
 
 # the geared five-bars do not close all round
-pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.UnassembledPoses")
+pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
 
 
-def oval() -> ck.pairs.cam.Profile:
-    return ck.formula(lambda s: 30 * np.cos(s) + 1j * 22 * np.sin(s) + 4, 0, 2 * np.pi)
+def oval() -> ck.profiles.Profile:
+    return ck.profiles.formula(lambda s: 30 * np.cos(s) + 1j * 22 * np.sin(s) + 4, 0, 2 * np.pi)
 
 
-def cam_with(*items: Pair | ck.words.Link) -> ck.Mechanism:
+def cam_with(*items: Pair | Link) -> ck.Mechanism:
     frame = ck.link("frame", A=(0, 0), X=(6, 0), H=(60, 10))
     return ck.Mechanism("Cam", frame, ck.link("cam", A=0, M=8), *items, ck.drive("cam", speed=7.0))
 
@@ -123,7 +124,7 @@ def test_the_centres_of_curvature_of_an_ellipse() -> None:
 
 
 def test_a_pose_that_is_not_assembled_is_refused() -> None:
-    with pytest.raises(ck.InvalidInput, match="pose 99"):
+    with pytest.raises(ck.errors.InvalidInput, match="pose 99"):
         equivalent_linkage(ck.solve(CASES["slot"]), 99)
 
 

@@ -35,7 +35,7 @@ def hand_and_loop() -> None:
     crank, plan = np.linspace(0.0, 2 * np.pi, MANY), six_bar.mechanism()
     some = crank[: LOOPED * (MANY // LOOPED) : MANY // LOOPED]
 
-    def solved() -> ck.Motion:
+    def solved() -> ck.results.Motion:
         return ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)
 
     fast = interleaved(
@@ -102,7 +102,7 @@ def large() -> None:
     task(f"class III group, {MANY:,} poses", MANY, lambda: ck.solve(triad, {"crank": turn}, speed=six_bar.SPEED))
 
 
-def task(label: str, poses: int, call: Callable[[], ck.Motion]) -> None:
+def task(label: str, poses: int, call: Callable[[], ck.results.Motion]) -> None:
     """One row: time a pose, time in all, and the highest memory."""
     times = interleaved({"it": call}, 3)
     tracemalloc.start()

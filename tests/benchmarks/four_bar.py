@@ -28,7 +28,7 @@ def mechanism() -> ck.Mechanism:
     )
 
 
-def asked(motion: ck.Motion, order: int) -> Answer:
+def asked(motion: ck.results.Motion, order: int) -> Answer:
     """The points' positions and rates: what pylinkage computes."""
     return {k: tuple(motion.points[k].derivative(j) for j in range(order + 1)) for k in ("D", "A", "C")}
 

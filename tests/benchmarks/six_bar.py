@@ -38,7 +38,7 @@ def mechanism(rocker: Any = AB, plate: Any = DA) -> ck.Mechanism:
     )
 
 
-def asked(motion: ck.Motion) -> Answer:
+def asked(motion: ck.results.Motion) -> Answer:
     """Everything the other two compute, asked of a motion."""
     found: Answer = {}
     for name in POINTS:

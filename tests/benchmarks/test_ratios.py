@@ -62,7 +62,7 @@ def test_pylinkage_agrees_and_is_slower(order: int) -> None:
 def test_six_bar_by_hand_and_by_loop() -> None:
     plan, some = six_bar.mechanism(), TURN[::360]
 
-    def solved() -> ck.Motion:
+    def solved() -> ck.results.Motion:
         return ck.solve(plan, {"crank": TURN}, speed=six_bar.SPEED)
 
     fast = interleaved(

@@ -463,11 +463,11 @@ def test_options_that_drive_need_a_driver(run: Run, tmp_path: Path) -> None:
     [
         (KeyboardInterrupt(), 130, "Interrupted.\n"),
         (MemoryError(), 2, "not enough memory"),
-        (ck.NotAssembled(Problem("here", "no pose", "draw it")), 3,
+        (ck.errors.NotAssembled(Problem("here", "no pose", "draw it")), 3,
          "Error: no pose\n  where:  here\n  remedy: draw it\n"),
-        (ck.InvalidInput([Problem("a", "x"), Problem("b", "y")], "bad"), 2,
+        (ck.errors.InvalidInput([Problem("a", "x"), Problem("b", "y")], "bad"), 2,
          "Error: bad\n  - x\n    where:  a\n  - y\n    where:  b\n"),
-        (ck.InvalidInput([Problem("a", "x"), Problem("b", "y")]), 2, "Error: 2 problems\n"),
+        (ck.errors.InvalidInput([Problem("a", "x"), Problem("b", "y")]), 2, "Error: 2 problems\n"),
     ],
 )  # fmt: skip
 def test_whatever_goes_wrong_has_a_message_and_a_code(

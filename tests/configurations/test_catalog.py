@@ -51,15 +51,15 @@ def test_what_textbooks_say_of_them(name: str, windings: list[int], branches: li
 def test_configurations_that_were_not_found_here_are_refused() -> None:
     found = of("five-bar")
     other = ck.configurations(found.structure, {"left": 1.2, "right": 1.9}).pick(0)
-    with pytest.raises(ck.InvalidInput, match="right stand"):
+    with pytest.raises(ck.errors.InvalidInput, match="right stand"):
         found.at(other)
 
 
 def test_circuits_of_different_number_are_not_connected() -> None:
     found = of("crank-rocker")
-    with pytest.raises(ck.InvalidInput, match="not connected"):
+    with pytest.raises(ck.errors.InvalidInput, match="not connected"):
         found.path(1, 2)
-    with pytest.raises(ck.InvalidInput, match="no branch 7"):
+    with pytest.raises(ck.errors.InvalidInput, match="no branch 7"):
         found.path(1, 7)
 
 
@@ -73,7 +73,7 @@ def test_circuits_of_different_number_are_not_connected() -> None:
     ],
 )
 def test_wrong_words(words: dict[str, object], text: str) -> None:
-    with pytest.raises(ck.InvalidInput, match=text):
+    with pytest.raises(ck.errors.InvalidInput, match=text):
         ck.circuits(load_named("crank-rocker"), **words)  # type: ignore[arg-type]
 
 
@@ -102,7 +102,7 @@ def test_one_design_of_several() -> None:
     assert [circuit.winding for circuit in first.circuits] == [1, 1]
     limit = float(np.arccos((1 + 6.5**2 - 36) / 13))
     assert sorted(one.value for one in second.limits) == pytest.approx([-limit, limit], abs=1e-12)
-    with pytest.raises(ck.InvalidInput, match="no design 7"):
+    with pytest.raises(ck.errors.InvalidInput, match="no design 7"):
         ck.circuits(mechanism, design=7)
 
 

@@ -450,7 +450,7 @@ def page() -> str:
         "# The catalog",
         "",
         "Shipped mechanisms, each one file in `catalog/`. A name works wherever a mechanism file does:",
-        '`compoundkin report six-bar`, or `compoundkin.files.shipped_mechanisms.load_named("six-bar")` in Python.',
+        '`compoundkin report six-bar`, or `ck.catalog.load_named("six-bar")` in Python.',
         "The groups are those of the solving order; *numbers* counts the published or independently computed",
         "values in the file that the tests hold the solution to. The source of each is in its file.",
         "",

@@ -18,7 +18,7 @@ from compoundkin.files.shipped_mechanisms import load_named
 
 
 @cache
-def motion() -> ck.Motion:
+def motion() -> ck.results.Motion:
     return ck.solve(load_named("crank-rocker"), {"crank": ck.deg([0, 20, 40])})
 
 
@@ -68,14 +68,16 @@ def test_a_motion_is_saved_as_its_whole_table(tmp_path: Path) -> None:
     ],
 )
 def test_a_wrong_suffix_is_told_what_can_be_saved_so(kind: str, name: str, told: str, tmp_path: Path) -> None:
-    with pytest.raises(ck.InvalidInput) as error:
+    with pytest.raises(ck.errors.InvalidInput) as error:
         ck.save(MAKERS[kind](), tmp_path / name)
     assert told in str(error.value)
     assert not list(tmp_path.iterdir())
 
 
 def test_what_cannot_be_saved_is_told_what_can(tmp_path: Path) -> None:
-    with pytest.raises(ck.InvalidInput, match=r"a list cannot be saved; mechanism files end in .*; tables end in .*; "):
+    with pytest.raises(
+        ck.errors.InvalidInput, match=r"a list cannot be saved; mechanism files end in .*; tables end in .*; "
+    ):
         ck.save([1, 2], tmp_path / "a.csv")
 
 
@@ -88,12 +90,12 @@ def test_pages_and_reports_need_no_suffix(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", SUFFIXES)
 def test_a_file_that_cannot_be_written_is_told(kind: str, tmp_path: Path) -> None:
-    with pytest.raises(ck.InvalidInput, match="cannot be written"):
+    with pytest.raises(ck.errors.InvalidInput, match="cannot be written"):
         ck.save(MAKERS[kind](), tmp_path / "missing" / f"a{next(iter(SUFFIXES[kind]))}")  # type: ignore[index]
 
 
 @pytest.mark.parametrize(("verb", "kind"), [("solve", "table"), ("draw", "picture"), ("plot", "plot")])
 def test_the_command_line_refuses_what_python_refuses_before_it_solves(verb: str, kind: str) -> None:
     result = CliRunner().invoke(cli, [verb, "six-bar", "-o", "a.xyz"], standalone_mode=False)
-    assert isinstance(result.exception, ck.InvalidInput)
+    assert isinstance(result.exception, ck.errors.InvalidInput)
     assert f"a {kind} is not saved as '.xyz'" in str(result.exception)

@@ -154,7 +154,7 @@ def test_a_guide_goes_on_when_its_block_passes_its_pivot():
 
 
 def test_the_pose_in_which_the_pivots_coincide_is_masked_and_explained():
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(whitworth(), {"crank": ck.deg([350.0, 355.0, 360.0, 365.0, 370.0])})
     assert motion.assembled.tolist() == [True, True, False, True, True]
     assert "coincide" in ck.gaps(motion)[0].reason
@@ -205,7 +205,7 @@ def test_a_turning_guide_is_on_the_same_branch_on_every_grid(start):
         ck.drive("crank", values=values),
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         motion = ck.solve(mechanism)
     good = motion.assembled
     expected = np.exp(1j * (values / 2 - np.pi / 2))

@@ -10,7 +10,7 @@ import compoundkin as ck
 
 def solved(mechanism, *args, **options):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         return ck.solve(mechanism, *args, **options)
 
 

@@ -39,7 +39,7 @@ def test_a_pin_without_values_makes_a_full_turn() -> None:
 
 
 def test_a_slide_without_values_is_asked_for_them() -> None:
-    with pytest.raises(ck.InvalidInput, match=r"drives\.rod: it has no values.*'rod': lengths"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"drives\.rod: it has no values.*'rod': lengths"):
         ck.solve(ram())
 
 
@@ -85,13 +85,13 @@ def test_one_driver_takes_a_plain_number() -> None:
     ],
 )
 def test_inputs_that_do_not_fit(values: dict[str, Any], words: dict[str, Any], text: str) -> None:
-    with pytest.raises(ck.InvalidInput, match=text):
+    with pytest.raises(ck.errors.InvalidInput, match=text):
         ck.solve(arm(), {"fore": 0.0, **values}, **words)
 
 
 def test_dimensions_that_do_not_fit_the_values() -> None:
     mechanism = ck.Mechanism("m", ck.link("frame", A=0), ck.link("b", A=([1, 2], 0), B=1), ck.drive("b"))
-    with pytest.raises(ck.InvalidInput, match="does not broadcast"):
+    with pytest.raises(ck.errors.InvalidInput, match="does not broadcast"):
         ck.solve(mechanism, {"b": [0, 1, 2]})
 
 

@@ -29,7 +29,7 @@ def four_bar(crank: Any = 1.0, coupler: Any = 3.0, rocker: Any = 3.0, frame: Any
 
 def quietly(*args: Any, **words: Any) -> Motion:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         return ck.solve(*args, **words)
 
 
@@ -254,16 +254,16 @@ def test_every_order(order: int) -> None:
             assert np.allclose(getattr(motion.pairs["C"], pair), getattr(full.pairs["C"], pair))
         else:
             for thing, attribute in ((point, name), (motion.links["coupler"], rate), (motion.pairs["C"], pair)):
-                with pytest.raises(ck.InvalidInput, match=rf"{name}: .*order {order}.*order={k}"):
+                with pytest.raises(ck.errors.InvalidInput, match=rf"{name}: .*order {order}.*order={k}"):
                     getattr(thing, attribute)
     for k in (4, -1):
-        with pytest.raises(ck.InvalidInput, match=f"derivative {k}"):
+        with pytest.raises(ck.errors.InvalidInput, match=f"derivative {k}"):
             point.derivative(k)
 
 
 @pytest.mark.parametrize("order", [-1, 4, 1.5, True, "2", None])
 def test_orders_that_are_none(order: object) -> None:
-    with pytest.raises(ck.InvalidInput, match=r"order: .* is not an order"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"order: .* is not an order"):
         ck.solve(four_bar(), order=order)  # type: ignore[arg-type]
 
 
@@ -299,9 +299,9 @@ def test_any_point_of_a_link() -> None:
     spots = grid.links["coupler"].at(np.array([0.0, 3.0])[:, None, None]).position
     assert np.allclose(spots[0], grid.points["B"].position[0])
     assert np.allclose(spots[1], grid.points["C"].position[1])
-    with pytest.raises(ck.InvalidInput, match="does not broadcast"):
+    with pytest.raises(ck.errors.InvalidInput, match="does not broadcast"):
         coupler.at(np.zeros(5))
-    with pytest.raises(ck.InvalidMechanism, match="is not a point"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="is not a point"):
         coupler.at("C")
 
 
@@ -342,7 +342,7 @@ def test_what_a_motion_holds() -> None:
         (motion.links, "cranc", "crank"),
         (motion.drives, "crnk", "crank"),
     ):
-        with pytest.raises(ck.UnknownName, match=rf"{name}: there is no such .*{near}"):
+        with pytest.raises(ck.errors.UnknownName, match=rf"{name}: there is no such .*{near}"):
             table[name]
 
 
@@ -429,7 +429,7 @@ def test_the_mode_is_chosen_at_the_drawn_pose_wherever_the_motion_starts() -> No
     ],
 )
 def test_modes_and_hints_that_fit_nothing(words: dict[str, Any], text: str) -> None:
-    with pytest.raises(ck.CompoundkinError, match=text):
+    with pytest.raises(ck.errors.CompoundkinError, match=text):
         ck.solve(four_bar(), **words)
 
 
@@ -440,7 +440,7 @@ def test_poses_that_do_not_close_are_masked_and_warned_of() -> None:
     """Crank 4, coupler 5, rocker 3, frame 7: the crank turns 88.98 degrees to either side."""
     mechanism = four_bar(4.0, 5.0, 3.0, 7.0)
     angles = ck.deg(np.arange(-180, 181, 1.0))
-    with pytest.warns(ck.UnassembledPoses, match="poses cannot be assembled.*gaps"):
+    with pytest.warns(ck.errors.UnassembledPoses, match="poses cannot be assembled.*gaps"):
         motion = ck.solve(mechanism, {"crank": angles})
     limit = np.arccos((16 + 49 - 64) / 56)
     assert np.array_equal(motion.assembled, np.abs(angles) <= limit)
@@ -522,10 +522,10 @@ def test_a_truss_is_solved_without_a_driver() -> None:
 
 def test_over_and_under_constrained_mechanisms_are_refused() -> None:
     loose = ck.Mechanism("m", *[i for i in four_bar().items if type(i).__name__ != "Drive"])
-    with pytest.raises(ck.NotDetermined, match="cannot be solved"):
+    with pytest.raises(ck.errors.NotDetermined, match="cannot be solved"):
         ck.solve(loose)
     tight = ck.Mechanism("m", *four_bar().items, ck.drive("rocker"))
-    with pytest.raises(ck.NotDetermined, match="cannot be solved"):
+    with pytest.raises(ck.errors.NotDetermined, match="cannot be solved"):
         ck.solve(tight)
 
 

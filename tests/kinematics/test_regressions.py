@@ -19,7 +19,7 @@ FOUR_BAR = ck.Mechanism(
 
 
 def test_both_components_of_an_unassembled_pose_are_not_a_number():
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(FOUR_BAR, {"crank": ck.deg([0.0, 80.0, 120.0])})
     assert motion.assembled.tolist() == [True, True, False]
     for array in (motion.points["C"].y, motion.points["C"].x, motion.points["C"].velocity.xy[:, 1]):
@@ -46,7 +46,7 @@ def test_a_guide_toward_its_own_point_is_refused():
         ck.drive("crank"),
         ck.drive("block", on="crank", values=1.0),
     )
-    with pytest.raises(ck.InvalidMechanism, match="no direction"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="no direction"):
         ck.solve(mechanism)
 
 
@@ -66,20 +66,20 @@ def test_the_only_driver_needs_no_name():
     ],
 )
 def test_mistakes_of_a_call_are_told(mechanism, options):
-    with pytest.raises(ck.InvalidInput):
+    with pytest.raises(ck.errors.InvalidInput):
         ck.solve(mechanism, **options)
 
 
 def test_outputs_of_what_there_is_not_are_found_at_once():
     items = [*FOUR_BAR.items, ck.expect("Q.velocity", 1.0, 0.1)]
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         ck.Mechanism("m", *items, outputs=("Z.x", "C.x", "crank.angle"))
     assert [problem.where for problem in caught.value.problems] == ["outputs[0]", "expected[0].quantity"]
 
 
 @pytest.mark.parametrize("quantity", ["rocker", "C", "C.value"])
 def test_a_published_number_says_whether_it_is_an_angle(quantity):
-    with pytest.raises(ck.InvalidMechanism, match="does not say of what kind"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="does not say of what kind"):
         FOUR_BAR.replace(ck.expect(quantity, 1.0, 0.1))
 
 
@@ -102,11 +102,11 @@ GUIDED = (
 @pytest.mark.parametrize(
     ("where", "items"),
     [
-        ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), radius="10")]),
-        ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), radius=None)]),
-        ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), radius=1j)]),
-        ("cams[0].inside", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, 5), inside="no")]),
-        ("cams[0].profile.middle", [*GUIDED, ck.cam("follower", on="cam", profile=ck.disc(30, np.nan))]),
+        ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), radius="10")]),
+        ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), radius=None)]),
+        ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), radius=1j)]),
+        ("cams[0].inside", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), inside="no")]),
+        ("cams[0].profile.middle", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, np.nan))]),
         ("arcs[0].radius", [*GUIDED[:3], ck.arc("follower", on="frame", centre_at="A", radius="x"), GUIDED[3]]),
         ("rollings[0].radius", [*GUIDED[:3], ck.roll("follower", on="frame", through="A", radius=None), GUIDED[3]]),
         ("gears[0].internal", [*WHEELS, ck.gear("one", "two", teeth=(20, 40), internal="no")]),
@@ -114,7 +114,7 @@ GUIDED = (
     ],
 )
 def test_texts_in_place_of_numbers_are_told_by_their_key(where, items):
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         ck.solve(ck.Mechanism("wrong", *items))
     assert where in [problem.where for problem in caught.value.problems]
 
@@ -122,53 +122,53 @@ def test_texts_in_place_of_numbers_are_told_by_their_key(where, items):
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: ck.disc("x"),
-        lambda: ck.disc([10, 20]),
-        lambda: ck.profile(None),
-        lambda: ck.profile(5),
-        lambda: ck.formula(np.exp, "a", 1),
+        lambda: ck.profiles.disc("x"),
+        lambda: ck.profiles.disc([10, 20]),
+        lambda: ck.profiles.profile(None),
+        lambda: ck.profiles.profile(5),
+        lambda: ck.profiles.formula(np.exp, "a", 1),
     ],
 )
 def test_what_is_no_profile_is_told(make):
-    with pytest.raises(ck.InvalidMechanism, match="profile"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="profile"):
         make()
 
 
-LIFT = ck.program(ck.rise(20, over=ck.deg(180)), ck.fall(20, over=ck.deg(180)))
+LIFT = ck.laws.program(ck.laws.rise(20, over=ck.deg(180)), ck.laws.fall(20, over=ck.deg(180)))
 
 
 @pytest.mark.parametrize(
     ("key", "value"), [("base", None), ("base", True), ("offset", 1j), ("angle", None), ("clockwise", "no")]
 )
 def test_a_cam_cannot_be_made_of_what_is_no_number(key, value):
-    with pytest.raises(ck.InvalidMechanism) as caught:
-        ck.synthesise(LIFT, **{"base": 60, key: value})
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
+        ck.profiles.synthesise(LIFT, **{"base": 60, key: value})
     assert [problem.where for problem in caught.value.problems] == [key]
 
 
 @pytest.mark.parametrize(
-    "profile", [ck.profile([10, 20, 30, 40]), ck.formula(lambda s: 30 * np.cos(s) + 0j, 0, 2 * np.pi)]
+    "profile", [ck.profiles.profile([10, 20, 30, 40]), ck.profiles.formula(lambda s: 30 * np.cos(s) + 0j, 0, 2 * np.pi)]
 )
 def test_a_closed_profile_that_is_a_line_is_refused(profile):
-    with pytest.raises(ck.InvalidMechanism, match="no area"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="no area"):
         ck.Mechanism("line", *GUIDED, ck.cam("follower", on="cam", profile=profile))
 
 
 def test_a_formula_that_fails_is_told():
-    with pytest.raises(ck.InvalidMechanism, match="division by zero"):
-        ck.Mechanism("m", *GUIDED, ck.cam("follower", on="cam", profile=ck.formula(lambda s: 1 / 0, 0, 1)))
+    with pytest.raises(ck.errors.InvalidMechanism, match="division by zero"):
+        ck.Mechanism("m", *GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.formula(lambda s: 1 / 0, 0, 1)))
 
 
 def test_a_complex_law_is_refused():
     crank = ck.Mechanism("c", *GUIDED[:2], ck.drive("cam", law=lambda t: np.exp(1j * t)))
-    with pytest.raises(ck.InvalidInput, match="does not return numbers; return an array of reals"):
+    with pytest.raises(ck.errors.InvalidInput, match="does not return numbers; return an array of reals"):
         ck.solve(crank, time=[0.0, 1.0])
 
 
 def test_a_roller_that_the_profile_is_not_made_for_is_warned_about():
-    made = ck.synthesise(LIFT, base=60, follower="roller", roller=10)
+    made = ck.profiles.synthesise(LIFT, base=60, follower="roller", roller=10)
     said = [
-        ck.cam_analysis(
+        ck.cams.cam_analysis(
             ck.solve(ck.Mechanism("m", *GUIDED, ck.cam("follower", on="cam", profile=made, radius=radius))),
             "follower/cam",
         ).warnings
@@ -180,12 +180,12 @@ def test_a_roller_that_the_profile_is_not_made_for_is_warned_about():
 
 @pytest.mark.parametrize("speed", [[1.0, 2.0], [0.0, 1.0, 2.0]])
 def test_a_law_does_not_change_along_the_motion(speed):
-    with pytest.raises(ck.InvalidMechanism, match=r"law.speed.*along the motion"):
-        ck.constant_speed(speed)
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"law.speed.*along the motion"):
+        ck.laws.constant_speed(speed)
 
 
 def test_a_rise_in_a_file_says_how_far(tmp_path):
-    law = ck.program(ck.rise(1.0, over=1), ck.dwell(1), ck.rise(0.0, over=1))
+    law = ck.laws.program(ck.laws.rise(1.0, over=1), ck.laws.dwell(1), ck.laws.rise(0.0, over=1))
     mechanism = ck.Mechanism("c", *GUIDED[:2], ck.drive("cam", law=law))
     path = tmp_path / "m.toml"
     ck.save(mechanism, path)
@@ -193,7 +193,7 @@ def test_a_rise_in_a_file_says_how_far(tmp_path):
     assert ck.load(path) == mechanism
     assert text.count("rise") == 2
     path.write_text(text.replace(", rise = 0", ""))
-    with pytest.raises(ck.InvalidMechanism, match=r"segments\[2\].rise: it is missing"):
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"segments\[2\].rise: it is missing"):
         ck.load(path)
 
 
@@ -204,7 +204,7 @@ def test_a_law_is_asked_for_no_more_derivatives_than_the_motion_has() -> None:
     )
     motion = ck.solve(crank, time=[0.0, 1.0], order=2)
     assert motion.links["crank"].angular_acceleration.tolist() == [0.0, 3.75]
-    with pytest.raises(ck.InvalidInput):
+    with pytest.raises(ck.errors.InvalidInput):
         ck.solve(crank, time=[0.0, 1.0], order=3)
 
 
@@ -216,10 +216,12 @@ def test_a_face_along_its_own_guide_is_told() -> None:
         ck.link("cam", A=0),
         ck.link("follower", P=0),
         ck.slide("follower", on="frame", through="A", angle=ck.deg(90)),
-        ck.face("follower", on="cam", profile=ck.formula(lambda s: 3 * np.cos(s) + 2j * np.sin(s), 0, 2 * np.pi)),
+        ck.face(
+            "follower", on="cam", profile=ck.profiles.formula(lambda s: 3 * np.cos(s) + 2j * np.sin(s), 0, 2 * np.pi)
+        ),
         ck.drive("cam", values=[0.0, 0.5]),
     )
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(cam)
     assert "along its own guide" in ck.gaps(motion)[0].reason
 
@@ -253,13 +255,13 @@ def test_circuits_begin_where_a_written_mode_has_the_mechanism(sign: int) -> Non
 
 def test_circuits_of_many_groups_are_refused_at_once() -> None:
     """Each of twenty dyads doubles the branches: the search went on for ten minutes and more."""
-    with pytest.raises(ck.InvalidInput, match="the groups multiply them"):
-        ck.circuits(ck.random_mechanism(20, seed=3, kinds=("RRR",)))
+    with pytest.raises(ck.errors.InvalidInput, match="the groups multiply them"):
+        ck.circuits(ck.composing.random_mechanism(20, seed=3, kinds=("RRR",)))
 
 
 def test_a_file_name_with_a_slash_at_its_end_is_no_file(tmp_path: Path) -> None:
     """It was written to the file of that name without the slash."""
-    with pytest.raises(ck.InvalidInput, match="name of a folder"):
+    with pytest.raises(ck.errors.InvalidInput, match="name of a folder"):
         ck.draw(ck.catalog.load_named("six-bar")).save(f"{tmp_path}/six-bar.svg/")
     assert not list(tmp_path.iterdir())
 

@@ -39,7 +39,7 @@ def placed(turns: dict[str, float]) -> dict[str, complex]:
 
 def quietly(*args: Any, **words: Any) -> Motion:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         return ck.solve(*args, **words)
 
 
@@ -369,5 +369,5 @@ def test_without_a_drawing_some_configuration_is_found() -> None:
 def test_a_group_that_cannot_be_assembled_at_all() -> None:
     items = [i for i in stephenson(drawn=False).items if getattr(i, "name", "") != "EF"]
     short = ck.Mechanism("Too short", *items, ck.link("EF", E=0, F=0.5))
-    with pytest.raises(ck.NotAssembled, match="no assembled pose"):
+    with pytest.raises(ck.errors.NotAssembled, match="no assembled pose"):
         ck.solve(short, {"FG": 0.0})

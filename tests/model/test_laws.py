@@ -66,13 +66,15 @@ def slope(law: Law, t: float, k: int, h: float) -> float:
 
 
 LAWS: dict[str, Law] = {
-    "speed": ck.constant_speed(3.0, start=0.2),
-    "acceleration": ck.constant_acceleration(-2.0, speed=3.0, start=0.2),
-    "program": ck.program(ck.rise(1.0, 0.7, "3-4-5"), ck.dwell(0.3), ck.fall(2.0, 1.0, "4-5-6-7"), start=0.3),
-    "repeated": ck.program(ck.rise(1.0, 0.5), ck.dwell(0.1), repeat=True),
-    "table": ck.time_table(np.linspace(-0.5, 2.5, 13), np.sin(np.linspace(-0.5, 2.5, 13))),
-    "cubic": ck.time_table(np.linspace(-0.5, 2.5, 13), np.sin(np.linspace(-0.5, 2.5, 13)), degree=3),
-    "wheel": ck.time_table([0.0, 0.2, 0.5, 0.7, 0.8, 1.1, 1.2], [0.0, 1.0, 2.2, 3.1, 4.0, 5.5, 6.3], repeat=True),
+    "speed": ck.laws.constant_speed(3.0, start=0.2),
+    "acceleration": ck.laws.constant_acceleration(-2.0, speed=3.0, start=0.2),
+    "program": ck.laws.program(
+        ck.laws.rise(1.0, 0.7, "3-4-5"), ck.laws.dwell(0.3), ck.laws.fall(2.0, 1.0, "4-5-6-7"), start=0.3
+    ),
+    "repeated": ck.laws.program(ck.laws.rise(1.0, 0.5), ck.laws.dwell(0.1), repeat=True),
+    "table": ck.laws.time_table(np.linspace(-0.5, 2.5, 13), np.sin(np.linspace(-0.5, 2.5, 13))),
+    "cubic": ck.laws.time_table(np.linspace(-0.5, 2.5, 13), np.sin(np.linspace(-0.5, 2.5, 13)), degree=3),
+    "wheel": ck.laws.time_table([0.0, 0.2, 0.5, 0.7, 0.8, 1.1, 1.2], [0.0, 1.0, 2.2, 3.1, 4.0, 5.5, 6.3], repeat=True),
     "function": FunctionLaw(lambda t: 0.5 * np.sin(3.0 * t) + t**2 / (1.0 + t**2)),
 }
 # Joints of a program, where a derivative may jump.
@@ -104,7 +106,7 @@ def test_constant_speed_and_acceleration_are_the_textbook_formulas() -> None:
 def test_a_quintic_table_reproduces_polynomials_of_its_degree(c: list[float], count: int) -> None:
     exact = np.polynomial.Polynomial(c)
     times = np.linspace(0.0, 2.0, count) ** 1.3
-    table = ck.time_table(times, exact(times))
+    table = ck.laws.time_table(times, exact(times))
     t = np.linspace(0.0, times[-1], 40)
     moved = table.coordinate(t, 3)
     for k in range(4):
@@ -115,9 +117,9 @@ def test_a_table_goes_through_its_values_and_a_short_one_is_a_polynomial() -> No
     times, values = np.array([0.0, 0.5, 0.7, 1.5, 2.0, 2.1, 3.0]), np.array([0.0, 1.0, 0.5, 0.2, 2.0, 2.5, 1.0])
     for degree in (3, 5):
         np.testing.assert_allclose(
-            ck.time_table(times, values, degree=degree).coordinate(times, 0).c[0], values, atol=1e-12
+            ck.laws.time_table(times, values, degree=degree).coordinate(times, 0).c[0], values, atol=1e-12
         )
-    assert ck.time_table([0, 2], [1, 5]).coordinate(0.5, 1).c == pytest.approx((2.0, 2.0))
+    assert ck.laws.time_table([0, 2], [1, 5]).coordinate(0.5, 1).c == pytest.approx((2.0, 2.0))
 
 
 def test_a_repeated_table_joins_smoothly_and_goes_on_from_the_value_reached() -> None:
@@ -130,7 +132,7 @@ def test_a_repeated_table_joins_smoothly_and_goes_on_from_the_value_reached() ->
 
 
 def test_outside_a_table_there_is_nothing() -> None:
-    with pytest.raises(ck.InvalidInput, match=r"2\.6 s is outside its table, -0\.5 to 2\.5 s"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"2\.6 s is outside its table, -0\.5 to 2\.5 s"):
         LAWS["table"].coordinate(np.array([0.0, 2.6]), 1)
     # rounding of the last of many steps is not outside
     assert LAWS["table"].coordinate(2.5 + 1e-12, 0).c[0] == pytest.approx(math.sin(2.5))
@@ -202,7 +204,7 @@ def test_a_function_may_return_its_derivatives() -> None:
     ],
 )
 def test_what_a_function_must_not_do_is_said(f: Any, said: str) -> None:
-    with pytest.raises(ck.InvalidInput, match=said) as caught:
+    with pytest.raises(ck.errors.InvalidInput, match=said) as caught:
         ck.solve(four_bar(law=f), time=np.linspace(0.0, 1.0, 5))
     assert caught.value.problems[0].where == "drives.crank.law"
 
@@ -234,7 +236,7 @@ def test_velocities_are_differences_of_positions_over_time(name: str) -> None:
 
 def test_a_driver_without_a_law_moves_by_its_rates() -> None:
     t = np.linspace(0.0, 1.0, 7)
-    motion = ck.solve(arm(ck.constant_speed(2.0)), {"fore": 0.5}, time=t, acceleration={"fore": 4.0}, order=3)
+    motion = ck.solve(arm(ck.laws.constant_speed(2.0)), {"fore": 0.5}, time=t, acceleration={"fore": 4.0}, order=3)
     np.testing.assert_allclose(motion.drives["fore"].value, 0.5 + t + 2.0 * t**2)
     np.testing.assert_allclose(motion.drives["fore"].rate, 1.0 + 4.0 * t)
     np.testing.assert_allclose(motion.drives["upper"].value, 2.0 * t)
@@ -245,11 +247,11 @@ def test_a_driver_without_a_law_moves_by_its_rates() -> None:
 def test_designs_and_times_go_together() -> None:
     t = np.linspace(0.0, 1.0, 6)
     speeds = np.array([1.0, 2.0, 3.0])[:, None]
-    motion = ck.solve(four_bar(law=ck.constant_speed(speeds)), time=t)
+    motion = ck.solve(four_bar(law=ck.laws.constant_speed(speeds)), time=t)
     assert motion.shape == (3, 6)
     np.testing.assert_allclose(motion.drives["crank"].value, speeds * t)
     np.testing.assert_allclose(motion.links["crank"].angular_velocity, speeds + 0 * t)
-    one = ck.solve(four_bar(law=ck.constant_speed(2.0)), time=0.5)
+    one = ck.solve(four_bar(law=ck.laws.constant_speed(2.0)), time=0.5)
     assert one.shape == ()
     assert one.drives["crank"].value == 1.0
 
@@ -273,7 +275,7 @@ def test_times_may_go_back() -> None:
 def test_the_drawn_pose_leads_to_a_motion_in_time() -> None:
     """The drawing shows the crank at 90 degrees in the other mode; the motion begins elsewhere."""
     start = np.deg2rad(90.0)
-    lead = four_bar(ck.drive("crank", law=ck.constant_speed(2.0, start=start + 0.4)))
+    lead = four_bar(ck.drive("crank", law=ck.laws.constant_speed(2.0, start=start + 0.4)))
     other = ck.solve(lead, time=[0.0, 0.1], modes={"coupler": -1})
     drawing = ck.solve(lead, {"crank": [start]}, modes={"coupler": -1})
     drawn = lead.replace(ck.drawn(**{k: complex(drawing.points[k].position[0]) for k in "ABCD"}))
@@ -283,7 +285,7 @@ def test_the_drawn_pose_leads_to_a_motion_in_time() -> None:
 
 
 def test_times_that_nobody_gives_are_those_of_the_laws() -> None:
-    period = ck.program(ck.rise(1.0, 1.5), ck.fall(1.0, 0.5))
+    period = ck.laws.program(ck.laws.rise(1.0, 1.5), ck.laws.fall(1.0, 0.5))
     np.testing.assert_allclose(ck.solve(four_bar(law=period)).time, np.linspace(0.0, 2.0, 73))
     np.testing.assert_allclose(ck.solve(arm(period, LAWS["repeated"]), time=[0.0]).time, [0.0])
     stated = four_bar(law=period, time=[0.0, 0.25])
@@ -313,26 +315,26 @@ def test_times_that_nobody_gives_are_those_of_the_laws() -> None:
         (lambda: ck.drive("crank", law=3.0), "drives.crank.law", "constant_speed"),
         (lambda: ck.drive("crank", law=TimeTable), "drives.crank.law", "constant_speed"),
         (lambda: four_bar(law=np.sin, time=[np.inf]), "time", ""),
-        (lambda: ck.constant_speed("fast"), "law.speed", ""),
-        (lambda: ck.constant_acceleration(np.nan), "law.acceleration", ""),
-        (lambda: ck.time_table([0, 1, 1], [0, 1, 2]), "law.times", "increasing"),
-        (lambda: ck.time_table([0, 1], [0, 1, 2]), "law", "one length"),
-        (lambda: ck.time_table([0, 1], [0, 1], degree=4), "law.degree", "5 (quintic)"),
-        (lambda: ck.time_table([0, 1, 2], [0, 1, 2], repeat=True), "law.times", "more"),
+        (lambda: ck.laws.constant_speed("fast"), "law.speed", ""),
+        (lambda: ck.laws.constant_acceleration(np.nan), "law.acceleration", ""),
+        (lambda: ck.laws.time_table([0, 1, 1], [0, 1, 2]), "law.times", "increasing"),
+        (lambda: ck.laws.time_table([0, 1], [0, 1, 2]), "law", "one length"),
+        (lambda: ck.laws.time_table([0, 1], [0, 1], degree=4), "law.degree", "5 (quintic)"),
+        (lambda: ck.laws.time_table([0, 1, 2], [0, 1, 2], repeat=True), "law.times", "more"),
     ],
 )
 def test_what_contradicts_is_said_with_its_place_and_remedy(solve: Any, where: str, remedy: str) -> None:
-    with pytest.raises((ck.InvalidInput, ck.InvalidMechanism)) as caught:
+    with pytest.raises((ck.errors.InvalidInput, ck.errors.InvalidMechanism)) as caught:
         solve()
     assert caught.value.problems[0].where == where
     assert remedy in caught.value.problems[0].remedy
 
 
 def test_laws_are_equal_if_they_say_the_same() -> None:
-    assert ck.time_table([0, 1], [2, 3]) == ck.time_table([0.0, 1.0], [2.0, 3.0])
-    assert ck.time_table([0, 1], [2, 3]) != ck.time_table([0, 1], [2, 4])
-    assert ck.constant_speed(1.0) != ck.constant_acceleration(1.0, 0.0)
-    assert hash(ck.constant_speed(1.0)) == hash(ck.constant_speed(1.0))
+    assert ck.laws.time_table([0, 1], [2, 3]) == ck.laws.time_table([0.0, 1.0], [2.0, 3.0])
+    assert ck.laws.time_table([0, 1], [2, 3]) != ck.laws.time_table([0, 1], [2, 4])
+    assert ck.laws.constant_speed(1.0) != ck.laws.constant_acceleration(1.0, 0.0)
+    assert hash(ck.laws.constant_speed(1.0)) == hash(ck.laws.constant_speed(1.0))
     assert four_bar(law=np.sin) == four_bar(law=np.sin)
     assert four_bar(law=np.sin) != four_bar(law=np.cos)
 
@@ -340,7 +342,7 @@ def test_laws_are_equal_if_they_say_the_same() -> None:
 # files
 
 tables = st.builds(
-    lambda steps, values, degree: ck.time_table(np.cumsum(steps), values[: len(steps)], degree=degree),
+    lambda steps, values, degree: ck.laws.time_table(np.cumsum(steps), values[: len(steps)], degree=degree),
     st.lists(st.floats(0.01, 5.0), min_size=2, max_size=9),
     st.lists(st.floats(-10.0, 10.0), min_size=9, max_size=9),
     st.sampled_from([3, 5]),
@@ -350,8 +352,8 @@ written = st.one_of(
     programs.map(lambda p: Program(p.segments, p.start, repeat=True)),
     programs,
     tables,
-    st.builds(ck.constant_speed, numbers, numbers),
-    st.builds(ck.constant_acceleration, numbers, numbers, numbers),
+    st.builds(ck.laws.constant_speed, numbers, numbers),
+    st.builds(ck.laws.constant_acceleration, numbers, numbers, numbers),
 )
 times = st.one_of(st.none(), st.lists(st.floats(-10, 10), min_size=1, max_size=6), st.just(np.arange(0.0, 1.0, 0.01)))
 
@@ -422,13 +424,13 @@ def test_a_published_number_may_be_at_a_time() -> None:
     ],
 )  # fmt: skip
 def test_all_problems_of_a_law_in_a_file_are_told(law: str, places: list[str]) -> None:
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         loads(FILE.replace("LAW", law))
     assert [problem.where for problem in caught.value.problems] == places
 
 
 def test_a_python_function_cannot_be_saved() -> None:
-    with pytest.raises(ck.InvalidInput, match="time_table") as caught:
+    with pytest.raises(ck.errors.InvalidInput, match="time_table") as caught:
         dumps(four_bar(law=np.sin))
     assert caught.value.problems[0].where == "drives.crank.law"
 

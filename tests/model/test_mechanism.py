@@ -59,17 +59,17 @@ def test_arrays_are_copied_and_cannot_be_changed() -> None:
 
 @pytest.mark.parametrize("wrong", ["A", (1, 2, 3), (1,), None, {"x": 1}, ("a", "b"), [[1, 2], [1, 2, 3]]])
 def test_what_is_not_a_point_is_named(wrong: object) -> None:
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         ck.link("a", A=0, P=wrong, Q=wrong)
     assert [p.where for p in caught.value.problems] == ["links.a.points.P", "links.a.points.Q"]
     assert "write (x, y) or a complex number" in str(caught.value)
-    with pytest.raises(ck.InvalidMechanism, match=r"drawn\.P"):
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"drawn\.P"):
         ck.drawn(P=wrong)
 
 
 @pytest.mark.parametrize(("letters", "points"), [(("A", "A"), {}), (("A",), {"B": 0}), (("A",), {"A": 0})])
 def test_points_given_twice(letters: tuple[str, ...], points: dict[str, int]) -> None:
-    with pytest.raises(ck.InvalidMechanism, match="given twice"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="given twice"):
         ck.link("a", *letters, **points)
 
 
@@ -80,14 +80,14 @@ def test_drive_words() -> None:
     assert (drive.speed, drive.acceleration, drive.jerk) == (3.0, 0.0, 0.0)
     assert ck.drive("crank").on == "frame"
     assert ck.drive("crank").values is None
-    with pytest.raises(ck.InvalidMechanism, match=r"drives\.crank\.speed.*not a number"):
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"drives\.crank\.speed.*not a number"):
         ck.drive("crank", speed="fast")
     assert {key.name for key in Drive.keys} == set(vars(drive))
 
 
 @pytest.mark.parametrize("sign", [0, 2, "1", None, 1.5])
 def test_a_mode_is_a_sign(sign: object) -> None:
-    with pytest.raises(ck.InvalidMechanism, match=r"modes: an assembly mode is \+1 or -1"):
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"modes: an assembly mode is \+1 or -1"):
         ck.mode(sign, "a")  # type: ignore[arg-type]
 
 
@@ -119,7 +119,7 @@ def test_parts_of_a_mechanism() -> None:
     assert mechanism.sketch == {}
     assert repr(mechanism) == "Mechanism('Four-bar': 4 links, 1 drivers)"
     assert mechanism.link("crank").points["B"] == 1
-    with pytest.raises(ck.UnknownName, match="did you mean 'crank'"):
+    with pytest.raises(ck.errors.UnknownName, match="did you mean 'crank'"):
         mechanism.link("cranc")
 
 
@@ -163,7 +163,7 @@ def test_replace_puts_an_item_in_the_place_of_its_like() -> None:
     second = first.replace(ck.drawn(C=2), ck.expect("rocker.angle", 2, 1))
     assert second.sketch == {"C": 2}
     assert [e.value for e in second.expectations] == [2]
-    with pytest.raises(ck.InvalidMechanism):
+    with pytest.raises(ck.errors.InvalidMechanism):
         mechanism.replace(ck.link("crank", X=0, Y=1))
 
 
@@ -248,7 +248,7 @@ def test_a_drawn_link_of_one_letter_shows_no_direction_and_lies_along_its_guide(
 
 
 def test_vectors_name_their_place() -> None:
-    with pytest.raises(ck.InvalidMechanism, match="here: 'x' is not a point"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="here: 'x' is not a point"):
         vector("here", "x")
 
 
@@ -265,8 +265,8 @@ def test_problems_say_where_what_and_remedy() -> None:
     assert str(Problem("", "it is wrong")) == "it is wrong"
     assert nearest("x", []) == "there is none"
     assert nearest("zzz", [f"n{k}" for k in range(20)]).endswith("...")
-    error = ck.InvalidMechanism([Problem("a", "b"), Problem("c", "d")])
+    error = ck.errors.InvalidMechanism([Problem("a", "b"), Problem("c", "d")])
     assert str(error) == "2 problems:\n  a: b\n  c: d"
-    assert str(ck.NotDetermined("plain")) == "plain"
-    assert (ck.InvalidMechanism.exit_code, ck.NotAssembled.exit_code) == (2, 3)
-    assert issubclass(ck.UnknownName, LookupError)
+    assert str(ck.errors.NotDetermined("plain")) == "plain"
+    assert (ck.errors.InvalidMechanism.exit_code, ck.errors.NotAssembled.exit_code) == (2, 3)
+    assert issubclass(ck.errors.UnknownName, LookupError)

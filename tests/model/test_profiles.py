@@ -17,12 +17,12 @@ ANGLES = np.linspace(-1.0, 12.0, 10_000)
 
 
 def lift(amount: float, law: str = "cycloidal") -> Program:
-    return ck.program(
-        ck.dwell(ck.deg(60)),
-        ck.rise(amount, ck.deg(110), law),
-        ck.dwell(ck.deg(40)),
-        ck.fall(amount, ck.deg(90), law),
-        ck.dwell(ck.deg(60)),
+    return ck.laws.program(
+        ck.laws.dwell(ck.deg(60)),
+        ck.laws.rise(amount, ck.deg(110), law),
+        ck.laws.dwell(ck.deg(40)),
+        ck.laws.fall(amount, ck.deg(90), law),
+        ck.laws.dwell(ck.deg(60)),
     )
 
 
@@ -123,7 +123,7 @@ def test_a_cam_through_points_of_the_made_one(kind: str) -> None:
     """720 points: a hundredth of a micrometre on a lift of 20 mm."""
     cam = made(kind)
     points = cam.curve.at(np.linspace(0.0, 2 * np.pi, 720, endpoint=False)).c[0]
-    found = errors(cam, ck.profile(points))
+    found = errors(cam, ck.profiles.profile(points))
     assert found[0] < 1e-6
     assert found[1] < 1e-4
 
@@ -132,7 +132,7 @@ def test_a_cam_through_points_of_the_made_one(kind: str) -> None:
 def test_the_parameter_is_the_angle_of_the_cam(kind: str) -> None:
     cam = made(kind, start=0.3)
     motion = ck.solve(mechanism(cam), {"cam": np.linspace(0.1, 6.1, 61)})
-    parameter = ck.cam_analysis(motion, "follower/cam").parameter
+    parameter = ck.cams.cam_analysis(motion, "follower/cam").parameter
     assert np.max(np.abs(parameter - np.linspace(0.1, 6.1, 61))) < 1e-9
 
 
@@ -148,7 +148,12 @@ def test_the_base_circle_is_the_least_radius() -> None:
 
 def test_the_radius_under_a_flat_face() -> None:
     """rho = base + S + S'', least 11.796987 at 73.668 degrees: cycloidal rise of 20 over 100 degrees, base 35."""
-    program = ck.program(ck.rise(20, ck.deg(100)), ck.dwell(ck.deg(80)), ck.fall(20, ck.deg(100)), ck.dwell(ck.deg(80)))
+    program = ck.laws.program(
+        ck.laws.rise(20, ck.deg(100)),
+        ck.laws.dwell(ck.deg(80)),
+        ck.laws.fall(20, ck.deg(100)),
+        ck.laws.dwell(ck.deg(80)),
+    )
     cam = synthesise(program, base=35, follower="flat")
     s = np.linspace(0.0, ck.deg(100), 10_001)
     u = s / ck.deg(100)
@@ -160,8 +165,13 @@ def test_the_radius_under_a_flat_face() -> None:
 
 def test_the_least_base_circle_under_a_flat_face() -> None:
     """-(S + S'') at most: found by search and by the formula."""
-    program = ck.program(ck.rise(20, ck.deg(100)), ck.dwell(ck.deg(80)), ck.fall(20, ck.deg(100)), ck.dwell(ck.deg(80)))
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    program = ck.laws.program(
+        ck.laws.rise(20, ck.deg(100)),
+        ck.laws.dwell(ck.deg(80)),
+        ck.laws.fall(20, ck.deg(100)),
+        ck.laws.dwell(ck.deg(80)),
+    )
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         synthesise(program, base=20, follower="flat")
     (problem,) = caught.value.problems
     assert "hollow" in problem.what
@@ -172,8 +182,10 @@ def test_the_least_base_circle_under_a_flat_face() -> None:
 
 def test_the_least_base_circle_of_a_roller() -> None:
     """The pitch curve of a radial follower at the top of a harmonic rise: rho = (p + h)^2 / (p + h - S'')."""
-    program = ck.program(ck.rise(20, ck.deg(90), "harmonic"), ck.fall(20, ck.deg(90), "harmonic"), ck.dwell(np.pi))
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    program = ck.laws.program(
+        ck.laws.rise(20, ck.deg(90), "harmonic"), ck.laws.fall(20, ck.deg(90), "harmonic"), ck.laws.dwell(np.pi)
+    )
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         synthesise(program, base=2, follower="roller", roller=30)
     (problem,) = caught.value.problems
     assert "undercut" in problem.what
@@ -211,15 +223,30 @@ GOOD = lift(20.0)
         (lift(1.2), {"base": 50, "pivot": 80, "follower": "flat"}, "program", "must stay below 90"),
         (lift(0.2), {"base": 30, "pivot": 0, "arm": 30}, "pivot", "on the axis"),
         (lift(0.2), {"base": 30, "pivot": "x", "arm": 30}, "pivot", "not a point"),
-        (ck.program(ck.rise(9, 3.0), ck.fall(9, 3.0)), {"base": 30}, "program", "add up to 343.775 degrees"),
-        (ck.program(ck.rise(9, np.pi), ck.fall(7, np.pi)), {"base": 30}, "program", "ends 2 above its beginning"),
-        (ck.program(ck.fall(9, np.pi), ck.rise(9, np.pi)), {"base": 30}, "program", "9 below the base circle"),
+        (
+            ck.laws.program(ck.laws.rise(9, 3.0), ck.laws.fall(9, 3.0)),
+            {"base": 30},
+            "program",
+            "add up to 343.775 degrees",
+        ),
+        (
+            ck.laws.program(ck.laws.rise(9, np.pi), ck.laws.fall(7, np.pi)),
+            {"base": 30},
+            "program",
+            "ends 2 above its beginning",
+        ),
+        (
+            ck.laws.program(ck.laws.fall(9, np.pi), ck.laws.rise(9, np.pi)),
+            {"base": 30},
+            "program",
+            "9 below the base circle",
+        ),
         (lift(9, "constant-velocity"), {"base": 30, "follower": "flat"}, "program", "velocity jumps at 60, 170"),
         ("rise", {"base": 30}, "program", "not a motion program"),
     ],
 )
 def test_what_cannot_be_made_says_why(program: Any, words: dict[str, Any], place: str, what: str) -> None:
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         synthesise(program, **words)
     found = [(p.where, str(p)) for p in caught.value.problems]
     assert any(where == place and what in text for where, text in found), found
@@ -227,20 +254,22 @@ def test_what_cannot_be_made_says_why(program: Any, words: dict[str, Any], place
 
 def test_a_mechanism_names_the_place_of_a_profile_that_cannot_be_made() -> None:
     bad = Synthesised(GOOD, 30.0, offset=40.0)
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         mechanism(Synthesised(GOOD, 30.0, offset=10.0), bad)
     assert [p.where for p in caught.value.problems] == ["cams[0].profile.offset"]
 
 
 def test_a_heart_cam_has_corners_and_a_knife_edge_follows_it() -> None:
     """Constant velocity up and down: two arcs of the spiral of Archimedes."""
-    program = ck.program(ck.rise(30, np.pi, "constant-velocity"), ck.fall(30, np.pi, "constant-velocity"))
+    program = ck.laws.program(
+        ck.laws.rise(30, np.pi, "constant-velocity"), ck.laws.fall(30, np.pi, "constant-velocity")
+    )
     cam = synthesise(program, base=20)
     assert max(errors(cam)[:2]) < 1e-9
 
 
 def test_a_program_that_starts_above_the_base_circle() -> None:
-    program = ck.program(ck.fall(9, np.pi), ck.rise(9, np.pi), start=9.0)
+    program = ck.laws.program(ck.laws.fall(9, np.pi), ck.laws.rise(9, np.pi), start=9.0)
     cam = synthesise(program, base=30)
     assert max(errors(cam)) < 1e-11
     assert abs(abs(complex(cam.curve.at(np.pi).c[0])) - 30.0) < 1e-12
@@ -249,5 +278,5 @@ def test_a_program_that_starts_above_the_base_circle() -> None:
 def test_profiles_are_equal_by_what_they_say() -> None:
     assert made("roller") == made("roller")
     assert made("roller") != made("roller", start=0.1)
-    assert ck.disc(3) == ck.disc(3.0)
-    assert ck.profile([1, 1j, -1, -1j]) == ck.profile([(1, 0), (0, 1), (-1, 0), (0, -1)])
+    assert ck.profiles.disc(3) == ck.profiles.disc(3.0)
+    assert ck.profiles.profile([1, 1j, -1, -1j]) == ck.profiles.profile([(1, 0), (0, 1), (-1, 0), (0, -1)])

@@ -27,7 +27,7 @@ BASE: dict[str, Any] = {
 def problems(*extra: Any, **changed: Any) -> list[tuple[str, str, str]]:
     """The problems of the base mechanism with some items changed (None leaves one out) and some added."""
     items = [item for item in {**BASE, **changed}.values() if item is not None]
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         ck.Mechanism("m", *items, *extra)
     return [(p.where, p.what, p.remedy) for p in caught.value.problems]
 
@@ -109,11 +109,11 @@ def test_all_mistakes_at_once() -> None:
         "slides[0].on",
     }
     assert expected <= set(places)
-    assert str(ck.InvalidMechanism([], heading="x")) == "x:"
+    assert str(ck.errors.InvalidMechanism([], heading="x")) == "x:"
 
 
 def test_the_message_lists_every_problem_with_its_place() -> None:
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         ck.Mechanism("Bad", ck.link("a", A=0), ck.drive("b"))
     text = str(caught.value)
     assert text.startswith("'Bad' cannot be built:\n")
@@ -122,9 +122,9 @@ def test_the_message_lists_every_problem_with_its_place() -> None:
 
 
 def test_what_is_not_a_word_is_refused() -> None:
-    with pytest.raises(ck.InvalidMechanism, match=r"items\[2\].*not a"):
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"items\[2\].*not a"):
         ck.Mechanism("m", ck.link("frame", A=0), ck.link("b", A=0), "crank")  # type: ignore[arg-type]
-    with pytest.raises(ck.InvalidMechanism, match=r"expected.*tolerance"):
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"expected.*tolerance"):
         ck.expect("b.angle", 1, "small")  # type: ignore[arg-type]
 
 

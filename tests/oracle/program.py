@@ -45,9 +45,7 @@ def structure_of(mechanism: Any) -> Any:
 
 def name_of(structure: Any) -> Any:
     """What a mechanism is called by its graph, frame and drivers."""
-    from compoundkin.synthesis.chains import structure_name
-
-    return structure_name(structure)
+    return ck.chains.structure_name(structure)
 
 
 def mobility_of(mechanism: Any) -> Any:
@@ -121,9 +119,7 @@ def alternatives_of(mechanism: Any) -> Sequence[Any]:
 
 def truss_names(group: Any) -> tuple[str, ...]:
     """The trusses that a group is made of."""
-    from compoundkin.synthesis.chains import group_truss
-
-    return tuple(group_truss(group))
+    return tuple(ck.chains.group_truss(group))
 
 
 def simple_loop_texts(structure: Any, limit: int) -> list[str]:
@@ -135,8 +131,7 @@ def simple_loop_texts(structure: Any, limit: int) -> list[str]:
 
 def report_text(subject: Any, form: str) -> str:
     """The report of a motion or a structure as text, Markdown or JSON."""
-    report = ck.report(subject)
-    return str(getattr(report, form)() if hasattr(report, form) else ck.rendered(report, form))
+    return str(getattr(ck.report(subject), form)())
 
 
 def sketch_svg(mechanism: Any, **options: Any) -> str:
@@ -146,16 +141,12 @@ def sketch_svg(mechanism: Any, **options: Any) -> str:
 
 def structure_svg(mechanism: Any, view: str) -> str:
     """A picture of the structure."""
-    if hasattr(ck, "draw_structure"):
-        return str(ck.draw_structure(mechanism, view).svg)
     return str(ck.draw(mechanism, kind=view).svg)
 
 
 def polygon_svg(motion: Any, kind: str) -> str:
     """The polygon of the vectors at one pose."""
     pose = motion.shape[-1] // 3
-    if hasattr(ck, "vector_polygon"):
-        return str(ck.vector_polygon(motion, kind, pose=pose).svg)
     return str(ck.draw(motion, kind="polygon", vectors=kind, pose=pose).svg)
 
 
@@ -166,12 +157,12 @@ def page_html(motion: Any) -> str:
 
 def equivalent_of(motion: Any, pose: int) -> Any:
     """The linkage that moves like a mechanism with higher pairs at one pose."""
-    return ck.equivalent_linkage(motion, at=pose)
+    return ck.equivalents.equivalent_linkage(motion, at=pose)
 
 
 def cam_numbers(motion: Any, pair: str) -> dict[str, Any]:
     """What the analysis of a cam pair finds."""
-    found = ck.cam_analysis(motion, pair)
+    found = ck.cams.cam_analysis(motion, pair)
     words = ("pressure_angle", "radius_of_curvature", "pitch_radius", "sliding", "roller_rate")
     numbers = {word: getattr(found, word) for word in words}
     return {**numbers, "profile": found.profile, "pitch curve": found.pitch_curve, "warnings": list(found.warnings)}

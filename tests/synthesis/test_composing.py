@@ -73,7 +73,7 @@ def test_random_mechanisms_are_reproducible_and_assemble_as_drawn():
     assert first == second
     assert first != random_mechanism(60, seed=6)
     with warnings.catch_warnings():
-        warnings.simplefilter("error", ck.UnassembledPoses)
+        warnings.simplefilter("error", ck.errors.UnassembledPoses)
         motion = ck.solve(first)
     drawn = np.array([first.sketch[letter] for letter in first.carriers])
     found = np.array([motion.points[letter].position.item() for letter in first.carriers])

@@ -69,5 +69,5 @@ def test_what_cannot_be_meant():
         with_driver(load_named("five-bar"), [*load_named("five-bar").links][2])
     with pytest.raises(UnknownName, match="no such driver"):
         with_driver(load_named("six-bar"), "rocker", instead="piston")
-    with pytest.raises(ck.InvalidMechanism, match="no pair"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="no pair"):
         with_driver(load_named("six-bar"), "plate")

@@ -78,7 +78,7 @@ def page_of(what: Any) -> Page:
 
 
 @pytest.fixture(scope="module")
-def motion() -> ck.Motion:
+def motion() -> ck.results.Motion:
     return ck.solve(load_named("six-bar"), {"crank": ck.deg(range(0, 361, 5))}, speed=10)
 
 
@@ -114,7 +114,7 @@ def triple_rocker() -> ck.Mechanism:
     )
 
 
-def inside(picture: ck.Picture) -> str:
+def inside(picture: ck.results.Picture) -> str:
     """All of a picture but its first tag, which tells its size."""
     head, _, rest = picture.svg.partition("\n")
     assert head.startswith("<svg")
@@ -125,7 +125,7 @@ def never(*_: Any) -> None:
     raise AssertionError("this is not to be called")
 
 
-def objects(motion: ck.Motion) -> list[Any]:
+def objects(motion: ck.results.Motion) -> list[Any]:
     """One of each kind that shows itself."""
     mechanism = motion.mechanism
     at = {mechanism.drives[0].name: 0.5}
@@ -143,7 +143,7 @@ def objects(motion: ck.Motion) -> list[Any]:
     ]
 
 
-def test_all_pages_are_well_formed_with_tables_that_name_their_rows_and_columns(motion: ck.Motion) -> None:
+def test_all_pages_are_well_formed_with_tables_that_name_their_rows_and_columns(motion: ck.results.Motion) -> None:
     for what in objects(motion):
         page = page_of(what)
         tables = [[row for row in table if not row[0].startswith("... and")] for table in page.tables]
@@ -156,9 +156,9 @@ def test_all_pages_are_well_formed_with_tables_that_name_their_rows_and_columns(
         assert not any("color" in style or "background" in style for style in page.styles)
 
 
-def test_short_texts_stand_where_no_page_is_shown(motion: ck.Motion) -> None:
+def test_short_texts_stand_where_no_page_is_shown(motion: ck.results.Motion) -> None:
     for what in objects(motion):
-        if not isinstance(what, ck.Check | ck.MobilityAnalysis):
+        if not isinstance(what, ck.results.Check | ck.results.MobilityAnalysis):
             assert len(repr(what)) < 200
     assert repr(motion.structure) == f"Structure({motion.mechanism.title!r}: mobility 1, groups RRR, RPR)"
     assert repr(ck.decompose(loose())).startswith("Structure('Loose': mobility 2, no groups, ")
@@ -175,7 +175,7 @@ def test_what_is_made_to_be_seen_says_in_short_what_it_is() -> None:
     assert repr(ck.report(motion)).startswith(f"Report({title}: about, links, ")
 
 
-def test_a_mechanism_shows_its_picture_and_what_it_is(motion: ck.Motion) -> None:
+def test_a_mechanism_shows_its_picture_and_what_it_is(motion: ck.results.Motion) -> None:
     mechanism = motion.mechanism
     page = page_of(mechanism)
     assert page.tags[0] == "figure"
@@ -184,7 +184,7 @@ def test_a_mechanism_shows_its_picture_and_what_it_is(motion: ck.Motion) -> None
     assert page.text.strip().endswith(f"{mechanism.title}: 6 links; pairs 6 R + 1 P; driven: crank; lengths in mm")
 
 
-def test_a_structure_shows_its_groups_in_solving_order(motion: ck.Motion) -> None:
+def test_a_structure_shows_its_groups_in_solving_order(motion: ck.results.Motion) -> None:
     structure = motion.structure
     page = page_of(structure)
     (table,) = page.tables
@@ -212,11 +212,11 @@ def test_names_are_text_and_never_markup() -> None:
         page = page_of(what)
         assert not {"b", "script"} & set(page.tags)
         said = [name for name in (*nasty.links, nasty.title) if name in page.text]
-        assert said or isinstance(what, ck.Check | ck.MobilityAnalysis)
+        assert said or isinstance(what, ck.results.Check | ck.results.MobilityAnalysis)
     assert "frame, <b>" in page_of(motion.structure).tables[0][1]
 
 
-def test_a_check_shows_every_finding_and_which_one_fails(motion: ck.Motion) -> None:
+def test_a_check_shows_every_finding_and_which_one_fails(motion: ck.results.Motion) -> None:
     check = ck.verify(motion)
     page = page_of(check)
     (table,) = page.tables
@@ -257,7 +257,7 @@ def test_configurations_show_the_angles_of_their_links() -> None:
     assert first != second
 
 
-def test_centres_show_where_they_are_at_the_first_pose(motion: ck.Motion) -> None:
+def test_centres_show_where_they_are_at_the_first_pose(motion: ck.results.Motion) -> None:
     centres = ck.instant_centres(motion)
     page = page_of(centres)
     rows = [row for table in page.tables for row in table[1:]]
@@ -268,7 +268,9 @@ def test_centres_show_where_they_are_at_the_first_pose(motion: ck.Motion) -> Non
         assert [float(text) for text in places[name]] == pytest.approx([place.real, place.imag], rel=1e-5)
 
 
-def test_of_many_centres_the_derivation_alone_is_shown(motion: ck.Motion, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_many_centres_the_derivation_alone_is_shown(
+    motion: ck.results.Motion, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from compoundkin.view.report import centres_section
 
     monkeypatch.setattr(centres_section, "MOST_CENTRES", 10)
@@ -292,17 +294,17 @@ def test_a_cam_shows_its_pressure_angle() -> None:
         ck.link("cam", A=0),
         ck.link("follower", P=0),
         ck.slide("follower", on="frame", through="A", angle=ck.deg(90)),
-        ck.cam("follower", on="cam", profile=ck.disc(20, (10, 0)), radius=5),
+        ck.cam("follower", on="cam", profile=ck.profiles.disc(20, (10, 0)), radius=5),
         ck.drive("cam"),
     )
-    found = ck.cam_analysis(ck.solve(eccentric, {"cam": ck.deg(range(0, 361, 5))}), "follower/cam")
+    found = ck.cams.cam_analysis(ck.solve(eccentric, {"cam": ck.deg(range(0, 361, 5))}), "follower/cam")
     row = page_of(found).tables[0][1]
     assert row[0] == "pressure angle"
     # arcsin of the eccentricity over the sum of the radii
     assert float(row[4]) == pytest.approx(np.rad2deg(np.arcsin(10 / 25)), abs=1e-4)
 
 
-def test_a_report_shows_all_its_sections(motion: ck.Motion) -> None:
+def test_a_report_shows_all_its_sections(motion: ck.results.Motion) -> None:
     report = ck.report(motion)
     page = page_of(report)
     titles = [section.title for section in report.sections if section.title]
@@ -337,7 +339,7 @@ def test_a_mechanism_without_a_picture_shows_its_links() -> None:
 
 def test_what_is_large_is_shown_in_part_and_is_not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(notebook, "draw", never)
-    large = ck.random_mechanism(groups=300, seed=2)
+    large = ck.composing.random_mechanism(groups=300, seed=2)
     assert len(large.links) > MOST_LINKS
     for what, count in ((large, len(large.links)), (ck.decompose(large), 301)):
         page = page_of(what)

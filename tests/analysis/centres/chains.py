@@ -97,6 +97,6 @@ def random_mechanism(graph: nx.Graph, seed: int) -> ck.Mechanism:
     return mechanism({f"{a}-{b}": complex(*rng.uniform(-1, 1, 2)) for a, b in edges})
 
 
-def solved(drawn: ck.Mechanism) -> ck.Motion:
+def solved(drawn: ck.Mechanism) -> ck.results.Motion:
     """A mechanism in its drawn pose, with velocities."""
     return ck.solve(drawn, home(drawn), order=1)

@@ -27,7 +27,7 @@ CHANGE_POINTS = {"parallelogram", "parallelogram-third-crank", "antiparallelogra
 
 @cache
 def centres_of(name: str) -> Centres:
-    with warnings.catch_warnings(action="ignore", category=ck.UnassembledPoses):
+    with warnings.catch_warnings(action="ignore", category=ck.errors.UnassembledPoses):
         return instant_centres(catalog.motion(name))
 
 
@@ -79,7 +79,7 @@ def test_change_points_are_singular_for_geometry_and_loop_equations_alike(name: 
     assert (singular == (gap < EXACT)).all()
 
 
-def mutated(motion: ck.Motion, link: str, change: Callable[[complex], complex]) -> ck.Motion:
+def mutated(motion: ck.results.Motion, link: str, change: Callable[[complex], complex]) -> ck.results.Motion:
     pose = motion.poses[link]
 
     def wrong(series: Series) -> Series:

@@ -17,13 +17,13 @@ from tests import catalog
 ZERO = 1e-9
 
 
-def solved(name: str) -> ck.Motion:
+def solved(name: str) -> ck.results.Motion:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         return ck.solve(load_named(name), order=1)
 
 
-def values_of(motion: ck.Motion, equations: LoopEquations) -> dict[str, np.ndarray]:
+def values_of(motion: ck.results.Motion, equations: LoopEquations) -> dict[str, np.ndarray]:
     """The unknowns as the solved poses show them: lengths and directions by the places of points, not by pairs."""
     values = {name: link.angle for name, link in motion.links.items()}
     geometry = motion.mechanism.geometry

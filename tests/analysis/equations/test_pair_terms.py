@@ -45,7 +45,7 @@ def tray(oldham: Any) -> ck.Mechanism:
     )
 
 
-def values_of(motion: ck.Motion, equations: LoopEquations) -> dict[str, Any]:
+def values_of(motion: ck.results.Motion, equations: LoopEquations) -> dict[str, Any]:
     """The unknowns as the solved poses show them; the frame does not turn."""
     across = motion.points["C"].position - motion.points["A"].position
     values = {name: link.angle for name, link in motion.links.items()}

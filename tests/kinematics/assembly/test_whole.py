@@ -81,12 +81,12 @@ def test_over_designs_and_poses_at_once() -> None:
     assert np.isnan(rockers[~found.real]).all()
     one = found.pick(1, at=(1, 3))
     assert one.points["C"] == pytest.approx(found.points("C")[1, 3, 1])
-    with pytest.raises(ck.NotAssembled):
+    with pytest.raises(ck.errors.NotAssembled):
         found.pick(1, at=(1, 12))
 
 
 def test_where_nothing_can_be_assembled_the_nearest_value_is_named() -> None:
-    with pytest.raises(ck.NotAssembled) as error:
+    with pytest.raises(ck.errors.NotAssembled) as error:
         ck.configurations(four_bar(4.0, 5.0, 3.0, 7.0), {"crank": 3.0})
     assert f"crank = {np.degrees(np.arccos((16 + 49 - 64) / 56)):.6g} degrees" in str(error.value)
 
@@ -100,15 +100,15 @@ def test_where_nothing_can_be_assembled_the_nearest_value_is_named() -> None:
     ],
 )
 def test_names_that_are_none(modes: object, text: str) -> None:
-    with pytest.raises(ck.InvalidInput, match=text.replace("(", r"\(").replace(")", r"\)")):
+    with pytest.raises(ck.errors.InvalidInput, match=text.replace("(", r"\(").replace(")", r"\)")):
         ck.solve(four_bar(1.0, 3.0, 3.0, 4.0), modes=modes)  # type: ignore[arg-type]
 
 
 def test_a_configuration_of_another_mechanism_is_refused() -> None:
     one = ck.configurations(load_named("six-bar"), {"crank": 1.0}).pick(0)
-    with pytest.raises(ck.InvalidInput, match="another mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="another mechanism"):
         ck.solve(four_bar(1.0, 3.0, 3.0, 4.0), modes=one)
-    with pytest.raises(ck.InvalidInput, match="another mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="another mechanism"):
         ck.circuits(four_bar(1.0, 3.0, 3.0, 4.0)).at(one)
 
 
@@ -121,7 +121,7 @@ def test_a_group_is_assembled_in_the_configuration_nearest_to_a_rough_drawing(se
     exact = ck.configurations(mechanism, {"link0": value})
     for one in exact:
         hint = {k: p + complex(*rng.normal(0.0, 1e-3, 2)) for k, p in one.points.items()}
-        with warnings.catch_warnings(action="ignore", category=ck.UnassembledPoses):
+        with warnings.catch_warnings(action="ignore", category=ck.errors.UnassembledPoses):
             motion = ck.solve(mechanism, {"link0": np.array([value])}, hint=hint)
         gaps = [max(abs(other.points[k] - motion.points[k].position[0]) for k in hint) for other in exact]
         assert gaps.index(min(gaps)) == [other.name for other in exact].index(one.name)

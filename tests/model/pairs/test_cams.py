@@ -17,20 +17,20 @@ TURN = np.linspace(-1.0, 8.0, 61)
 
 
 def of_points() -> Profile:
-    return ck.profile(MIDDLE + RADIUS * np.exp(1j * np.linspace(0.0, 2 * np.pi, 400, endpoint=False)))
+    return ck.profiles.profile(MIDDLE + RADIUS * np.exp(1j * np.linspace(0.0, 2 * np.pi, 400, endpoint=False)))
 
 
 def of_formula() -> Profile:
-    return ck.formula(lambda s: MIDDLE + RADIUS * np.exp(1j * s), 0.0, 2 * np.pi)
+    return ck.profiles.formula(lambda s: MIDDLE + RADIUS * np.exp(1j * s), 0.0, 2 * np.pi)
 
 
 def backwards() -> Profile:
-    return ck.formula(lambda s: MIDDLE + RADIUS * np.exp(-1j * s), 1.0, 1.0 + 2 * np.pi)
+    return ck.profiles.formula(lambda s: MIDDLE + RADIUS * np.exp(-1j * s), 1.0, 1.0 + 2 * np.pi)
 
 
 # A quintic spline through 400 points of a circle misses it by 1e-13 of the radius, its second derivative by 1e-8.
 PROFILES = {
-    "disc": (ck.disc(RADIUS, MIDDLE), 1e-11),
+    "disc": (ck.profiles.disc(RADIUS, MIDDLE), 1e-11),
     "formula": (of_formula(), 1e-8),
     "backwards": (backwards(), 1e-8),
     "points": (of_points(), 1e-7),
@@ -44,19 +44,19 @@ def cam_and(*items: Any, title: str = "cam", points: Any = None) -> ck.Mechanism
     return ck.Mechanism(title, frame, ck.link("cam", A=0), ck.drive("cam", speed=2.0), *items)
 
 
-def solved(mechanism: ck.Mechanism, **words: Any) -> ck.Motion:
+def solved(mechanism: ck.Mechanism, **words: Any) -> ck.results.Motion:
     motion = ck.solve(mechanism, {"cam": TURN}, order=3, **words)
     assert motion.assembled.all()
     return motion
 
 
-def nearer(found: ck.Motion, linkage: ck.Mechanism, *links: str) -> ck.Motion:
+def nearer(found: ck.results.Motion, linkage: ck.Mechanism, *links: str) -> ck.results.Motion:
     """The linkage in that of its two modes which is nearer to a motion."""
     both = [solved(linkage.replace(ck.mode(sign, *links))) for sign in (1, -1)]
     return min(both, key=lambda motion: apart(found, motion))
 
 
-def apart(one: ck.Motion, other: ck.Motion, point: str = "P") -> list[float]:
+def apart(one: ck.results.Motion, other: ck.results.Motion, point: str = "P") -> list[float]:
     """How far the motions of a point differ, by derivative, in parts of the disc's radius and the speed."""
     a, b = one.points[point], other.points[point]
     return [float(np.max(np.abs(a.derivative(k) - b.derivative(k)))) / RADIUS / 2.0**k for k in range(4)]
@@ -127,7 +127,7 @@ def test_an_oscillating_face_on_an_eccentric(shape: str, sign: int, side: int, b
     height = (beyond - RADIUS) / np.abs(toward)
     angle = np.angle(toward) + side * sign * (np.arcsin(height)) + (0.0 if sign > 0 else np.pi)
     assert np.max(np.abs(np.exp(1j * found.angle) - np.exp(1j * angle))) < limit
-    yoke = mechanism.replace(ck.face("follower", on="cam", at="P", profile=ck.disc(RADIUS, MIDDLE), side=side))
+    yoke = mechanism.replace(ck.face("follower", on="cam", at="P", profile=ck.profiles.disc(RADIUS, MIDDLE), side=side))
     exact = solved(yoke).links["follower"]
     assert np.max(np.abs(found.angular_velocity - exact.angular_velocity)) < limit * 2
     assert np.max(np.abs(found.angular_acceleration - exact.angular_acceleration)) < 4 * limit
@@ -158,11 +158,11 @@ def test_modes_are_those_of_the_linkage_for_a_disc(shape: str, sign: int, kind: 
 
     middle = 50.0 if kind == "profile on the pin" else 8.0
     shapes = {
-        "disc": ck.disc(30, middle),
-        "formula": ck.formula(lambda s: middle + 30 * np.exp(1j * s), 0.0, 2 * np.pi),
-        "points": ck.profile(middle + 30 * np.exp(1j * np.linspace(0.0, 2 * np.pi, 400, endpoint=False))),
+        "disc": ck.profiles.disc(30, middle),
+        "formula": ck.profiles.formula(lambda s: middle + 30 * np.exp(1j * s), 0.0, 2 * np.pi),
+        "points": ck.profiles.profile(middle + 30 * np.exp(1j * np.linspace(0.0, 2 * np.pi, 400, endpoint=False))),
     }
-    found, exact = ck.solve(mechanism(shapes[shape])), ck.solve(mechanism(ck.disc(30, middle)))
+    found, exact = ck.solve(mechanism(shapes[shape])), ck.solve(mechanism(ck.profiles.disc(30, middle)))
     assert exact.assembled.all()
     assert np.max(np.abs(found.points["P"].position - exact.points["P"].position)) < 1e-6
     gap = np.exp(1j * found.links["follower"].angle) - np.exp(1j * exact.links["follower"].angle)
@@ -184,8 +184,12 @@ def test_a_roller_inside_a_ring(shape: str) -> None:
 
 
 def test_a_roller_that_does_not_fit_into_its_ring() -> None:
-    with pytest.raises(ck.InvalidMechanism, match="does not fit into a ring of radius 30"):
-        cam_and(*slider(), ck.cam("follower", on="cam", profile=ck.disc(30), radius=31, inside=True), points={"X": 0})
+    with pytest.raises(ck.errors.InvalidMechanism, match="does not fit into a ring of radius 30"):
+        cam_and(
+            *slider(),
+            ck.cam("follower", on="cam", profile=ck.profiles.disc(30), radius=31, inside=True),
+            points={"X": 0},
+        )
 
 
 @pytest.mark.parametrize("shape", ["points", "formula"])
@@ -193,8 +197,8 @@ def test_a_pin_in_a_parabolic_slot(shape: str) -> None:
     """The slot y = x^2 / 40 of a plate that slides along x lifts a pin on the vertical through x = 10."""
     x = np.linspace(-40.0, 40.0, 81)
     slot = {
-        "points": ck.profile(x + 1j * x**2 / 40, closed=False),
-        "formula": ck.formula(lambda s: s + 1j * s**2 / 40, -40.0, 40.0, closed=False),
+        "points": ck.profiles.profile(x + 1j * x**2 / 40, closed=False),
+        "formula": ck.profiles.formula(lambda s: s + 1j * s**2 / 40, -40.0, 40.0, closed=False),
     }[shape]
     mechanism = ck.Mechanism(
         "Slot",
@@ -217,7 +221,7 @@ def test_a_pin_in_a_parabolic_slot(shape: str) -> None:
 
 
 def test_where_a_slot_ends_the_pin_is_lost() -> None:
-    slot = ck.formula(lambda s: s + 1j * s**2 / 40, -40.0, 40.0, closed=False)
+    slot = ck.profiles.formula(lambda s: s + 1j * s**2 / 40, -40.0, 40.0, closed=False)
     mechanism = ck.Mechanism(
         "Slot",
         ck.link("frame", A=0, X=10),
@@ -229,7 +233,7 @@ def test_where_a_slot_ends_the_pin_is_lost() -> None:
         ck.drive("plate", values=np.linspace(0.0, 60.0, 61)),
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         (gap,) = ck.gaps(ck.solve(mechanism))
     assert abs(gap.begin["plate"] - 50.0) < 1e-7
     assert gap.reason == "on its way P does not meet the profile of plate between its ends"
@@ -237,11 +241,11 @@ def test_where_a_slot_ends_the_pin_is_lost() -> None:
 
 def test_a_follower_whose_path_misses_the_profile() -> None:
     """A guide 45 from the axis of an oval that reaches less far for a part of the turn, a roller of 5 on it."""
-    oval = ck.formula(lambda s: 30 * np.cos(s) + 24j * np.sin(s) + 12, 0.0, 2 * np.pi)
+    oval = ck.profiles.formula(lambda s: 30 * np.cos(s) + 24j * np.sin(s) + 12, 0.0, 2 * np.pi)
     items = ck.link("follower", P=0), ck.slide("follower", on="frame", through="X", angle=np.pi / 2)
     mechanism = cam_and(*items, ck.cam("follower", on="cam", profile=oval, radius=5), points={"X": 45})
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         (gap,) = ck.gaps(ck.solve(mechanism, {"cam": np.linspace(0.0, np.pi, 181)}))
     assert gap.reason == "on its way P does not meet the profile of cam"
     # the farthest point to the right of the turned oval is sqrt(30^2 cos^2 + 24^2 sin^2) + 12 cos = 40 away
@@ -251,7 +255,7 @@ def test_a_follower_whose_path_misses_the_profile() -> None:
 
 def test_a_cam_carried_by_the_moving_follower() -> None:
     """An arm with a profile rests on a fixed pin: the distance of the pin from the arm's disc stays what it is."""
-    oval = ck.formula(lambda s: 30 * np.cos(s) + 20j * np.sin(s) + 50, 0.0, 2 * np.pi)
+    oval = ck.profiles.formula(lambda s: 30 * np.cos(s) + 20j * np.sin(s) + 50, 0.0, 2 * np.pi)
     mechanism = ck.Mechanism(
         "Inverted cam",
         ck.link("frame", A=0, G=(60, 10)),
@@ -269,14 +273,14 @@ def test_a_cam_carried_by_the_moving_follower() -> None:
     curve = 30 * np.cos(s) + 20j * np.sin(s) + 50
     nearest = [np.min(np.abs(curve - p)) for p in np.asarray(local)]
     assert np.max(np.abs(np.array(nearest) - 5.0)) < 1e-6
-    found = ck.cam_analysis(motion, "crank/follower")
+    found = ck.cams.cam_analysis(motion, "crank/follower")
     assert found.follower == "follower"
     assert found.oscillates is True
 
 
 def test_a_cam_on_a_moving_carrier() -> None:
     """Cam, pivot and roller on a coupler: relative to it the follower moves as it does on the frame."""
-    oval = ck.formula(lambda s: 30 * np.cos(s) + 22j * np.sin(s) + 4, 0.0, 2 * np.pi)
+    oval = ck.profiles.formula(lambda s: 30 * np.cos(s) + 22j * np.sin(s) + 4, 0.0, 2 * np.pi)
     parts = ck.link("cam", C=0), ck.link("follower", H=0, P=50)
     pair = ck.cam("follower", on="cam", at="P", profile=oval, radius=5)
     moving = ck.Mechanism(
@@ -304,7 +308,7 @@ def test_a_cam_on_a_moving_carrier() -> None:
 
 def with_roller() -> tuple[ck.Mechanism, ck.Mechanism]:
     """The same mechanism with the roller as a link of its own, and as a radius of the follower."""
-    oval = ck.formula(lambda s: 30 * np.cos(s) + 22j * np.sin(s) + 4, 0.0, 2 * np.pi)
+    oval = ck.profiles.formula(lambda s: 30 * np.cos(s) + 22j * np.sin(s) + 4, 0.0, 2 * np.pi)
     own = ck.link("roller", P=0), ck.cam("roller", on="cam", profile=oval, radius=5)
     slide = ck.link("follower", P=0), ck.slide("follower", on="frame", at="P", through="A", angle=np.pi / 2)
     return cam_and(*slide, *own), cam_and(*slide, ck.cam("follower", on="cam", profile=oval, radius=5))
@@ -322,14 +326,14 @@ def test_a_roller_as_a_link_turns_without_effect() -> None:
     one, other = solved(rolling), solved(plain)
     assert max(apart(one, other)) < 1e-12
     assert np.max(np.abs(one.links["roller"].angular_velocity)) < 1e-12
-    found = ck.cam_analysis(one, "roller/cam")
+    found = ck.cams.cam_analysis(one, "roller/cam")
     assert found.follower == "follower"
-    assert np.allclose(found.pressure_angle, ck.cam_analysis(other, "follower/cam").pressure_angle, atol=1e-12)
+    assert np.allclose(found.pressure_angle, ck.cams.cam_analysis(other, "follower/cam").pressure_angle, atol=1e-12)
 
 
 def test_a_roller_on_a_rod_of_a_larger_group() -> None:
     """A bell crank's rod runs on the cam: rod and lever are found together, without a closed form."""
-    oval = ck.formula(lambda s: 20 * np.cos(s) + 15j * np.sin(s) + 3, 0.0, 2 * np.pi)
+    oval = ck.profiles.formula(lambda s: 20 * np.cos(s) + 15j * np.sin(s) + 3, 0.0, 2 * np.pi)
     mechanism = ck.Mechanism(
         "Rod on a cam",
         ck.link("frame", A=0, H=(70, 0), X=(0, 18)),
@@ -353,7 +357,7 @@ def test_a_roller_on_a_rod_of_a_larger_group() -> None:
 
 def test_designs_of_rollers() -> None:
     """An array of radii: each design is the mechanism with its own radius."""
-    oval = ck.formula(lambda s: 30 * np.cos(s) + 22j * np.sin(s) + 4, 0.0, 2 * np.pi)
+    oval = ck.profiles.formula(lambda s: 30 * np.cos(s) + 22j * np.sin(s) + 4, 0.0, 2 * np.pi)
     radii = np.array([2.0, 5.0, 9.0])
 
     def mechanism(radius: Any) -> ck.Mechanism:
@@ -372,7 +376,7 @@ def test_instant_centres_by_the_common_normal() -> None:
     """The centre of cam and follower is where the common normal meets the line square to the guide through the axis."""
     motion = solved(with_roller()[1])
     centre = ck.instant_centres(motion)["cam", "follower"].point
-    found = ck.cam_analysis(motion, "follower/cam")
+    found = ck.cams.cam_analysis(motion, "follower/cam")
     middle = motion.points["P"].position
     normal = (middle - found.contact) / 5.0
     assert np.max(np.abs(np.abs(normal) - 1.0)) < 1e-9
@@ -383,8 +387,8 @@ def test_instant_centres_by_the_common_normal() -> None:
 
 
 def test_a_profile_that_crosses_itself_is_refused_with_the_place() -> None:
-    eight = ck.formula(lambda s: 30 * np.sin(s) + 1j * 20 * np.sin(2 * s), 0.0, 2 * np.pi)
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    eight = ck.profiles.formula(lambda s: 30 * np.sin(s) + 1j * 20 * np.sin(2 * s), 0.0, 2 * np.pi)
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         cam_and(*slider(), ck.cam("follower", on="cam", profile=eight), points={"X": 0})
     (problem,) = caught.value.problems
     assert problem.where == "cams[0].profile"
@@ -401,13 +405,13 @@ def test_a_profile_that_crosses_itself_is_refused_with_the_place() -> None:
         ({"radius": -1.0}, "cams[0].radius", "is not a length"),
         ({"radius": np.nan}, "cams[0].radius", "not finite"),
         ({"profile": "oval"}, "cams[0].profile", "is not a profile"),
-        ({"profile": ck.disc(-3)}, "cams[0].profile.radius", "not a positive length"),
-        ({"profile": ck.profile([0, 1, 1j])}, "cams[0].profile.points", "3 points are too few"),
+        ({"profile": ck.profiles.disc(-3)}, "cams[0].profile.radius", "not a positive length"),
+        ({"profile": ck.profiles.profile([0, 1, 1j])}, "cams[0].profile.points", "3 points are too few"),
     ],
 )
 def test_mistakes_in_a_cam_have_a_place(words: dict[str, Any], place: str, what: str) -> None:
-    given = {"link": "follower", "on": "cam", "profile": ck.disc(30), **words}
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    given = {"link": "follower", "on": "cam", "profile": ck.profiles.disc(30), **words}
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         cam_and(*slider(), ck.cam(**given), points={"X": 0})
     assert any(p.where == place and what in p.what for p in caught.value.problems), caught.value
 
@@ -423,12 +427,12 @@ def test_a_larger_group_says_where_its_slot_may_end() -> None:
         ck.link("rod", J=0, R=55, S=(80, 0)),
         ck.link("block", S=0),
         ck.slide("block", on="frame", through="X", angle=0),
-        ck.cam("rod", on="plate", at="R", profile=ck.profile(x + 1j * (23 + x**2 / 400), closed=False)),
+        ck.cam("rod", on="plate", at="R", profile=ck.profiles.profile(x + 1j * (23 + x**2 / 400), closed=False)),
         ck.drive("plate", values=ck.deg(np.arange(0.0, 61.0, 2.0))),
         ck.drawn(H=(70, 0), J=(60, 38.7), R=(10, 25), S=(-17, 18)),
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         motion = ck.solve(mechanism)
         found = ck.gaps(motion)
     assert motion.assembled[0]

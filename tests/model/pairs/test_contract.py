@@ -313,7 +313,7 @@ def test_a_slide_toward_a_point() -> None:
 def test_mistakes_in_a_slide_have_a_place(words: dict[str, object], place: str, what: str) -> None:
     links = [ck.link("frame", A=0, Q=1), ck.link("block", C=0), ck.link("two", D=0, E=1), ck.link("three", A=0, D=1)]
     given_words = {"link": "block", "on": "frame", "at": "C", "through": "Q", **words}
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         ck.Mechanism("m", *links, ck.slide(**given_words))  # type: ignore[arg-type]
     assert any(p.where == place and what in p.what for p in caught.value.problems), caught.value
 

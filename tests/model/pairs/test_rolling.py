@@ -15,7 +15,7 @@ SIZES = st.floats(0.3, 5.0)
 ANGLES = st.floats(-3.0, 3.0)
 
 
-def passes(motion: ck.Motion) -> bool:
+def passes(motion: ck.results.Motion) -> bool:
     check = ck.verify(motion)
     assert check.passed, [finding for finding in check.findings if not finding.passed]
     return bool(motion.assembled.all())
@@ -30,7 +30,7 @@ def derivatives(terms: list[tuple[complex, float]], drift: complex, q: Any, rate
     return [drift * q + sum(w for w, _ in waves), first * speed, second * speed**2 + first * acceleration]
 
 
-def agree(motion: ck.Motion, letter: str, expected: list[Any]) -> None:
+def agree(motion: ck.results.Motion, letter: str, expected: list[Any]) -> None:
     for k, value in enumerate(expected):
         found = motion.points[letter].derivative(k)
         assert np.max(np.abs(found - value)) < 1e-12 * max(1.0, float(np.max(np.abs(value))))
@@ -274,7 +274,7 @@ def test_radii_as_designs() -> None:
 def test_mistakes_on_a_line_have_a_place(words: dict[str, Any], place: str, what: str) -> None:
     links = ck.link("frame", O=0, Q=1), ck.link("wheel", C=0, P=1)
     given_words = {"link": "wheel", "on": "frame", "through": "O", "at": "C", "radius": 2.0, **words}
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         ck.Mechanism("m", *links, ck.roll(**given_words))
     assert any(p.where == place and what in p.what for p in caught.value.problems), caught.value
 
@@ -295,14 +295,14 @@ def test_mistakes_on_a_line_have_a_place(words: dict[str, Any], place: str, what
 def test_mistakes_on_a_circle_have_a_place(words: dict[str, Any], place: str, what: str) -> None:
     links = ck.link("frame", O=0, Q=1), ck.link("wheel", C=0, P=1)
     given_words = {"link": "wheel", "on": "frame", "centre_at": "O", "at": "C", "circle": 4.0, "radius": 2.0, **words}
-    with pytest.raises(ck.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidMechanism) as caught:
         ck.Mechanism("m", *links, ck.roll_around(**given_words))
     assert any(p.where == place and what in p.what for p in caught.value.problems), caught.value
 
 
 def test_a_line_between_two_points_at_one_place() -> None:
     links = ck.link("frame", O=0, Q=0), ck.link("wheel", C=0)
-    with pytest.raises(ck.InvalidMechanism, match="at one place, so that the line has no direction"):
+    with pytest.raises(ck.errors.InvalidMechanism, match="at one place, so that the line has no direction"):
         ck.Mechanism("m", *links, ck.roll("wheel", on="frame", through="O", toward="Q", radius=1))
 
 

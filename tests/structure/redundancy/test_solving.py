@@ -120,7 +120,7 @@ def test_a_further_parallel_crank_changes_nothing(x, y):
 
 def test_a_mode_in_which_the_redundant_crank_does_not_close_is_refused_by_name():
     leaving = {"B": 1 + 2j, "C": 3 - 2.2j}
-    with pytest.raises(ck.NotAssembled, match=r"E: the pair opens by \d"):
+    with pytest.raises(ck.errors.NotAssembled, match=r"E: the pair opens by \d"):
         ck.solve(cranks(ck.drive("crank")), hint=leaving)
 
 
@@ -135,7 +135,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("reason", REFUSED)
 def test_others_are_refused_with_the_reason(reason):
-    with pytest.raises(ck.NotDetermined, match=reason):
+    with pytest.raises(ck.errors.NotDetermined, match=reason):
         ck.solve(REFUSED[reason])
 
 

@@ -28,11 +28,11 @@ needs_ffmpeg = pytest.mark.skipif(
 )
 
 
-def six_bar(poses: int = 13) -> ck.Motion:
+def six_bar(poses: int = 13) -> ck.results.Motion:
     return ck.solve(load_named("six-bar"), {"crank": ck.deg(np.linspace(0.0, 360.0, poses))})
 
 
-def small(**more: object) -> ck.Animation:
+def small(**more: object) -> ck.results.Animation:
     return six_bar().animate(size=120, seconds=0.6, **more)  # type: ignore[arg-type]
 
 
@@ -127,7 +127,7 @@ def test_durations_add_up_where_a_frame_takes_no_whole_hundredth(tmp_path: Path)
 
 
 def test_a_gif_has_no_more_frames_a_second_than_browsers_show() -> None:
-    with pytest.raises(ck.InvalidInput, match="at most 50 frames a second"):
+    with pytest.raises(ck.errors.InvalidInput, match="at most 50 frames a second"):
         six_bar(121).animate(size=60, seconds=2, fps=60).content("gif")
 
 
@@ -193,13 +193,13 @@ def test_the_frames_of_an_mp4_are_those_drawn(tmp_path: Path) -> None:
 @needs_ffmpeg
 def test_what_ffmpeg_says_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mp4_module, "QUALITY", "worst")
-    with pytest.raises(ck.InvalidInput, match=r"ffmpeg failed: .*worst"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"ffmpeg failed: .*worst"):
         small().content("mp4")
 
 
 def test_without_ffmpeg_it_says_what_to_do(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(ck.InvalidInput, match=r"needs the program ffmpeg.*\.gif or \.svg"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"needs the program ffmpeg.*\.gif or \.svg"):
         small().save(tmp_path / "a.mp4")
     assert not list(tmp_path.iterdir())
 
@@ -241,7 +241,7 @@ def test_no_process_is_left_if_drawing_fails_halfway(tmp_path: Path) -> None:
 )
 def test_a_file_that_cannot_be_is_refused_before_anything_is_drawn(tmp_path: Path, name: str, said: str) -> None:
     told: list[int] = []
-    with pytest.raises(ck.InvalidInput, match=said):
+    with pytest.raises(ck.errors.InvalidInput, match=said):
         small().save(tmp_path / name, lambda done, total: told.append(done))
     assert not told
     assert not list(tmp_path.iterdir())
@@ -253,7 +253,7 @@ def test_without_a_library_it_says_what_to_install(
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, missing, None)
     monkeypatch.setattr(shutil, "which", lambda name: name)
-    with pytest.raises(ck.InvalidInput, match=r"pip install compoundkin\[animation\]"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"pip install compoundkin\[animation\]"):
         small().save(tmp_path / f"a.{form}")
 
 

@@ -94,7 +94,7 @@ def made_of(shape: Shape) -> list[complex]:
     return [shape.centre if isinstance(shape, CircleShape) else shape.at]  # type: ignore[union-attr]
 
 
-def off(animation: ck.Animation, svg: ET.Element, share: float, pose: int) -> float:
+def off(animation: ck.results.Animation, svg: ET.Element, share: float, pose: int) -> float:
     """By how much the worst of all places is off at a pose."""
     assert not animation.arrows
     shapes = list(shapes_in(animation.sketch.shapes(pose)))[1:]
@@ -107,10 +107,10 @@ def off(animation: ck.Animation, svg: ET.Element, share: float, pose: int) -> fl
     return worst
 
 
-def solved(name: str, values: np.ndarray, **more: object) -> ck.Motion:
+def solved(name: str, values: np.ndarray, **more: object) -> ck.results.Motion:
     mechanism = load_named(name)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         return ck.solve(mechanism, {mechanism.drives[0].name: values}, **more)
 
 
@@ -128,7 +128,7 @@ CASES = {
 
 
 @cache
-def case(name: str) -> ck.Motion:
+def case(name: str) -> ck.results.Motion:
     return CASES[name]()
 
 

@@ -14,7 +14,7 @@ from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.animation.timeline import MOST_FRAMES
 
 
-def crank(poses: int = 73, **more: object) -> ck.Motion:
+def crank(poses: int = 73, **more: object) -> ck.results.Motion:
     mechanism = ck.Mechanism(
         "Crank", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.link("rod", B=0, C=5), ck.link("block", C=0),
         ck.slide("block", on="frame", at="C", through="A", angle=0), ck.drive("crank"),
@@ -22,14 +22,14 @@ def crank(poses: int = 73, **more: object) -> ck.Motion:
     return ck.solve(mechanism, {"crank": np.linspace(0.0, 2.0 * np.pi, poses)}, **more)
 
 
-def rocking() -> ck.Motion:
+def rocking() -> ck.results.Motion:
     """A rocker driven over a full turn, of which two intervals can be assembled."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         return ck.solve(load_named("double-rocker"), {"driver": ck.deg(np.arange(0.0, 361.0))})
 
 
-def indices(animation: ck.Animation) -> np.ndarray:
+def indices(animation: ck.results.Animation) -> np.ndarray:
     """The poses of the frames as indices of the motion."""
     return animation.sketch.scene.known[animation.timeline.poses[animation.timeline.frames]]
 
@@ -101,7 +101,7 @@ def test_intervals_that_can_be_assembled_are_shown_each_there_and_back() -> None
 
 def test_an_interval_across_the_end_of_a_turn_is_one() -> None:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         motion = ck.solve(load_named("triple-rocker"), {"driver": ck.deg(np.arange(0.0, 361.0, 2.0))})
     animation = motion.animate()
     there = animation.sketch.scene.known[animation.timeline.legs[0].poses]
@@ -127,19 +127,19 @@ def test_one_pose_is_one_frame() -> None:
     ],
 )  # fmt: skip
 def test_what_does_not_fit_is_said(options: dict[str, object], where: str) -> None:
-    with pytest.raises(ck.InvalidInput) as caught:
+    with pytest.raises(ck.errors.InvalidInput) as caught:
         crank().animate(**options)
     assert caught.value.problems[0].where == where
 
 
 def test_unknown_points_and_other_things_are_said() -> None:
-    with pytest.raises(ck.UnknownName, match="no such point"):
+    with pytest.raises(ck.errors.UnknownName, match="no such point"):
         crank().animate(paths="X")
-    with pytest.raises(ck.InvalidInput, match="no motion and no mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="no motion and no mechanism"):
         ck.animate("six-bar")  # type: ignore[arg-type]
-    with pytest.raises(ck.InvalidInput, match="no frame 72"):
+    with pytest.raises(ck.errors.InvalidInput, match="no frame 72"):
         crank().animate().frame(72)
-    with pytest.raises(ck.InvalidInput, match="order 0"):
+    with pytest.raises(ck.errors.InvalidInput, match="order 0"):
         crank(order=0).animate(vectors="velocity")
 
 

@@ -172,7 +172,7 @@ def test_a_rate_that_is_nothing_but_rounding_is_zero(made: Any, opened: Any) -> 
 
 
 def test_what_cannot_be_known_has_no_unit_and_nothing_is_said_at_every_pose(opened: Any, tmp_path: Path) -> None:
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(load_named("triple-rocker"), {"driver": ck.deg(np.arange(0, 361, 5))})
     page(motion).save(tmp_path / "gap.html")
     view = opened(tmp_path / "gap.html")

@@ -99,8 +99,8 @@ def six_bar() -> tuple[Report, str]:
     return report(motion), page(motion).html
 
 
-def random_structure() -> ck.Structure:
-    return ck.decompose(ck.random_mechanism(groups=19, seed=7))
+def random_structure() -> ck.results.Structure:
+    return ck.decompose(ck.composing.random_mechanism(groups=19, seed=7))
 
 
 def made_of(name: str) -> tuple[Report, str]:

@@ -27,7 +27,7 @@ def unpacked(packed: Any, count: int) -> np.ndarray:
     return np.frombuffer(base64.b64decode(packed[2:]), form).astype(float)
 
 
-def six_bar(poses: int = 37) -> ck.Motion:
+def six_bar(poses: int = 37) -> ck.results.Motion:
     return ck.solve(load_named("six-bar"), {"crank": np.linspace(0, 2 * np.pi, poses)}, speed=10)
 
 
@@ -99,7 +99,7 @@ def test_long_motions_are_thinned_and_it_is_said() -> None:
 
 
 def test_many_links_have_fewer_poses() -> None:
-    large = ck.random_mechanism(20, seed=3, kinds=("RRR",))
+    large = ck.composing.random_mechanism(20, seed=3, kinds=("RRR",))
     drive = large.drives[0]
     motion = ck.solve(large, {drive.name: drive.values + np.linspace(0, 1e-3, 1000)})
     moving = MotionData(Sample(motion))
@@ -124,7 +124,7 @@ def test_what_plays_on_and_on() -> None:
 
 def test_the_pose_shown_first_is_an_assembled_one() -> None:
     rocker = ck.with_driver(load_named("crank-rocker"), "rocker")
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(rocker, {rocker.drives[0].name: ck.deg(range(0, 360, 5))})
     data = MotionData(Sample(motion)).data
     assembled = unpacked(data["assembled"], 72)
@@ -136,7 +136,7 @@ def test_nothing_moves_where_nothing_closes() -> None:
     long = ck.Mechanism(
         "Too long", ck.link("frame", A=0, D=20), ck.link("crank", A=0, B=1), ck.link("rod", B=0, C=2),
         ck.link("rocker", D=0, C=2), ck.drive("crank"))  # fmt: skip
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(long, {"crank": ck.deg([0, 10])})
     assert viewer_of(motion) is None
     assert motion._repr_html_() is None

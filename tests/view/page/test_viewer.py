@@ -239,7 +239,7 @@ def test_every_choice_of_a_quantity_draws_a_plot(made: Any, opened: Any) -> None
 
 def test_poses_that_cannot_be_assembled_are_said(opened: Callable[..., Any], tmp_path: Path) -> None:
     rocker = ck.with_driver(load_named("crank-rocker"), "rocker")
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(rocker, {rocker.drives[0].name: ck.deg(range(0, 360, 5))})
     page(motion).save(tmp_path / "rocker.html")
     view = opened(tmp_path / "rocker.html")

@@ -61,7 +61,7 @@ def test_the_curves_cross_a_driver_value_at_its_configurations(name: str) -> Non
     for value in low + (high - low) * np.array([0.231, 0.617, 0.873]):
         try:
             places = np.ravel(ck.configurations(mechanism, np.deg2rad(value)).points(letter))
-        except ck.NotAssembled:
+        except ck.errors.NotAssembled:
             places = np.zeros(0, dtype=complex)
         places = places[np.isfinite(places)]
         for axes, wanted in ((x, places.real), (y, places.imag)):
@@ -213,12 +213,12 @@ def test_one_driver_of_several_moves_and_the_title_tells_where_the_others_stand(
 @pytest.mark.parametrize(
     ("name", "error", "told"),
     [
-        ("rocker.angel", ck.UnknownName, "did you mean 'rocker.angle'"),
-        ("roker", ck.UnknownName, "did you mean 'rocker'"),
-        ("roker.angular_velocity", ck.UnknownName, "did you mean 'rocker'"),
-        ("rocker.angular_velocity", ck.InvalidInput, "circuits show positions"),
-        ("C.velocity.x", ck.InvalidInput, "take C.x"),
-        ("rocker.angle.x", ck.UnknownName, "rocker.angle"),
+        ("rocker.angel", ck.errors.UnknownName, "did you mean 'rocker.angle'"),
+        ("roker", ck.errors.UnknownName, "did you mean 'rocker'"),
+        ("roker.angular_velocity", ck.errors.UnknownName, "did you mean 'rocker'"),
+        ("rocker.angular_velocity", ck.errors.InvalidInput, "circuits show positions"),
+        ("C.velocity.x", ck.errors.InvalidInput, "take C.x"),
+        ("rocker.angle.x", ck.errors.UnknownName, "rocker.angle"),
     ],
 )
 def test_wrong_quantities_are_told(name: str, error: type[Exception], told: str) -> None:
@@ -228,9 +228,9 @@ def test_wrong_quantities_are_told(name: str, error: type[Exception], told: str)
 
 def test_circuits_that_are_found_take_no_options_of_their_finding() -> None:
     found = ck.circuits(load_named("triple-rocker"))
-    with pytest.raises(ck.InvalidInput, match="found already"):
+    with pytest.raises(ck.errors.InvalidInput, match="found already"):
         plot.circuits(found, "rocker.angle", driver="driver")
-    with pytest.raises(ck.InvalidInput, match="is no mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="is no mechanism"):
         plot.circuits("triple-rocker")  # type: ignore[arg-type]
 
 

@@ -24,24 +24,24 @@ ROOT = Path(__file__).parents[3]
 LIMIT = np.rad2deg(np.arccos((4**2 + 7**2 - 8**2) / (2 * 4 * 7)))
 
 
-def solved(name: str, values: Any = None, **options: Any) -> ck.Motion:
+def solved(name: str, values: Any = None, **options: Any) -> ck.results.Motion:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ck.UnassembledPoses)
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         return ck.solve(load_named(name), values, **options)
 
 
 @pytest.fixture(scope="module")
-def six_bar() -> ck.Motion:
+def six_bar() -> ck.results.Motion:
     return solved("six-bar", order=3)
 
 
 @pytest.fixture(scope="module")
-def rocker() -> ck.Motion:
+def rocker() -> ck.results.Motion:
     return solved("triple-rocker", np.deg2rad(np.arange(0.0, 361.0, 2.5)))
 
 
 @pytest.fixture(scope="module")
-def sweep() -> ck.Motion:
+def sweep() -> ck.results.Motion:
     """Five lengths of the coupler."""
     return ck.solve(
         ck.Mechanism(
@@ -68,7 +68,7 @@ def texts(axes: Any) -> list[str]:
 # --- over the driver, time, other quantities ------------------------------------------------------------
 
 
-def test_the_lines_are_the_motions_arrays(six_bar: ck.Motion) -> None:
+def test_the_lines_are_the_motions_arrays(six_bar: ck.results.Motion) -> None:
     first, second = ck.plot(six_bar, "bar.angle", "G.velocity").figure.axes
     (angle,) = curves(first).values()
     np.testing.assert_allclose(angle[0], np.rad2deg(six_bar.drives["crank"].value), rtol=1e-12)
@@ -79,7 +79,7 @@ def test_the_lines_are_the_motions_arrays(six_bar: ck.Motion) -> None:
         np.testing.assert_array_equal(drawn[name][1], values)
 
 
-def test_units_and_names_are_on_the_axes(six_bar: ck.Motion) -> None:
+def test_units_and_names_are_on_the_axes(six_bar: ck.results.Motion) -> None:
     axes = ck.plot(six_bar, "bar.angle", "bar.angular_acceleration", "G.acceleration", "slot.rate").figure.axes
     labels = [one.get_ylabel().replace("\n", " ") for one in axes]
     wanted = ["bar.angle [deg]", "bar.angular_acceleration [rad/s²]", "G.acceleration [mm/s²]", "slot.rate [mm/s]"]
@@ -87,7 +87,7 @@ def test_units_and_names_are_on_the_axes(six_bar: ck.Motion) -> None:
     assert [one.get_xlabel() for one in axes] == ["", "", "", "crank [deg]"]
 
 
-def test_against_a_quantity(six_bar: ck.Motion) -> None:
+def test_against_a_quantity(six_bar: ck.results.Motion) -> None:
     (axes,) = six_bar.plot("G.velocity.x", against="bar.angle").figure.axes
     ((x, y),) = curves(axes).values()
     np.testing.assert_allclose(x, np.rad2deg(six_bar.links["bar"].angle), rtol=1e-12)
@@ -109,14 +109,14 @@ def test_a_motion_in_time_is_drawn_over_time_unless_told() -> None:
     assert next(iter(curves(axes).values()))[0].tolist() == list(range(21))
 
 
-def test_quantities_of_one_unit_share_a_panel(six_bar: ck.Motion) -> None:
+def test_quantities_of_one_unit_share_a_panel(six_bar: ck.results.Motion) -> None:
     names = ("bar.angle", "G.speed", "plate.angle")
     first, second = ck.plot(six_bar, *names, stacked=False).figure.axes
     assert (first.get_ylabel(), second.get_ylabel()) == ("[deg]", "G.speed [mm/s]")
     assert list(curves(first)) == ["bar.angle", "plate.angle"]
 
 
-def test_designs_are_a_family_of_curves(sweep: ck.Motion) -> None:
+def test_designs_are_a_family_of_curves(sweep: ck.results.Motion) -> None:
     x, y, length = ck.plot(sweep, "P.velocity", designs=list("abcde")).figure.axes
     assert [one.get_ylabel().replace("\n", " ") for one in (x, y, length)] == [
         "P.velocity.x [length/s]",
@@ -129,7 +129,7 @@ def test_designs_are_a_family_of_curves(sweep: ck.Motion) -> None:
     assert [text.get_text() for text in figure.legends[0].get_texts()] == list("abcde")
 
 
-def test_extremes_are_marked_with_their_values(six_bar: ck.Motion) -> None:
+def test_extremes_are_marked_with_their_values(six_bar: ck.results.Motion) -> None:
     (axes,) = ck.plot(six_bar, "bar.angle").figure.axes
     fine = np.rad2deg(solved("six-bar", np.deg2rad(np.linspace(0, 360, 36001))).links["bar"].angle)
     assert texts(axes) == [f"{fine.max():.4g}", f"{fine.min():.4g}"]
@@ -146,7 +146,7 @@ def test_what_is_nothing_but_rounding_is_drawn_as_constant() -> None:
 # --- gaps, limit positions, change points ---------------------------------------------------------------
 
 
-def test_gaps_are_shaded_between_the_limits(rocker: ck.Motion) -> None:
+def test_gaps_are_shaded_between_the_limits(rocker: ck.results.Motion) -> None:
     (axes,) = ck.plot(rocker, "rocker.angle").figure.axes
     (shade,) = axes.patches
     edges = shade.get_x(), shade.get_x() + shade.get_width()
@@ -163,7 +163,7 @@ def test_gaps_of_a_motion_in_time_are_shaded_at_their_times() -> None:
     assert shade.get_x() + shade.get_width() == 1.5
 
 
-def test_rings_are_at_the_poses_next_to_limits(rocker: ck.Motion) -> None:
+def test_rings_are_at_the_poses_next_to_limits(rocker: ck.results.Motion) -> None:
     (axes,) = ck.plot(rocker, "rocker.angle").figure.axes
     (ring,) = [line for line in axes.get_lines() if line.get_markerfacecolor() == "white"]
     assert ring.get_xdata().tolist() == pytest.approx([87.5, 272.5])
@@ -189,7 +189,7 @@ def test_change_points_are_dashed() -> None:
 # --- curves in the plane ----------------------------------------------------------------------------------
 
 
-def test_a_phase_plot_is_a_quantity_against_its_rate(six_bar: ck.Motion) -> None:
+def test_a_phase_plot_is_a_quantity_against_its_rate(six_bar: ck.results.Motion) -> None:
     for name, rate in (("bar.angle", "bar.angular_velocity"), ("G.y", "G.velocity.y"), ("slot", "slot.rate")):
         (axes,) = plot.phase(six_bar, name).figure.axes
         assert (axes.get_xlabel().split()[0], axes.get_ylabel().split()[0]) == (name, rate)
@@ -198,7 +198,7 @@ def test_a_phase_plot_is_a_quantity_against_its_rate(six_bar: ck.Motion) -> None
     np.testing.assert_allclose(y, six_bar.links["bar"].angular_velocity)
 
 
-def test_a_hodograph_is_the_velocity_in_the_plane(six_bar: ck.Motion) -> None:
+def test_a_hodograph_is_the_velocity_in_the_plane(six_bar: ck.results.Motion) -> None:
     (axes,) = plot.hodograph(six_bar, "G.velocity", every=9).figure.axes
     x, y = curves(axes)["G.velocity"]
     np.testing.assert_array_equal(x + 1j * y, np.asarray(six_bar.points["G"].velocity))
@@ -208,7 +208,7 @@ def test_a_hodograph_is_the_velocity_in_the_plane(six_bar: ck.Motion) -> None:
     np.testing.assert_array_equal(marks.get_xdata(), x[:-1:9])
 
 
-def test_a_polar_plot_has_the_driver_for_its_angle(six_bar: ck.Motion) -> None:
+def test_a_polar_plot_has_the_driver_for_its_angle(six_bar: ck.results.Motion) -> None:
     (axes,) = plot.polar(six_bar, "G.velocity").figure.axes
     angle, radius = curves(axes)["G.velocity.length"]
     np.testing.assert_allclose(angle, six_bar.drives["crank"].value, atol=1e-12)
@@ -217,7 +217,7 @@ def test_a_polar_plot_has_the_driver_for_its_angle(six_bar: ck.Motion) -> None:
     assert plot.polar(six_bar, "bar.angular_velocity").figure.axes[0].get_ylim()[0] < 0.0
 
 
-def test_paths_of_letters_and_of_places_on_links(six_bar: ck.Motion) -> None:
+def test_paths_of_letters_and_of_places_on_links(six_bar: ck.results.Motion) -> None:
     (axes,) = plot.paths(six_bar, "G", ("plate", (20, 10)), ("bar", 55)).figure.axes
     drawn = curves(axes)
     assert list(drawn) == ["G", "plate (20, 10)", "bar (55, 0)"]
@@ -227,7 +227,7 @@ def test_paths_of_letters_and_of_places_on_links(six_bar: ck.Motion) -> None:
     assert {"E", "B", "F"} <= set(texts(axes))
 
 
-def test_a_path_seen_from_another_link(six_bar: ck.Motion) -> None:
+def test_a_path_seen_from_another_link(six_bar: ck.results.Motion) -> None:
     (axes,) = plot.paths(six_bar, "C", on="bar").figure.axes
     x, y = curves(axes)["C"]
     # the block slides along the bar's own line, at its distance from F
@@ -246,7 +246,7 @@ def test_centrodes_touch_at_the_pole() -> None:
     np.testing.assert_allclose(abs(moving - fixed[7] / 2), 1.5, rtol=1e-9)
 
 
-def test_every_kind_draws_designs(sweep: ck.Motion) -> None:
+def test_every_kind_draws_designs(sweep: ck.results.Motion) -> None:
     for picture in (
         plot.phase(sweep, "rocker.angle"),
         plot.hodograph(sweep, "P.velocity"),
@@ -261,7 +261,7 @@ def test_every_kind_draws_designs(sweep: ck.Motion) -> None:
 
 
 @pytest.mark.parametrize("form", ["svg", "png", "pdf"])
-def test_the_same_plot_is_the_same_file(six_bar: ck.Motion, tmp_path: Path, form: str) -> None:
+def test_the_same_plot_is_the_same_file(six_bar: ck.results.Motion, tmp_path: Path, form: str) -> None:
     for name in ("a", "b"):
         ck.plot(six_bar, "bar.angle", "G.velocity").save(tmp_path / f"{name}.{form}")
     first, second = (tmp_path.joinpath(f"{name}.{form}").read_bytes() for name in ("a", "b"))
@@ -269,11 +269,11 @@ def test_the_same_plot_is_the_same_file(six_bar: ck.Motion, tmp_path: Path, form
     assert len(first) > 5000
 
 
-def test_an_svg_does_not_tell_when_it_was_made(six_bar: ck.Motion) -> None:
+def test_an_svg_does_not_tell_when_it_was_made(six_bar: ck.results.Motion) -> None:
     assert "<dc:date>" not in ck.plot(six_bar, "bar.angle")._repr_svg_()
 
 
-def test_the_users_settings_neither_matter_nor_change(six_bar: ck.Motion) -> None:
+def test_the_users_settings_neither_matter_nor_change(six_bar: ck.results.Motion) -> None:
     import matplotlib
 
     plain = ck.plot(six_bar, "bar.angle").content("svg")
@@ -288,35 +288,35 @@ def test_a_name_is_not_read_as_mathematics() -> None:
     assert ck.plot(ck.solve(crank), "B").content("png").startswith(b"\x89PNG")
 
 
-def mistakes() -> list[tuple[Callable[[ck.Motion], Any], type[Exception], str]]:
+def mistakes() -> list[tuple[Callable[[ck.results.Motion], Any], type[Exception], str]]:
     return [
-        (lambda m: ck.plot(m, "bar.angel"), ck.UnknownName, "did you mean 'bar.angle'"),
-        (lambda m: ck.plot(m, "G.velocity.lenth"), ck.UnknownName, "G.velocity.lenth"),
-        (lambda m: ck.plot(m, "bar.angle.x"), ck.UnknownName, "bar.angle is no vector"),
-        (lambda m: ck.plot(m, "G", against="tme"), ck.UnknownName, "did you mean 'time'"),
-        (lambda m: ck.plot(m, "G", against="time"), ck.InvalidInput, "no motion in time"),
-        (lambda m: ck.plot(m, "bar", against="G"), ck.InvalidInput, "G.length"),
-        (lambda m: ck.plot(m, "bar", designs=["a", "b"]), ck.InvalidInput, "1 designs and 2 names"),
-        (lambda m: ck.plot(m, "bar").save("bar.gif"), ck.InvalidInput, ".png, .svg, .pdf"),
-        (lambda m: ck.plot(m, "bar").save("/no/such/folder/bar.png"), ck.InvalidInput, "cannot be written"),
-        (lambda m: plot.phase(m, "G.velocity"), ck.UnknownName, "G.velocity.x"),
-        (lambda m: plot.phase(m, "G.speed"), ck.UnknownName, "rate has a name"),
-        (lambda m: plot.phase(m, "G.x", "G.velocity"), ck.InvalidInput, "it is a vector"),
-        (lambda m: plot.phase(m, "bar", every=0), ck.InvalidInput, "every"),
-        (lambda m: plot.hodograph(m, "bar.angle"), ck.InvalidInput, "no vector"),
-        (lambda m: plot.hodograph(m, "G.velocity", "G.jerk"), ck.InvalidInput, "one by one"),
-        (lambda m: plot.polar(m, "bar.angle", "G.speed"), ck.InvalidInput, "one by one"),
-        (lambda m: plot.polar(m, "bar.angle", around="slot"), ck.InvalidInput, "no angle"),
-        (lambda m: plot.paths(m, "g"), ck.UnknownName, "there is no such point"),
-        (lambda m: plot.paths(m, ("plaet", 1)), ck.UnknownName, "did you mean 'plate'"),
-        (lambda m: plot.centrodes(m, "plate", pose=99), ck.InvalidInput, "0 to 72"),
-        (lambda m: plot.centrodes(m, "plate", "plate"), ck.InvalidInput, "relative to itself"),
+        (lambda m: ck.plot(m, "bar.angel"), ck.errors.UnknownName, "did you mean 'bar.angle'"),
+        (lambda m: ck.plot(m, "G.velocity.lenth"), ck.errors.UnknownName, "G.velocity.lenth"),
+        (lambda m: ck.plot(m, "bar.angle.x"), ck.errors.UnknownName, "bar.angle is no vector"),
+        (lambda m: ck.plot(m, "G", against="tme"), ck.errors.UnknownName, "did you mean 'time'"),
+        (lambda m: ck.plot(m, "G", against="time"), ck.errors.InvalidInput, "no motion in time"),
+        (lambda m: ck.plot(m, "bar", against="G"), ck.errors.InvalidInput, "G.length"),
+        (lambda m: ck.plot(m, "bar", designs=["a", "b"]), ck.errors.InvalidInput, "1 designs and 2 names"),
+        (lambda m: ck.plot(m, "bar").save("bar.gif"), ck.errors.InvalidInput, ".png, .svg, .pdf"),
+        (lambda m: ck.plot(m, "bar").save("/no/such/folder/bar.png"), ck.errors.InvalidInput, "cannot be written"),
+        (lambda m: plot.phase(m, "G.velocity"), ck.errors.UnknownName, "G.velocity.x"),
+        (lambda m: plot.phase(m, "G.speed"), ck.errors.UnknownName, "rate has a name"),
+        (lambda m: plot.phase(m, "G.x", "G.velocity"), ck.errors.InvalidInput, "it is a vector"),
+        (lambda m: plot.phase(m, "bar", every=0), ck.errors.InvalidInput, "every"),
+        (lambda m: plot.hodograph(m, "bar.angle"), ck.errors.InvalidInput, "no vector"),
+        (lambda m: plot.hodograph(m, "G.velocity", "G.jerk"), ck.errors.InvalidInput, "one by one"),
+        (lambda m: plot.polar(m, "bar.angle", "G.speed"), ck.errors.InvalidInput, "one by one"),
+        (lambda m: plot.polar(m, "bar.angle", around="slot"), ck.errors.InvalidInput, "no angle"),
+        (lambda m: plot.paths(m, "g"), ck.errors.UnknownName, "there is no such point"),
+        (lambda m: plot.paths(m, ("plaet", 1)), ck.errors.UnknownName, "did you mean 'plate'"),
+        (lambda m: plot.centrodes(m, "plate", pose=99), ck.errors.InvalidInput, "0 to 72"),
+        (lambda m: plot.centrodes(m, "plate", "plate"), ck.errors.InvalidInput, "relative to itself"),
     ]
 
 
 @pytest.mark.parametrize(("draw", "error", "told"), mistakes(), ids=[told for _, _, told in mistakes()])
 def test_mistakes_are_told(
-    six_bar: ck.Motion, draw: Callable[[ck.Motion], Any], error: type[Exception], told: str
+    six_bar: ck.results.Motion, draw: Callable[[ck.results.Motion], Any], error: type[Exception], told: str
 ) -> None:
     with pytest.raises(error) as caught:
         draw(six_bar)
@@ -324,13 +324,13 @@ def test_mistakes_are_told(
 
 
 def test_a_single_pose_is_no_plot() -> None:
-    with pytest.raises(ck.InvalidInput, match="single pose"):
+    with pytest.raises(ck.errors.InvalidInput, match="single pose"):
         ck.plot(solved("six-bar", 0.3), "bar.angle")
 
 
-def test_without_matplotlib_the_remedy_is_told(six_bar: ck.Motion, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_matplotlib_the_remedy_is_told(six_bar: ck.results.Motion, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(ck.InvalidInput, match=r"pip install 'compoundkin\[plot\]'"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"pip install 'compoundkin\[plot\]'"):
         ck.plot(six_bar, "bar.angle")
 
 

@@ -54,7 +54,9 @@ def test_a_file_has_the_plot_that_python_draws(run: Run) -> None:
     ],
     ids=lambda what: " ".join(what) if isinstance(what, tuple) else "",
 )
-def test_stdout_has_an_svg_of_any_kind(run: Run, args: tuple[str, ...], draw: Callable[[ck.Motion], plot.Plot]) -> None:
+def test_stdout_has_an_svg_of_any_kind(
+    run: Run, args: tuple[str, ...], draw: Callable[[ck.results.Motion], plot.Plot]
+) -> None:
     found = run("six-bar", *args)
     assert found.exit_code == 0, found.stderr
     assert found.stdout_bytes == draw(ck.solve(load_named("six-bar"), order=2)).content("svg")

@@ -29,7 +29,7 @@ from compoundkin.model.attributes import order_of
         ("crank.speed", "rad/s", lambda m: m.drives["crank"].rate),
     ],
 )
-def test_a_quantity_is_that_of_the_motion(six_bar: ck.Motion, name: str, unit: str, expected: object) -> None:
+def test_a_quantity_is_that_of_the_motion(six_bar: ck.results.Motion, name: str, unit: str, expected: object) -> None:
     found = quantity(six_bar, name)
     np.testing.assert_array_equal(found.values, expected(six_bar))  # type: ignore[operator]
     assert found.unit == unit
@@ -38,7 +38,7 @@ def test_a_quantity_is_that_of_the_motion(six_bar: ck.Motion, name: str, unit: s
     assert found.is_vector == np.iscomplexobj(found.values)
 
 
-def test_angles_are_shown_in_degrees_and_rates_are_not(six_bar: ck.Motion) -> None:
+def test_angles_are_shown_in_degrees_and_rates_are_not(six_bar: ck.results.Motion) -> None:
     shown = quantity(six_bar, "bar.angle").shown
     np.testing.assert_allclose(shown.values, np.rad2deg(six_bar.links["bar"].angle), rtol=1e-15)
     assert shown.unit == "deg"
@@ -59,11 +59,11 @@ def test_angles_are_shown_in_degrees_and_rates_are_not(six_bar: ck.Motion) -> No
         ("G.", "'G' has no ''"),
     ],
 )
-def test_unknown_names_are_told_the_nearest(six_bar: ck.Motion, name: str, remedy: str) -> None:
-    with pytest.raises(ck.UnknownName, match=remedy):
+def test_unknown_names_are_told_the_nearest(six_bar: ck.results.Motion, name: str, remedy: str) -> None:
+    with pytest.raises(ck.errors.UnknownName, match=remedy):
         quantity(six_bar, name)
 
 
-def test_beyond_the_order_solved_for_is_an_input_error(six_bar: ck.Motion) -> None:
-    with pytest.raises(ck.InvalidInput, match="order 2"):
+def test_beyond_the_order_solved_for_is_an_input_error(six_bar: ck.results.Motion) -> None:
+    with pytest.raises(ck.errors.InvalidInput, match="order 2"):
         quantity(six_bar, "G.jerk")

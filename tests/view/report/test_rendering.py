@@ -26,12 +26,14 @@ def made_of(*blocks: Any) -> Report:
 # --- text -----------------------------------------------------------------------------------------------
 
 
-def test_lines_fit_and_nothing_is_cut_off_or_blank_at_the_end(broken: ck.Motion, sweep: ck.Motion) -> None:
+def test_lines_fit_and_nothing_is_cut_off_or_blank_at_the_end(
+    broken: ck.results.Motion, sweep: ck.results.Motion
+) -> None:
     for made in (report(ck.decompose(four_bar())), report(broken), report(sweep, design=1)):
         assert_fits(made)
 
 
-def test_text_is_plain_unless_colour_is_asked_for(six_bar: ck.Motion) -> None:
+def test_text_is_plain_unless_colour_is_asked_for(six_bar: ck.results.Motion) -> None:
     made = report(six_bar)
     assert ESCAPE not in made.text()
     coloured = made.text(colour=True)
@@ -39,11 +41,11 @@ def test_text_is_plain_unless_colour_is_asked_for(six_bar: ck.Motion) -> None:
     assert re.sub(r"\x1b\[[0-9;]*m", "", coloured).split() == made.text().split()
 
 
-def test_text_is_ascii_where_the_mechanism_is(six_bar: ck.Motion) -> None:
+def test_text_is_ascii_where_the_mechanism_is(six_bar: ck.results.Motion) -> None:
     assert report(six_bar).text().isascii()
 
 
-def test_the_same_report_is_the_same_text(six_bar: ck.Motion) -> None:
+def test_the_same_report_is_the_same_text(six_bar: ck.results.Motion) -> None:
     again = report(ck.solve(load_named("six-bar")))
     for written_as in FORMS:
         assert written_as(report(six_bar)) == written_as(again)
@@ -91,7 +93,7 @@ def test_a_column_has_as_many_decimals_as_say_something(cells: list[Any], expect
 # --- Markdown -------------------------------------------------------------------------------------------
 
 
-def test_markdown_tables_are_well_formed(broken: ck.Motion) -> None:
+def test_markdown_tables_are_well_formed(broken: ck.results.Motion) -> None:
     for made in (report(ck.decompose(four_bar())), report(broken)):
         assert_well_formed(made)
 
@@ -106,7 +108,7 @@ def test_markdown_escapes_what_is_markup() -> None:
 # --- JSON -----------------------------------------------------------------------------------------------
 
 
-def test_json_holds_the_numbers_of_the_motion(six_bar: ck.Motion) -> None:
+def test_json_holds_the_numbers_of_the_motion(six_bar: ck.results.Motion) -> None:
     document = parsed(report(six_bar, ["bar.angle", "G.acceleration"]))
     found = next(b for b in document["sections"]["outputs"]["blocks"] if b["kind"] == "table")
     assert [c["unit"] for c in found["columns"]] == ["deg", "deg", "mm/s^2", "mm/s^2"]
@@ -116,14 +118,14 @@ def test_json_holds_the_numbers_of_the_motion(six_bar: ck.Motion) -> None:
     assert document["outcome"]["passed"] is True
 
 
-def test_json_has_every_published_number(six_bar: ck.Motion) -> None:
+def test_json_has_every_published_number(six_bar: ck.results.Motion) -> None:
     document = parsed(report(six_bar))
     found = next(b for b in document["sections"]["published"]["blocks"] if b["kind"] == "table")
     assert len(found["rows"]) == 55
     assert found["rows"][0][2] == pytest.approx([37.27745008226299, 6.4399766983660784], abs=1e-12)
 
 
-def test_json_says_null_where_nothing_is_assembled(broken: ck.Motion) -> None:
+def test_json_says_null_where_nothing_is_assembled(broken: ck.results.Motion) -> None:
     with warnings.catch_warnings(action="ignore"):
         document = parsed(report(broken))
     rows = next(b for b in document["sections"]["outputs"]["blocks"] if b["kind"] == "table")["rows"]

@@ -33,7 +33,7 @@ def texts(made: Report, key: str) -> str:
 # --- structure ------------------------------------------------------------------------------------------
 
 
-def test_the_structure_of_the_six_bar(six_bar: ck.Motion) -> None:
+def test_the_structure_of_the_six_bar(six_bar: ck.results.Motion) -> None:
     made = report(six_bar.structure)
     links = table(made, "links")
     assert column(links, "link") == ["frame", "crank", "plate", "rocker", "bar", "block"]
@@ -49,7 +49,7 @@ def test_the_structure_of_the_six_bar(six_bar: ck.Motion) -> None:
     assert made.outcome.solvable
 
 
-def test_each_group_says_what_it_uses_and_yields(six_bar: ck.Motion) -> None:
+def test_each_group_says_what_it_uses_and_yields(six_bar: ck.results.Motion) -> None:
     section = report(six_bar).section("groups")
     assert section is not None
     steps = [block for block in section.blocks if isinstance(block, StepBlock)]
@@ -116,7 +116,7 @@ def test_a_structure_held_by_too_much_keeps_its_good_part() -> None:
 # --- motion ---------------------------------------------------------------------------------------------
 
 
-def test_the_outputs_are_the_motion_in_degrees_every_third_pose(six_bar: ck.Motion) -> None:
+def test_the_outputs_are_the_motion_in_degrees_every_third_pose(six_bar: ck.results.Motion) -> None:
     found = table(report(six_bar), "outputs")
     assert len(found.rows) == 25
     poses = slice(None, None, 3)
@@ -128,7 +128,7 @@ def test_the_outputs_are_the_motion_in_degrees_every_third_pose(six_bar: ck.Moti
     assert (units["crank"], units["G.velocity.x"], units["bar.angle"]) == ("deg", "mm/s", "deg")
 
 
-def test_the_last_pose_is_in_the_table_whatever_the_step(six_bar: ck.Motion) -> None:
+def test_the_last_pose_is_in_the_table_whatever_the_step(six_bar: ck.results.Motion) -> None:
     motion = ck.solve(six_bar.mechanism, {"crank": ck.deg(range(50))})
     rows = column(table(report(motion), "outputs"), "crank")
     assert rows[-1] == pytest.approx(49.0)
@@ -136,7 +136,7 @@ def test_the_last_pose_is_in_the_table_whatever_the_step(six_bar: ck.Motion) -> 
     assert "Every 3rd of 50 poses" in texts(report(motion), "outputs")
 
 
-def test_extremes_are_those_of_all_poses(six_bar: ck.Motion) -> None:
+def test_extremes_are_those_of_all_poses(six_bar: ck.results.Motion) -> None:
     found = table(report(six_bar), "outputs", 1)
     rows = {row[0]: row for row in found.rows}
     speed = np.abs(six_bar.points["G"].velocity)
@@ -151,10 +151,10 @@ def test_an_output_that_does_not_change_has_no_extremes() -> None:
     assert table(made, "outputs", 1).rows[0][2:] == (pytest.approx(5.0), "always", pytest.approx(5.0), "always")
 
 
-def test_outputs_may_be_named(six_bar: ck.Motion) -> None:
+def test_outputs_may_be_named(six_bar: ck.results.Motion) -> None:
     found = table(report(six_bar, ["A.speed", "slot"]), "outputs")
     assert [c.name for c in found.columns] == ["crank", "A.speed", "slot"]
-    with pytest.raises(ck.UnknownName, match=r"A\.speed"):
+    with pytest.raises(ck.errors.UnknownName, match=r"A\.speed"):
         report(six_bar, ["A.sped"])
 
 
@@ -163,7 +163,7 @@ def test_without_named_outputs_tracers_and_links_are_shown() -> None:
     assert [c.name for c in found.columns] == ["crank", "P.position.x", "P.position.y", "coupler.angle", "rocker.angle"]
 
 
-def test_outputs_beyond_the_order_are_left_out(six_bar: ck.Motion) -> None:
+def test_outputs_beyond_the_order_are_left_out(six_bar: ck.results.Motion) -> None:
     found = table(report(ck.solve(six_bar.mechanism, order=0)), "outputs")
     assert [c.name for c in found.columns] == ["crank", "G.position.x", "G.position.y", "bar.angle"]
 
@@ -183,14 +183,14 @@ def test_a_driver_held_still_is_said_and_no_column() -> None:
     assert table(made, "outputs").columns[0].name == "stick-cylinder"
 
 
-def test_a_single_pose(six_bar: ck.Motion) -> None:
+def test_a_single_pose(six_bar: ck.results.Motion) -> None:
     made = report(ck.solve(six_bar.mechanism, {"crank": ck.deg(35)}))
     assert len(table(made, "outputs").rows) == 1
     assert "The pose is assembled" in texts(made, "about")
     assert made.outcome.poses == 1
 
 
-def test_what_cannot_be_assembled_is_explained(broken: ck.Motion) -> None:
+def test_what_cannot_be_assembled_is_explained(broken: ck.results.Motion) -> None:
     made = report(broken)
     assert (made.outcome.poses, made.outcome.assembled) == (73, 24)
     assert made.outcome.passed
@@ -204,8 +204,8 @@ def test_what_cannot_be_assembled_is_explained(broken: ck.Motion) -> None:
     assert [value is None for value in rocker] == [not ok for ok in broken.assembled[::3]]
 
 
-def test_a_motion_with_no_assembled_pose_fails_no_check_but_has_none(broken: ck.Motion) -> None:
-    with pytest.warns(ck.UnassembledPoses):
+def test_a_motion_with_no_assembled_pose_fails_no_check_but_has_none(broken: ck.results.Motion) -> None:
+    with pytest.warns(ck.errors.UnassembledPoses):
         made = report(ck.solve(broken.mechanism, {"crank": ck.deg([170, 180])}))
     assert made.outcome.assembled == 0
     assert "nothing to check" in texts(made, "checks")
@@ -219,13 +219,13 @@ def test_a_motion_with_no_assembled_pose_fails_no_check_but_has_none(broken: ck.
         ([90, 60, 30, 0], "From the start, crank 90 deg, to 56.1036448 deg"),
     ],
 )
-def test_a_gap_that_reaches_an_end_of_the_motion(broken: ck.Motion, degrees: list[float], told: str) -> None:
-    with pytest.warns(ck.UnassembledPoses):
+def test_a_gap_that_reaches_an_end_of_the_motion(broken: ck.results.Motion, degrees: list[float], told: str) -> None:
+    with pytest.warns(ck.errors.UnassembledPoses):
         made = report(ck.solve(broken.mechanism, {"crank": ck.deg(degrees)}))
     assert told in texts(made, "gaps")
 
 
-def test_designs_are_reported_one_at_a_time(sweep: ck.Motion) -> None:
+def test_designs_are_reported_one_at_a_time(sweep: ck.results.Motion) -> None:
     first, second = report(sweep), report(sweep, design=1)
     assert "Shown is design 0 of 2" in texts(first, "about")
     assert first.section("gaps") is None
@@ -237,11 +237,11 @@ def test_designs_are_reported_one_at_a_time(sweep: ck.Motion) -> None:
         column(table(second, "outputs"), "rocker.angle")[:3], np.rad2deg(sweep.links["rocker"].angle[1, [0, 3, 6]])
     )
     for design in (-1, 2):
-        with pytest.raises(ck.InvalidInput, match="0 to 1"):
+        with pytest.raises(ck.errors.InvalidInput, match="0 to 1"):
             report(sweep, design=design)
 
 
-def test_the_driver_range_is_that_of_the_motion(six_bar: ck.Motion) -> None:
+def test_the_driver_range_is_that_of_the_motion(six_bar: ck.results.Motion) -> None:
     motion = ck.solve(six_bar.mechanism, {"crank": ck.deg([10, 20, 40])}, speed=3.0, acceleration=-2.0)
     row = table(report(motion), "drivers").rows[0]
     assert row[:2] == ("crank", "crank on frame, E")
@@ -257,7 +257,7 @@ def test_slides_and_pins_driven_have_tables_of_their_own() -> None:
 # --- published numbers ----------------------------------------------------------------------------------
 
 
-def test_the_published_numbers_of_the_six_bar(six_bar: ck.Motion) -> None:
+def test_the_published_numbers_of_the_six_bar(six_bar: ck.results.Motion) -> None:
     made = report(six_bar)
     found = table(made, "published")
     assert len(found.rows) == made.outcome.published == len(six_bar.mechanism.expectations)
@@ -265,7 +265,7 @@ def test_the_published_numbers_of_the_six_bar(six_bar: ck.Motion) -> None:
     assert len(found.shown_rows) == len({e.quantity for e in six_bar.mechanism.expectations})
 
 
-def test_a_wrong_published_number_fails_and_is_shown(six_bar: ck.Motion) -> None:
+def test_a_wrong_published_number_fails_and_is_shown(six_bar: ck.results.Motion) -> None:
     wrong = six_bar.mechanism.replace(ck.expect("A.jerk", (1, 2), 1e-6, crank=ck.deg(20.0)))
     made = report(ck.solve(wrong))
     assert not made.outcome.passed
@@ -295,7 +295,7 @@ def test_published_at_given_rates() -> None:
     assert table(made, "published").rows[0][1] == (0.0, 3.0, 5.0)
 
 
-def test_a_published_number_where_nothing_assembles_fails(broken: ck.Motion) -> None:
+def test_a_published_number_where_nothing_assembles_fails(broken: ck.results.Motion) -> None:
     expected = ck.expect("rocker.angle", 1.0, 10.0, crank=np.pi)
     made = report(ck.solve(four_bar(6.5, ck.drive("crank"), expected), {"crank": 0.0}))
     assert not made.outcome.passed
@@ -305,7 +305,7 @@ def test_a_published_number_where_nothing_assembles_fails(broken: ck.Motion) -> 
 
 def test_an_unknown_published_quantity_is_named_with_its_place() -> None:
     expected = ck.expect("rocker.angle", 1.0, 1.0), ck.expect("rocker.angel", 1.0, 1.0)
-    with pytest.raises(ck.UnknownName, match=r"expected\[1\]\.quantity: .* did you mean 'rocker.angle'"):
+    with pytest.raises(ck.errors.UnknownName, match=r"expected\[1\]\.quantity: .* did you mean 'rocker.angle'"):
         report(ck.solve(four_bar(4.0, ck.drive("crank"), *expected)))
 
 
@@ -329,9 +329,9 @@ def test_of_many_loops_only_the_first_are_listed() -> None:
     assert "... and 5 more." in texts(made, "loops")
 
 
-def test_of_many_gaps_only_the_first_are_listed(broken: ck.Motion) -> None:
+def test_of_many_gaps_only_the_first_are_listed(broken: ck.results.Motion) -> None:
     turns = ck.deg(np.arange(0.0, 360.0 * 12, 15.0))
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         made = report(ck.solve(broken.mechanism, {"crank": turns}))
     assert "... and 2 gaps more." in texts(made, "gaps")
     section = made.section("gaps")
@@ -363,7 +363,7 @@ def test_limit_poses_are_said_to_be_checked_in_position_only() -> None:
 def test_a_published_number_of_a_group_that_has_no_pose_fails() -> None:
     mechanism = load_named("class-iii-six-bar")
     far = mechanism.replace(ck.link("crank", O=(0, 0), A3=(200, 0)), ck.expect("plate.angle", 1.0, 1.0, crank=0.0))
-    with pytest.raises(ck.NotAssembled):
+    with pytest.raises(ck.errors.NotAssembled):
         ck.solve(far)
     from compoundkin.view.report.published_section import comparisons
 
@@ -383,7 +383,7 @@ def test_a_mechanism_is_reported_as_its_motion_or_as_its_structure() -> None:
     press = ck.slide("block", on="frame", through="O", turn=0.0)
     without_range = ck.Mechanism("Press", ck.link("frame", O=0), ck.link("block", P=0), press, ck.drive("block"))
     assert report(without_range).section("outputs") is None
-    with pytest.raises(ck.InvalidInput, match="is no motion and no mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="is no motion and no mechanism"):
         report("six-bar")
 
 

@@ -18,7 +18,7 @@ SOLVABLE = ("six-bar", "jansen-leg", "planetary-train", "geneva-wheel", "disc-ca
             "rack-and-pinion-steering", "class-iii-six-bar", "elliptic-trammel")  # fmt: skip
 
 
-def solved(name: str) -> ck.Motion:
+def solved(name: str) -> ck.results.Motion:
     return catalog.motion(name)
 
 
@@ -88,7 +88,7 @@ def test_poses_that_cannot_be_assembled_are_left_out() -> None:
     motion = ck.solve(load_named("crank-rocker"), {"crank": ck.deg([0, 30, 60])})
     assert moving_sketch(motion).scene.count == 3
     rocker = ck.with_driver(load_named("crank-rocker"), "rocker")
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(rocker, {rocker.drives[0].name: ck.deg(range(0, 360, 5))})
     sketch = moving_sketch(motion)
     assert 0 < sketch.scene.count == int(motion.assembled.sum()) < 72
@@ -99,7 +99,7 @@ def test_what_never_closes_has_no_sketch_that_moves() -> None:
     long = ck.Mechanism(
         "Too long", ck.link("frame", A=0, D=20), ck.link("crank", A=0, B=1), ck.link("rod", B=0, C=2),
         ck.link("rocker", D=0, C=2), ck.drive("crank"))  # fmt: skip
-    with pytest.warns(ck.UnassembledPoses):
+    with pytest.warns(ck.errors.UnassembledPoses):
         motion = ck.solve(long, {"crank": ck.deg([0, 10])})
     with pytest.raises(NotAssembled):
         moving_sketch(motion)

@@ -23,11 +23,11 @@ from tests import catalog
 NAMES = ["six-bar", "stephenson-iii", "class-iii-six-bar", "jansen-leg", "planetary-train", "crank-shaper"]
 
 
-def panels(picture: ck.Picture) -> list[ShapeGroup]:
+def panels(picture: ck.results.Picture) -> list[ShapeGroup]:
     return [shape for shape in picture.shapes if isinstance(shape, ShapeGroup)]
 
 
-def headings(picture: ck.Picture) -> list[str]:
+def headings(picture: ck.results.Picture) -> list[str]:
     return [s.text for s in leaves(picture.shapes) if isinstance(s, Text) and s.style == "heading"]
 
 
@@ -101,7 +101,7 @@ def test_vectors_on_one_line_are_drawn_beside_it() -> None:
 
 
 def test_many_links_make_small_panels_and_not_more_of_them_than_anyone_reads() -> None:
-    mechanism = ck.random_mechanism(40, seed=3)
+    mechanism = ck.composing.random_mechanism(40, seed=3)
     picture = ck.draw(mechanism, kind="loops")
     count = loop_count(decompose(mechanism))
     assert len(panels(picture)) == min(count, MOST) > 15
@@ -122,7 +122,7 @@ def test_loops_of_what_cannot_be_drawn_are_shown_in_its_graph() -> None:
 
 def test_an_open_chain_has_no_loops() -> None:
     crank = ck.Mechanism("Crank", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank"))
-    with pytest.raises(ck.InvalidInput, match="no closed loop"):
+    with pytest.raises(ck.errors.InvalidInput, match="no closed loop"):
         ck.draw(crank, kind="loops")
 
 

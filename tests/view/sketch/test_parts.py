@@ -145,11 +145,11 @@ def test_overconstrained_mechanisms_that_move_are_drawn_as_they_are_written() ->
 def test_structure_pictures_tell_what_they_cannot_show() -> None:
     loose = ck.Mechanism("Loose", ck.link("frame", A=0), ck.link("rod", A=0, B=1), ck.link("arm", B=0, C=1))
     assert "3 links" in ck.draw(loose, kind="graph").description
-    with pytest.raises(ck.NotDetermined):
+    with pytest.raises(ck.errors.NotDetermined):
         ck.draw(loose, kind="groups")
-    with pytest.raises(ck.InvalidInput, match="there is no picture"):
+    with pytest.raises(ck.errors.InvalidInput, match="there is no picture"):
         ck.draw(loose, kind="net")
-    with pytest.raises(ck.InvalidInput, match="is no motion and no mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="is no motion and no mechanism"):
         ck.draw("six-bar", kind="groups")
     motion = ck.solve(shipped_mechanisms.load_named("crank-rocker"))
     assert ck.draw(motion, kind="groups").svg == ck.draw(motion.mechanism, kind="groups").svg
@@ -165,9 +165,9 @@ def test_a_picture_is_asked_only_what_belongs_to_its_kind() -> None:
         ("loops", {"labels": False}),
         ("polygon", {"centres": True}),
     ):
-        with pytest.raises(ck.InvalidInput, match=f"does not go with the kind '{kind}'"):
+        with pytest.raises(ck.errors.InvalidInput, match=f"does not go with the kind '{kind}'"):
             ck.draw(motion, kind=kind, **words)
-    with pytest.raises(ck.InvalidInput, match="a polygon is one of them"):
+    with pytest.raises(ck.errors.InvalidInput, match="a polygon is one of them"):
         ck.draw(motion, kind="polygon", vectors=("velocity", "acceleration"))
 
 
@@ -177,7 +177,7 @@ def test_groups_and_loops_are_drawn_at_a_pose_that_is_asked_for(kind: str) -> No
     there = ck.draw(motion, kind=kind, pose=20).svg
     assert there != ck.draw(motion, kind=kind).svg
     assert there == ck.draw(motion, at=float(motion.drives["crank"].value[20]), kind=kind).svg
-    with pytest.raises(ck.InvalidInput, match="there is no pose"):
+    with pytest.raises(ck.errors.InvalidInput, match="there is no pose"):
         ck.draw(motion, kind=kind, pose=10_000)
 
 
@@ -204,7 +204,7 @@ def test_a_picture_that_cannot_be_made_leaves_the_file_as_it_was(
         return real(name, *args, **words)
 
     monkeypatch.setattr(builtins, "__import__", missing)
-    with pytest.raises(ck.InvalidInput, match=r"compoundkin\[pictures\]"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"compoundkin\[pictures\]"):
         ck.draw(shipped_mechanisms.load_named("crank-rocker")).save(target)
     assert target.read_bytes() == b"before"
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
@@ -212,7 +212,7 @@ def test_a_picture_that_cannot_be_made_leaves_the_file_as_it_was(
 
 @pytest.mark.parametrize("name", ["a.gif", "a", "missing/a.svg"])
 def test_files_that_cannot_be_written_are_told(tmp_path: Path, name: str) -> None:
-    with pytest.raises(ck.InvalidInput):
+    with pytest.raises(ck.errors.InvalidInput):
         ck.draw(shipped_mechanisms.load_named("crank-rocker")).save(tmp_path / name)
 
 

@@ -25,7 +25,7 @@ SIZES = {"letter": LETTER, "number": SMALL, "centre-name": SMALL, "code": SMALL}
 
 
 @cache
-def drawn(name: str) -> ck.Picture:
+def drawn(name: str) -> ck.results.Picture:
     return ck.draw(shipped_mechanisms.load_named(name))
 
 
@@ -41,7 +41,7 @@ def four_bar() -> ck.Mechanism:
     )
 
 
-def of(picture: ck.Picture, style: str) -> list[object]:
+def of(picture: ck.results.Picture, style: str) -> list[object]:
     return [shape for shape in leaves(picture.shapes) if style in shape.style.split()]
 
 
@@ -206,7 +206,7 @@ def test_labels_do_not_overlap_at_any_pose(angle: float) -> None:
     assert not overlaps(ck.draw(shipped_mechanisms.load_named("jansen-leg"), at=angle, centres=False))
 
 
-def overlaps(picture: ck.Picture) -> list[tuple[str, str]]:
+def overlaps(picture: ck.results.Picture) -> list[tuple[str, str]]:
     boxes = []
     for shape in leaves(picture.shapes):
         if isinstance(shape, Text) and shape.style in ("letter", "number"):
@@ -248,22 +248,22 @@ def test_pictures_that_were_looked_at_stay_as_they_are(name: str) -> None:
     ],
 )
 def test_wrong_input_is_told(words: dict[str, object], where: str) -> None:
-    with pytest.raises(ck.InvalidInput) as caught:
+    with pytest.raises(ck.errors.InvalidInput) as caught:
         ck.draw(four_bar(), **words)
     assert caught.value.problems[0].where == where
 
 
 def test_unknown_names_are_told() -> None:
-    with pytest.raises(ck.UnknownName, match="did you mean 'crank'"):
+    with pytest.raises(ck.errors.UnknownName, match="did you mean 'crank'"):
         ck.draw(four_bar(), at={"crnk": 1.0})
-    with pytest.raises(ck.UnknownName, match="there is no such point"):
+    with pytest.raises(ck.errors.UnknownName, match="there is no such point"):
         ck.draw(four_bar(), paths="Q")
-    with pytest.raises(ck.InvalidInput, match="no motion and no mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="no motion and no mechanism"):
         ck.draw("six-bar")
 
 
 def test_a_pose_that_does_not_close_is_told() -> None:
-    with pytest.raises(ck.NotAssembled):
+    with pytest.raises(ck.errors.NotAssembled):
         ck.draw(shipped_mechanisms.load_named("triple-rocker"), at=ck.deg(170))
 
 
@@ -277,7 +277,7 @@ def test_a_mechanism_that_cannot_be_solved_is_shown_as_drawn() -> None:
     picture = ck.draw(ck.Mechanism("Open", *words))
     assert len([s for s in of(picture, "ink") if isinstance(s, CircleShape)]) == 2
     loose = ck.Mechanism("Loose", ck.link("frame", A=0), ck.link("rod", A=0, B=1), ck.link("arm", B=0, C=1))
-    with pytest.raises(ck.InvalidInput, match="cannot be solved"):
+    with pytest.raises(ck.errors.InvalidInput, match="cannot be solved"):
         ck.draw(loose)
 
 
@@ -298,11 +298,11 @@ def test_what_is_shown_as_drawn_has_no_rates_and_no_centres() -> None:
     links = ck.link("frame", "A", "D"), ck.link("rod", "A", "B"), ck.link("arm", "B", "C")
     still = ck.Mechanism("Open", *links, ck.drawn(A=0, D=4, B=1j, C=2))
     for words in ({"vectors": "velocity"}, {"centres": True}):
-        with pytest.raises(ck.InvalidInput, match="has no motion"):
+        with pytest.raises(ck.errors.InvalidInput, match="has no motion"):
             ck.draw(still, **words)
-    with pytest.raises(ck.InvalidInput, match="there is only 0"):
+    with pytest.raises(ck.errors.InvalidInput, match="there is only 0"):
         ck.draw(ck.solve(four_bar()), design=1)
-    with pytest.raises(ck.InvalidInput, match="nothing moves"):
+    with pytest.raises(ck.errors.InvalidInput, match="nothing moves"):
         ck.draw(ck.solve(four_bar(), speed=0.0), kind="polygon")
     assert ck.draw(ck.solve(four_bar(), speed=0.0), vectors="velocity").svg.count("velocity") == 0
 
@@ -312,7 +312,7 @@ def test_a_slide_without_values_is_drawn_where_it_is_asked_for() -> None:
     slide = ck.slide("block", on="frame", through="O", turn=0.0)
     press = ck.Mechanism("Press", frame, block, slide, ck.drive("block"))
     assert "block at 3" in ck.draw(press, at=3.0).description
-    with pytest.raises(ck.InvalidInput):
+    with pytest.raises(ck.errors.InvalidInput):
         ck.draw(press)
 
 
@@ -332,7 +332,7 @@ def test_grooves_are_as_long_as_the_way_of_their_pins() -> None:
 def test_a_cam_that_is_touched_from_inside_is_a_ring() -> None:
     links = ck.link("frame", A=(0, 0), G=(10, 0)), ck.link("ring", A=(0, 0)), ck.link("follower", P=(0, 0))
     guide = ck.slide("follower", on="frame", through="G", angle=np.pi / 2, turn=0.0)
-    cam = ck.cam("follower", on="ring", at="P", profile=ck.disc(50, (8, 0)), radius=6, inside=True)
+    cam = ck.cam("follower", on="ring", at="P", profile=ck.profiles.disc(50, (8, 0)), radius=6, inside=True)
     mechanism = ck.Mechanism("Ring", *links, guide, cam, ck.drive("ring"), ck.drawn(P=(10, 40)))
     rims = [s for s in of(ck.draw(mechanism), "line0") if isinstance(s, Polygon)]
     assert len(rims) == 2

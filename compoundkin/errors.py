@@ -1,0 +1,24 @@
+"""What can go wrong: every error says where, what, and how to mend it.
+
+>>> from compoundkin.errors import CompoundkinError, InvalidInput
+>>> issubclass(InvalidInput, CompoundkinError)
+True
+"""
+
+from __future__ import annotations
+
+from compoundkin.base.errors import (
+    CompoundkinError,
+    InvalidInput,
+    InvalidMechanism,
+    NotAssembled,
+    NotDetermined,
+    Problem,
+    UnassembledPoses,
+    UnknownName,
+)
+
+__all__ = [
+    "CompoundkinError", "InvalidInput", "InvalidMechanism", "NotAssembled", "NotDetermined", "Problem",
+    "UnassembledPoses", "UnknownName",
+]  # fmt: skip

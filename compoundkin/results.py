@@ -1,0 +1,32 @@
+"""The classes of what the functions return, for annotations.
+
+>>> import compoundkin as ck
+>>> isinstance(ck.decompose(ck.catalog.load_named("six-bar")), ck.results.Structure)
+True
+"""
+
+from __future__ import annotations
+
+from compoundkin.analysis.centres import Centres
+from compoundkin.analysis.checks import Check, Finding
+from compoundkin.analysis.equations import LoopEquations
+from compoundkin.configurations.circuit_search import Circuits
+from compoundkin.configurations.enumeration import AllConfigurations
+from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
+from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.gaps import Gap
+from compoundkin.kinematics.quantities import Quantity
+from compoundkin.kinematics.table import Table
+from compoundkin.structure import Group, Structure
+from compoundkin.structure.redundancy import MobilityAnalysis
+from compoundkin.view.animation import Animation
+from compoundkin.view.page import Page
+from compoundkin.view.plot import Plot
+from compoundkin.view.report import Report
+from compoundkin.view.sketch import Picture
+
+__all__ = [
+    "AllConfigurations", "Animation", "Centres", "Check", "Circuits", "Configuration", "Finding", "Gap", "Group",
+    "LinkMotion", "LoopEquations", "MobilityAnalysis", "Motion", "Page", "PairMotion", "Picture", "Plot",
+    "PointMotion", "Quantity", "Report", "Structure", "Table",
+]  # fmt: skip
