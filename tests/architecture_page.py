@@ -42,12 +42,14 @@ def name(folder: Path) -> str:
 
 
 def table_of_folders() -> str:
-    """A row for each folder: what it holds, and its files."""
+    """A row for each folder: what it holds, and its files; the public face on top of all."""
     rows = ["| folder | what it holds | its files |", "|---|---|---|"]
     for folder in folders():
         files = ", ".join(path.stem for path in modules_in(folder))
         more = f"; {OTHERS[name(folder)]}" if name(folder) in OTHERS else ""
         rows.append(f"| `{name(folder)}/` | {sentence(folder / INIT)} | {files}{more} |")
+    face = ", ".join(path.stem for path in modules_in(PACKAGE) if path.stem != "__main__")
+    rows.append(f"| the public face | {sentence(PACKAGE / INIT)} | {face} |")
     return "\n".join(rows)
 
 
