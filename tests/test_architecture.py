@@ -332,7 +332,6 @@ STILL_LONG = {
     "cli/typed_values.py",
     "configurations/circuit_search.py",
     "configurations/enumeration.py",
-    "kinematics/groups/group_equations.py",
     "kinematics/inputs.py",
     "model/pairs/cam.py",
     "model/pairs/contract.py",
