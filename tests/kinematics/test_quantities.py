@@ -1,3 +1,5 @@
+"""Quantities by their names: values, units, parts of vectors, and what is told where there is none."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -6,6 +8,12 @@ import pytest
 import compoundkin as ck
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import order_of
+from tests import catalog
+
+
+@pytest.fixture(scope="module")
+def six_bar() -> ck.Motion:
+    return catalog.motion("six-bar")
 
 
 @pytest.mark.parametrize(
@@ -14,6 +22,9 @@ from compoundkin.model.attributes import order_of
         ("G", "mm", lambda m: m.points["G"].position),
         ("G.velocity", "mm/s", lambda m: m.points["G"].velocity),
         ("G.acceleration", "mm/s^2", lambda m: m.points["G"].acceleration),
+        ("G.velocity.y", "mm/s", lambda m: np.asarray(m.points["G"].velocity).imag),
+        ("G.velocity.length", "mm/s", lambda m: m.points["G"].speed),
+        ("G.length", "mm", lambda m: np.abs(np.asarray(m.points["G"].position))),
         ("G.x", "mm", lambda m: m.points["G"].x),
         ("G.speed", "mm/s", lambda m: m.points["G"].speed),
         ("bar", "rad", lambda m: m.links["bar"].angle),
@@ -57,6 +68,8 @@ def test_angles_are_shown_in_degrees_and_rates_are_not(six_bar: ck.results.Motio
         ("", "known: "),
         (".x", "known: "),
         ("G.", "'G' has no ''"),
+        ("bar.angle.length", "bar.angle is no vector; leave .length out"),
+        ("GG.velocity.x", "did you mean 'G'"),
     ],
 )
 def test_unknown_names_are_told_the_nearest(six_bar: ck.results.Motion, name: str, remedy: str) -> None:
@@ -67,3 +80,13 @@ def test_unknown_names_are_told_the_nearest(six_bar: ck.results.Motion, name: st
 def test_beyond_the_order_solved_for_is_an_input_error(six_bar: ck.results.Motion) -> None:
     with pytest.raises(ck.errors.InvalidInput, match="order 2"):
         quantity(six_bar, "G.jerk")
+
+
+def test_a_quantity_shows_itself_in_a_line(six_bar: ck.Motion) -> None:
+    assert repr(quantity(six_bar, "G.velocity")) == "Quantity('G.velocity', v(G), 73 vectors in mm/s)"
+    assert repr(quantity(six_bar, "bar").shown) == "Quantity('bar', θ(bar), 73 values in deg)"
+
+
+def test_the_dimension_of_a_quantity_is_that_of_its_owner(six_bar: ck.Motion) -> None:
+    found = {name: quantity(six_bar, name).dimension for name in ("G", "bar.angular_velocity", "slot.rate")}
+    assert found == {"G": "length", "bar.angular_velocity": "angle", "slot.rate": "length"}
