@@ -90,7 +90,9 @@ class Motion(ShowsPicture):
         return Named("driver", tuple(self.inputs.drives), self._drive)
 
     def table(self, *names: str) -> Table:
-        """Return the quantities of these names as columns, with designs, time and drivers; without names everything.
+        """Return the quantities of these names as columns; everything without names.
+
+        Designs, time and drivers stand beside them.
 
         >>> from compoundkin.model.elements import drive, link
         >>> from compoundkin.kinematics import solve

@@ -94,7 +94,7 @@ class Quantity:
         return replace(self, values=degrees(self.values), unit=DEGREES) if self.unit == RADIANS else self
 
     def part(self, name: str) -> Self:
-        """The component or the length of a vector."""
+        """Return a component or the length of a vector."""
         symbol = f"|{self.symbol}|" if name == LENGTH else f"{self.symbol}.{name}"
         return replace(self, name=f"{self.name}.{name}", values=PARTS[name](self.values), symbol=symbol)
 
@@ -111,7 +111,7 @@ class Quantity:
 
 
 def degrees(angle: Any) -> Any:
-    """Radians as degrees; a short decimal that the conversion misses by its own rounding is that decimal.
+    """Convert radians to degrees; a short decimal missed by rounding alone is that decimal.
 
     >>> float(np.rad2deg(np.deg2rad(30.0))), float(degrees(np.deg2rad(30.0)))
     (29.999999999999996, 30.0)
@@ -122,12 +122,14 @@ def degrees(angle: Any) -> Any:
 
 
 def known_owners(motion: HasQuantities) -> list[str]:
-    """All that has quantities: points, links, pairs and drivers, each once."""
+    """List what has quantities: points, links, pairs and drivers, each once."""
     return list(dict.fromkeys(name for kind in CATALOGUE for name in getattr(motion, kind)))
 
 
 def quantity(motion: HasQuantities, name: str) -> Quantity:
-    """The quantity of a name such as "G.velocity"; "G" alone is G.position, "bar" bar.angle, "slot" slot.value.
+    """Return the quantity of a name such as "G.velocity".
+
+    "G" alone is G.position, "bar" bar.angle, "slot" slot.value.
 
     Points have position, velocity, acceleration, jerk, x, y, speed; links angle, angular_velocity,
     angular_acceleration, angular_jerk; pairs and drivers value, rate, second, third (and angle or
@@ -146,7 +148,7 @@ def quantity(motion: HasQuantities, name: str) -> Quantity:
 
 
 def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
-    """The quantity of a name, or the vector and which part of it is meant; raises UnknownName."""
+    """Return the quantity of a name, or a vector and which part is meant; raises UnknownName."""
     try:
         return _whole(motion, name), ""
     except UnknownName:
@@ -184,7 +186,7 @@ class Owner:
     mechanism: Mechanism
 
     def read(self, word: str) -> Quantity:
-        """The quantity of an attribute."""
+        """Return the quantity of an attribute."""
         found = self.attributes[word]
         known = hasattr(type(self.motion), word)
         values = getattr(self.motion, word) if known else self.motion.derivative(found.order)
@@ -194,7 +196,7 @@ class Owner:
 
 
 def owner_of(motion: HasQuantities, kind: Kind, name: str) -> Owner:
-    """A point, link, pair or driver as the owner of quantities."""
+    """Return a point, link, pair or driver as the owner of quantities."""
     found: Any = getattr(motion, kind)[name]
     besides: Mapping[str, Attribute] = {}
     dimension: Dimension = "length" if kind == "points" else "angle"

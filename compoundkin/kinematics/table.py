@@ -73,7 +73,7 @@ class Table:
         return replace(self, columns=tuple(column.shown for column in self.columns))
 
     def __getitem__(self, name: str) -> Quantity:
-        """A column by its name; raises UnknownName with the nearest there is."""
+        """Return a column by its name; raises UnknownName with the nearest there is."""
         if name not in self._named:
             raise UnknownName(Problem(str(name), "the table has no such column", nearest(str(name), self.names)))
         return self._named[name]
@@ -82,9 +82,10 @@ class Table:
         return len(self.columns[-1].values)
 
     def to_pandas(self) -> Any:
-        """As a pandas DataFrame, angles in radians; its `attrs` hold the title, the units and the angles' convention.
+        """Return it as a pandas DataFrame, angles in radians.
 
-        Raises InvalidInput where pandas is not installed.
+        Its `attrs` hold the title, the units and how angles are counted. Raises InvalidInput where pandas is not
+        installed.
         """
         try:
             pandas = import_module("pandas")
@@ -99,9 +100,9 @@ class Table:
 
 
 def table_of(motion: AtPoses, *names: str) -> Table:
-    """The table of a motion: the quantities named, with designs, time and drivers; everything where none is named.
+    """Return the table of the quantities named, with designs, time and drivers.
 
-    Raises UnknownName for a quantity that the motion does not have.
+    Everything where none is named. Raises UnknownName for a quantity that the motion does not have.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, link

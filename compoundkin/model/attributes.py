@@ -84,7 +84,7 @@ RATE_OF: Mapping[str, tuple[str, ...]] = MappingProxyType(
 
 
 def unit_of(length: str, dimension: Dimension, order: int = 0) -> str:
-    """The unit of a length, an angle or a time, or of its derivative; `length` is that of lengths, if it has a name.
+    """Return the unit of a dimension or of its time derivative; `length` is that of lengths, if it has a name.
 
     >>> unit_of("mm", "length", 2), unit_of("", "length"), unit_of("", "angle", 1)
     ('mm/s^2', 'length', 'rad/s')
@@ -94,24 +94,24 @@ def unit_of(length: str, dimension: Dimension, order: int = 0) -> str:
 
 
 def coordinate_dimension(is_angle: bool) -> Dimension:
-    """The dimension of a pair's or driver's coordinate."""
+    """Return the dimension of a pair's or driver's coordinate."""
     return "angle" if is_angle else "length"
 
 
 def after_number(is_angle: bool, length: str) -> str:
-    """The unit of a coordinate as it stands behind a number; nothing where lengths have none."""
+    """Return the unit of a coordinate as it follows a number; nothing where lengths have none."""
     return "°" if is_angle else f" {length}".rstrip()
 
 
 def readable(unit: str) -> str:
-    """A unit with its powers raised."""
+    """Return a unit with its powers raised."""
     for plain, raised in RAISED.items():
         unit = unit.replace(plain, raised)
     return unit
 
 
 def order_of(name: str) -> int:
-    """How many time derivatives a quantity takes, as far as its name tells.
+    """Tell from its name how many time derivatives a quantity takes.
 
     >>> order_of("G.velocity"), order_of("bar.angular_jerk"), order_of("G"), order_of("G.velocity.x")
     (1, 3, 0, 1)
@@ -121,7 +121,7 @@ def order_of(name: str) -> int:
 
 
 def vector_of(name: str) -> tuple[str, str]:
-    """The vector and its part that a name may mean; the part is empty where it can mean none.
+    """Return the vector and the part that a name may mean; the part is empty where it can mean none.
 
     >>> vector_of("G.velocity.x"), vector_of("G.x"), vector_of("G.length")
     (('G.velocity', 'x'), ('G.x', ''), ('G', 'length'))

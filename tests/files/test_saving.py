@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Callable
 from functools import cache
@@ -99,3 +100,10 @@ def test_the_command_line_refuses_what_python_refuses_before_it_solves(verb: str
     result = CliRunner().invoke(cli, [verb, "six-bar", "-o", "a.xyz"], standalone_mode=False)
     assert isinstance(result.exception, ck.errors.InvalidInput)
     assert f"a {kind} is not saved as '.xyz'" in str(result.exception)
+
+
+def test_the_page_on_files_lists_what_can_be_saved_as_what() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "file-format.md").read_text(encoding="utf-8")
+    rows = page.partition("## What can be saved as what")[2].splitlines()
+    told = [re.findall(r"`(\.\w+)`", row) for row in rows if row.startswith("| a")]
+    assert told == [list(forms) for forms in SUFFIXES.values()]

@@ -30,7 +30,7 @@ class Plotted(Quantity):
     vector: Number | None = None
 
     def part(self, name: str) -> Self:
-        """The component or the length of a vector."""
+        """Return a component or the length of a vector."""
         return replace(super().part(name), vector=self.values if name == LENGTH else None)
 
     @property
