@@ -11,9 +11,9 @@ from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check, Finding
 from compoundkin.analysis.equations import LoopEquations
 from compoundkin.configurations.circuit_search import Circuits
-from compoundkin.configurations.enumeration import AllConfigurations
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.gaps import Gap
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import Table
@@ -26,7 +26,26 @@ from compoundkin.view.report import Report
 from compoundkin.view.sketch import Picture
 
 __all__ = [
-    "AllConfigurations", "Animation", "Centres", "Check", "Circuits", "Configuration", "Finding", "Gap", "Group",
-    "LinkMotion", "LoopEquations", "MobilityAnalysis", "Motion", "Page", "PairMotion", "Picture", "Plot",
-    "PointMotion", "Quantity", "Report", "Structure", "Table",
+    "Animation",
+    "Centres",
+    "Check",
+    "Circuits",
+    "Configuration",
+    "Configurations",
+    "Finding",
+    "Gap",
+    "Group",
+    "LinkMotion",
+    "LoopEquations",
+    "MobilityAnalysis",
+    "Motion",
+    "Page",
+    "PairMotion",
+    "Picture",
+    "Plot",
+    "PointMotion",
+    "Quantity",
+    "Report",
+    "Structure",
+    "Table",
 ]  # fmt: skip

@@ -168,13 +168,13 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
         pair,
         follower,
         oscillates,
-        contact=motion._known(place),
-        contact_on_cam=motion._known(np.conjugate(cam.u.c[0]) * (place - cam.z.c[0])),
-        parameter=motion._known(s),
-        pressure_angle=motion._known(_between(along, normal)),
-        radius_of_curvature=motion._known(radius),
-        pitch_radius=motion._known(radius + ends[1].measure) if not pair.is_flat else None,
-        sliding=motion._known(_sliding(motion, pair, place, normal)),
+        contact=motion.grid.known(place),
+        contact_on_cam=motion.grid.known(np.conjugate(cam.u.c[0]) * (place - cam.z.c[0])),
+        parameter=motion.grid.known(s),
+        pressure_angle=motion.grid.known(_between(along, normal)),
+        radius_of_curvature=motion.grid.known(radius),
+        pitch_radius=motion.grid.known(radius + ends[1].measure) if not pair.is_flat else None,
+        sliding=motion.grid.known(_sliding(motion, pair, place, normal)),
     )
 
 

@@ -181,3 +181,17 @@ def row(value: Number, poses: int) -> Number:
     [1.0, 1.0]
     """
     return np.broadcast_to(value, (1, poses))[0]
+
+
+class Vectors(np.ndarray[Any, np.dtype[np.complex128]]):
+    """A complex array of planar vectors; `xy` splits it.
+
+    >>> np.array([1 + 2j]).view(Vectors).xy.tolist()
+    [[1.0, 2.0]]
+    """
+
+    @property
+    def xy(self) -> Number:
+        """The components, in a last axis of length 2."""
+        plain = np.asarray(self)
+        return np.stack([plain.real, plain.imag], axis=-1)

@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.files.written_quantities import MOST_VALUES, RPM, spaced
-from compoundkin.kinematics.inputs import FULL_TURN
+from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.elements import Drive
 from compoundkin.structure import Structure

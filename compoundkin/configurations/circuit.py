@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from compoundkin.configurations.segment_chains import Visit
+from compoundkin.configurations.segments import Visit
 from compoundkin.kinematics.configuration import Configuration
 
 
@@ -88,7 +88,7 @@ class Circuit:
 
 
 @dataclass(frozen=True)
-class Place:
+class CircuitPlace:
     """Where a configuration lies: the numbers of its circuit and branch, and the driver's value."""
 
     circuit: int

@@ -13,21 +13,18 @@ from compoundkin.base.arrays import TURN
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, nearest
 from compoundkin.base.series import Number
-from compoundkin.configurations import dyad_segments, general_segments
-from compoundkin.configurations.all_modes import AllModes, closed_redundant
-from compoundkin.configurations.chain_circuits import built
-from compoundkin.configurations.circuit import Branch, Circuit, Limit, Place, Toggle
-from compoundkin.configurations.driver_range import range_of
-from compoundkin.configurations.location import located, starting_configuration, starting_values
-from compoundkin.configurations.routes import Route, route
-from compoundkin.configurations.segment_chains import chains
-from compoundkin.configurations.segment_poses import Placing
-from compoundkin.configurations.segment_run import Sweep
-from compoundkin.configurations.segments import Strands
-from compoundkin.configurations.toggles import toggles_of
+from compoundkin.configurations import closed_form_segments, general_segments
+from compoundkin.configurations.chain_circuits import built, toggles_of
+from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit, Toggle
+from compoundkin.configurations.driver_range import range_of, starting_values
+from compoundkin.configurations.enumeration import AllModes, closed_redundant
+from compoundkin.configurations.routes import Route, located, route
+from compoundkin.configurations.segment_poses import SegmentPoses, Sweep
+from compoundkin.configurations.segments import Segments, chains_of
 from compoundkin.kinematics.configuration import Configuration
-from compoundkin.kinematics.inputs import Inputs, inputs
-from compoundkin.kinematics.solution import plan_of
+from compoundkin.kinematics.driver_values import inputs
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.solution import plan_of, starting_configuration
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
@@ -36,8 +33,8 @@ from compoundkin.structure.kinematic_structure import Structure
 FRESH = 48
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 # More pieces of curves than these nobody can read, and with each group they are twice as many.
-MOST_STRANDS = 8192
-# Angles along a strand at which redundant pairs must be closed.
+MOST_SEGMENTS = 8192
+# Angles along a segment at which redundant pairs must be closed.
 INSIDE = (0.7, 1.3, 2.1)
 # Where the counts differ, everything is done again with slices so many times as dense.
 FINENESS = (1, 3, 9)
@@ -57,9 +54,9 @@ class Circuits(Shows):
     circuits: tuple[Circuit, ...]
     checked: int
     consistent: bool
-    start: Place | None
+    start: CircuitPlace | None
     period: float = field(repr=False)
-    placing: Placing = field(repr=False)
+    placing: SegmentPoses = field(repr=False)
 
     @property
     def branches(self) -> tuple[Branch, ...]:
@@ -76,7 +73,7 @@ class Circuits(Shows):
         """Where links on the frame stand still and turn back while the driver goes on."""
         return toggles_of(self.placing, self.circuits)
 
-    def at(self, configuration: Configuration) -> Place:
+    def at(self, configuration: Configuration) -> CircuitPlace:
         """The circuit and branch that a configuration lies on.
 
         Raises InvalidInput for a configuration that is of another mechanism or at other values of the other drivers.
@@ -94,7 +91,7 @@ class Circuits(Shows):
             raise InvalidInput(Problem("path", what, "the mechanism must be taken apart to get from one to the other"))
         return route(self.placing, self.circuits[first.circuit - 1], self.period, first, last, poses)
 
-    def _place(self, what: Configuration | int) -> Place:
+    def _place(self, what: Configuration | int) -> CircuitPlace:
         if isinstance(what, Configuration):
             return self.at(what)
         if not 1 <= what <= len(self.branches):
@@ -137,11 +134,11 @@ def circuits(
         given = _of_design(inputs(plan, known, None, None, None), design)
         fixed = {other: value for other, value in known.items() if other != name}
         sweep = Sweep(plan, given.ends, fixed, name)
-        strands, period, lost, good = _traced(sweep, between, known[name])
-        if not strands.rows:
+        segments, period, lost, good = _traced(sweep, between, known[name])
+        if not segments.rows:
             raise NotAssembled(Problem("circuits", f"the mechanism cannot be assembled at any value of {name!r}"))
-        placing = Placing(sweep, strands, design)
-        found = built(placing, chains(strands), period)
+        placing = SegmentPoses(sweep, segments, design)
+        found = built(placing, chains_of(segments), period)
         start = starting_configuration(plan, known, design)
         place = None
         if start is not None:
@@ -174,50 +171,50 @@ def _driver(plan: SolvingOrder, driver: str | None) -> str:
     return driver
 
 
-def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tuple[Strands, float, int, bool]:
-    """All strands, the driver's period, how many arcs were lost, whether the counts agree."""
+def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tuple[Segments, float, int, bool]:
+    """All segments, the driver's period, how many arcs were lost, whether the counts agree."""
     start, period = range_of(sweep, between, value)
     turns = max(1, round(period / TURN))
     for fineness in FINENESS:
-        strands, lost = _lifted(sweep, start, fineness * turns)
-        good = _counts_agree(sweep, strands, float(start.low[0]), float(start.high[0]))
+        segments, lost = _lifted(sweep, start, fineness * turns)
+        good = _counts_agree(sweep, segments, float(start.low[0]), float(start.high[0]))
         if good and not lost:
             break
-    return strands, period, lost, good
+    return segments, period, lost, good
 
 
-def _lifted(sweep: Sweep, strands: Strands, fineness: int) -> tuple[Strands, int]:
+def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, int]:
     """All groups, one after another."""
     lost = 0
     for k, solver in enumerate(sweep.plan.solvers):
-        if not strands.rows:
+        if not segments.rows:
             break
         if solver.equations is not None:
-            strands, missing = general_segments.lifted(sweep, strands, k, fineness)
+            segments, missing = general_segments.lifted(sweep, segments, k, fineness)
             lost += missing
         elif solver.has_limits:
-            strands = dyad_segments.lifted(sweep, strands, k, fineness)
-        if strands.rows > MOST_STRANDS:
-            what = f"the circuits are in more than {MOST_STRANDS:,} pieces: the groups multiply them"
+            segments = closed_form_segments.lifted(sweep, segments, k, fineness)
+        if segments.rows > MOST_SEGMENTS:
+            what = f"the circuits are in more than {MOST_SEGMENTS:,} pieces: the groups multiply them"
             raise InvalidInput(Problem("circuits", what, "ask for a part of the mechanism"))
-    return _with_redundant(sweep, strands), lost
+    return _with_redundant(sweep, segments), lost
 
 
-def _with_redundant(sweep: Sweep, strands: Strands) -> Strands:
-    """The strands on which redundant pairs are closed too."""
-    if not sweep.plan.structure.redundant or not strands.rows:
-        return strands
-    rows = np.arange(strands.rows)
-    block = sweep.run(strands, rows, strands.at(rows, np.array(INSIDE)))
+def _with_redundant(sweep: Sweep, segments: Segments) -> Segments:
+    """The segments on which redundant pairs are closed too."""
+    if not sweep.plan.structure.redundant or not segments.rows:
+        return segments
+    rows = np.arange(segments.rows)
+    block = sweep.run(segments, rows, segments.at(rows, np.array(INSIDE)))
     closed = np.broadcast_to(closed_redundant(sweep.plan, block), (len(rows), len(INSIDE)))
-    return strands.kept(closed.all(axis=1))
+    return segments.kept(closed.all(axis=1))
 
 
-def _counts_agree(sweep: Sweep, strands: Strands, low: float, high: float) -> bool:
-    """Whether at fresh driver values as many strands cross as there are real configurations."""
+def _counts_agree(sweep: Sweep, segments: Segments, low: float, high: float) -> bool:
+    """Whether at fresh driver values as many segments cross as there are real configurations."""
     values = low + (high - low) * np.mod(GOLDEN * np.arange(1, FRESH + 1), 1.0)
     drives: dict[str, tuple[Number, ...]] = {name: (value,) for name, value in sweep.fixed.items()}
     given = Inputs((FRESH,), sweep.ends, {**drives, sweep.driver: (values[None],)})
     counted = AllModes.of(sweep.plan, given).real[:, 0].sum(axis=0)
-    crossed = ((strands.low[:, None] < values) & (values < strands.high[:, None])).sum(axis=0)
+    crossed = ((segments.low[:, None] < values) & (values < segments.high[:, None])).sum(axis=0)
     return bool(np.all(counted == crossed))

@@ -1,20 +1,26 @@
-"""Over which values a driver is followed: a full turn, several where gears ask for them, or lengths within reach."""
+"""Where the drivers are and the mechanism with them: at first, and over which values one driver is followed.
+
+That is a full turn, several where gears ask for them, or lengths within reach.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
-from compoundkin.configurations.segment_run import Sweep, drawn_angle
-from compoundkin.configurations.segments import Strands, base
+from compoundkin.configurations.segment_poses import Sweep, drawn_angle
+from compoundkin.configurations.segments import Segments, driver_segment
+from compoundkin.kinematics.approach import approach
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import SolvingOrder, run
+from compoundkin.model.elements import Drive
 
 # A turn begins here: special positions lie at round angles, and none of them shall fall on the seam.
 BEGIN = -2.5066282746310002
@@ -27,23 +33,23 @@ SAME = 1e-9
 BEYOND = 1.25
 
 
-def range_of(sweep: Sweep, between: Sequence[float] | None, start: float) -> tuple[Strands, float]:
-    """The strand of the driver alone, and the period of its value (0 where it has none); `start` is one of its values.
+def range_of(sweep: Sweep, between: Sequence[float] | None, start: float) -> tuple[Segments, float]:
+    """The segment of the driver alone, and the period of its value (0 where it has none); `start` is one of its values.
 
     Raises InvalidInput for a range that is none, and for gears whose turns cannot be told.
     """
     if between is not None:
         low, high = _checked(between)
-        return base(low, high, periodic=False), 0.0
+        return driver_segment(low, high, periodic=False), 0.0
     driven = sweep.plan.driven[sweep.driver]
     if driven.pair.free_is_angle:
         turns = _turns(sweep)
         if turns is None:
-            return base(start - TURN, start + TURN, periodic=False), 0.0
-        return base(BEGIN, BEGIN + TURN * turns, periodic=True), TURN * turns
+            return driver_segment(start - TURN, start + TURN, periodic=False), 0.0
+        return driver_segment(BEGIN, BEGIN + TURN * turns, periodic=True), TURN * turns
     reach = BEYOND * (reach_of(sweep.plan) + abs(start))
     on_frame = driven.link in sweep.plan.structure.ground.links
-    return base(-reach if on_frame else 0.0, reach, periodic=False), 0.0
+    return driver_segment(-reach if on_frame else 0.0, reach, periodic=False), 0.0
 
 
 def _checked(between: Sequence[float]) -> tuple[float, float]:
@@ -118,3 +124,41 @@ def _apart(sweep: Sweep, one: Number, other: Number) -> Number:
     """The largest difference of any body, at each value."""
     size = np.tile([sweep.plan.size, 1.0], len(one) // 2)[:, None]
     return np.max(np.nan_to_num(np.abs(one - other) / size), axis=0, initial=0.0)
+
+
+def starting_values(plan: SolvingOrder, values: Mapping[str, Any], moved: str) -> dict[str, float]:
+    """One value of each driver: that given, else where it is drawn, else the first of its own.
+
+    Raises InvalidInput for names that are no driver's, and values that are no single number.
+    """
+    unknown = [name for name in values if name not in plan.driven]
+    if unknown:
+        raise InvalidInput([Problem(f"values.{name}", f"there is no driver {name!r}") for name in unknown])
+    first = {drive.name: _first(plan, drive) for drive in plan.structure.mechanism.drives}
+    drawn = _drawn(plan, first)
+    return {name: _number(name, values[name]) if name in values else drawn.get(name, first[name]) for name in first}
+
+
+def _first(plan: SolvingOrder, drive: Drive) -> float:
+    if drive.values is not None:
+        return float(np.ravel(drive.values)[0])
+    return 0.0 if plan.driven[drive.name].pair.free_is_angle else plan.size / 2.0
+
+
+def _number(name: str, value: Any) -> float:
+    try:
+        found = float(value)
+    except (TypeError, ValueError):
+        raise InvalidInput(Problem(f"values.{name}", f"{value!r} is not one number")) from None
+    if not np.isfinite(found):
+        raise InvalidInput(Problem(f"values.{name}", "the value is not finite"))
+    return found
+
+
+def _drawn(plan: SolvingOrder, first: Mapping[str, float]) -> dict[str, float]:
+    """Where the drivers are drawn; nothing where nothing is drawn."""
+    if not plan.structure.mechanism.sketch:
+        return {}
+    geometry = plan.structure.mechanism.geometry
+    lead, _, _ = approach(plan, inputs(plan, first, None, None, None), geometry.drawn, geometry.sketch)
+    return {name: float(np.ravel(v[0])[0]) for name, v in lead.drives.items()}

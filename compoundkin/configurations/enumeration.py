@@ -2,165 +2,150 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import product
 from math import prod
 from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.bracketing import bisected
-from compoundkin.base.display import Shows
-from compoundkin.base.errors import NotAssembled, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
-from compoundkin.configurations.all_modes import AllModes, first_values
 from compoundkin.configurations.driver_range import reach_of
-from compoundkin.kinematics.configuration import Configuration, named
-from compoundkin.kinematics.inputs import Inputs, by_name, inputs
+from compoundkin.configurations.segment_poses import drawn_angle
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.driver_values import by_name, inputs
+from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups.general import bodies_at
+from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.quantities import degrees
-from compoundkin.kinematics.results import Vectors
+from compoundkin.kinematics.results import Named
 from compoundkin.kinematics.solution import plan_of
-from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
 
+# A redundant pair is closed where it opens by less than this part of the size: dimensions are given with few digits.
+CLOSED = 1e-6
+# More configurations than this of one mechanism are not told apart by anybody.
+MOST = 4096
 # Where nothing can be assembled, so many values of each driver are tried, and the nearest that can is refined.
 TRIED = 721
 HALVINGS = 40
 
 
-@dataclass(frozen=True, eq=False)
-class AllConfigurations(Shows):
-    """All configurations of a mechanism: arrays (..., m) over driver values and, last, configurations.
+@dataclass
+class AllModes:
+    """The choice of all modes at once: the block has a leading axis for each group with several.
 
-    Only those that are real somewhere are kept; NaN where one is not. `names` tells them apart: a sign for each
-    group with two modes, for other groups a number in the order of its bodies' angles.
+    `modes[k]` are the names of the modes of group k, `expected[k]` their number over the complex numbers (0 unknown).
     """
 
-    structure: Structure
-    inputs: Inputs
-    names: tuple[str, ...]
-    choices: AllModes
-    kept: Number
+    plan: SolvingOrder
+    given: Inputs
+    block: Block
+    modes: dict[int, tuple[str, ...]] = field(default_factory=dict)
+    expected: dict[int, int] = field(default_factory=dict)
+    certified: dict[int, Number] = field(default_factory=dict)
 
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """The shape of the driver values and dimensions."""
-        return self.inputs.shape
-
-    @cached_property
-    def real(self) -> Number:
-        """Which configurations can be assembled, bool (..., m)."""
-        return self._shaped(self.choices.real[self.kept])
-
-    @property
-    def real_count(self) -> Number:
-        """How many can be assembled, (...)."""
-        return self.real.sum(axis=-1)
-
-    @property
-    def possible(self) -> int:
-        """How many there are over the complex numbers, for generic dimensions; 0 where that is not known."""
-        return prod(self.choices.expected.values())
-
-    @property
-    def certified(self) -> bool:
-        """Whether none is missing at any pose: closed forms, or as many were found as theory knows."""
-        return all(bool(np.all(found)) for found in self.choices.certified.values())
-
-    def points(self, name: str) -> Vectors:
-        """Where a point is, complex (..., m)."""
-        carriers = self.structure.mechanism.carriers
-        if name not in carriers:
-            raise UnknownName(Problem(name, "there is no such point", nearest(name, list(carriers))))
-        link = carriers[name][0]
-        where = self.choices.block.world[link].at(self._dimension(link, name)).c[0]
-        found: Vectors = np.where(self.real, self._shaped(self.choices.full(where)[self.kept]), np.nan).view(Vectors)
+    @classmethod
+    def of(cls, plan: SolvingOrder, given: Inputs) -> AllModes:
+        """Assemble all groups in solving order, at all designs and poses of the inputs."""
+        found = cls(plan, given, plan.start(given.ends, given.series(0), 0, (given.designs, given.poses)))
+        run(plan, found.block, found)
         return found
 
-    def angle(self, link: str) -> Number:
-        """The angle of a link, radians between -pi and pi, (..., m)."""
-        self.structure.mechanism.link(link)
-        angle = np.angle(self.choices.block.world[link].u.c[0])
-        return np.where(self.real, self._shaped(self.choices.full(angle)[self.kept]), np.nan)
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return all modes of a group, along an axis of their own where there are several."""
+        if solver.modes == 1:
+            return 1.0
+        if solver.equations is not None:
+            return self._numbered(block, solver, solver.equations)
+        signs = np.array([1.0, -1.0]).reshape(2, *[1] * len(block.shape))
+        self._branch(solver.index, ("+", "-"), 2)
+        return signs
 
-    def margin(self, group: int) -> Number:
-        """How far a group with signs is from its limit position, a squared sine, (..., m)."""
-        if group not in self.choices.block.margins:
-            raise UnknownName(Problem(f"group {group}", "it tells no margin"))
-        return self._shaped(self.choices.full(self.choices.block.margins[group])[self.kept])
+    def angle(self, solver: GroupSolver, link: str) -> Number:
+        """Return the drawn angle of a link."""
+        return drawn_angle(self.plan, link)
 
-    def pick(self, which: int | str, at: tuple[int, ...] | int = 0) -> Configuration:
-        """One configuration, by its index or name, at an index of the driver values.
+    def _numbered(self, block: Block, solver: GroupSolver, equations: GroupEquations) -> Number:
+        found = solver.every(block)
+        states = found.states
+        batch = (1,) * (len(block.shape) - (states.ndim - 2)) + states.shape[:-2]
+        states = np.moveaxis(states.reshape(*batch, *states.shape[-2:]), -2, 0)
+        if not len(states):
+            states = np.full((1, *states.shape[1:]), np.nan)
+        self._branch(solver.index, tuple(str(n + 1) for n in range(len(states))), found.expected)
+        self.certified[solver.index] = found.certified
+        return equations.state(bodies_at(states))
 
-        Raises UnknownName for a name or index that none has, NotAssembled where it cannot be assembled there.
-        """
-        k = self._index(which)
-        place = np.unravel_index(at, self.shape or (1,)) if isinstance(at, int) else at
-        if not self.real.reshape(*(self.shape or (1,)), -1)[(*place, k)]:
-            what = f"{self.names[k]} cannot be assembled there"
-            raise NotAssembled(Problem("configuration", what, "choose one that is real"))
-        flat = int(np.ravel_multi_index(place, self.shape or (1,)))
-        return self._configuration(k, flat // self.inputs.poses, flat % self.inputs.poses)
+    def _branch(self, k: int, names: tuple[str, ...], expected: int) -> None:
+        """Give the block an axis for the modes of a group."""
+        self._limited(len(names))
+        self.modes[k], self.expected[k] = names, expected
+        self.block.shape = (len(names), *self.block.shape)
 
-    def __len__(self) -> int:
-        return len(self.names)
+    def _limited(self, more: int) -> None:
+        count = more * prod(len(modes) for modes in self.modes.values())
+        if count > MOST:
+            what = f"the mechanism has more than {MOST:,} configurations: its groups multiply them"
+            raise InvalidInput(Problem("configurations", what, "ask for a part of the mechanism"))
 
-    def __iter__(self) -> Iterator[Configuration]:
-        """The real ones at the first driver value."""
-        first = self.real.reshape(-1, len(self))[0]
-        return (self.pick(k) for k in range(len(self)) if first[k])
+    def full(self, array: Number) -> Number:
+        """An array of any of the leading axes as (configurations, designs, poses), the first group varying slowest."""
+        axes = [len(modes) for modes in self.modes.values()]
+        whole = np.broadcast_to(array, self.block.shape)
+        count = len(axes)
+        return np.transpose(whole, (*range(count)[::-1], count, count + 1)).reshape(-1, *self.block.shape[-2:])
 
-    def _configuration(self, k: int, design: int, pose: int) -> Configuration:
-        def one(array: Number) -> Number:
-            return self.choices.full(array)[self.kept[k], design, pose]
+    @property
+    def real(self) -> Number:
+        """Where each configuration can be assembled, (configurations, designs, poses)."""
+        closed = closed_redundant(self.plan, self.block)
+        return self.full((np.asarray(self.block.failed) == 0) & closed)
 
-        world = self.choices.block.world
-        poses = {
-            name: Pose(constant(complex(one(p.z.c[0]))), constant(complex(one(p.u.c[0])))) for name, p in world.items()
-        }
-        margins = {group: float(one(margin)) for group, margin in self.choices.block.margins.items()}
-        values = first_values({name: v[0] for name, v in self.inputs.drives.items()}, (design, pose))
-        modes = self.choices.names_of()[int(self.kept[k])]
-        return Configuration(self.structure, values, poses, modes, margins, dimensions_at(self.structure, design, pose))
+    def kept(self, real: Number, shape: tuple[int, ...]) -> Configurations:
+        """Return those of the configurations that are `real` somewhere, with the driver values in a shape."""
+        which = np.flatnonzero(real.any(axis=(1, 2)))
+        every = [dict(zip(self.modes, names, strict=True)) for names in product(*self.modes.values())]
 
-    def _index(self, which: int | str) -> int:
-        if isinstance(which, str):
-            if which not in self.names:
-                raise UnknownName(Problem(which, "there is no such configuration", nearest(which, self.names)))
-            return self.names.index(which)
-        if not -len(self) <= which < len(self):
-            raise UnknownName(Problem(str(which), f"there are {len(self)} configurations"))
-        return which % len(self)
+        def last(full: Number) -> Number:
+            return np.moveaxis(full[which], 0, -1).reshape(*shape, len(which))
 
-    def _dimension(self, link: str, name: str) -> Number:
-        from_points = self.structure.mechanism.geometry.points[link][name]
-        return np.broadcast_to(from_points, self.shape).reshape(self.choices.block.shape[-2:])
+        def shaped(value: Number) -> Number:
+            return last(self.full(value))
 
-    def _shaped(self, found: Number) -> Number:
-        return np.moveaxis(found, 0, -1).reshape(*self.shape, len(found))
+        def pose(link: str) -> Pose:
+            found = self.block.world[link]
+            return Pose.of(shaped(found.z.c[0]), shaped(found.u.c[0]))
 
-    def __repr__(self) -> str:
-        return f"AllConfigurations({', '.join(map(repr, self.names))})"
-
-
-def dimensions_at(structure: Structure, design: int, pose: int) -> dict[str, dict[str, complex]]:
-    """The points of all links, in their frames, of one design."""
-
-    def one(value: Number) -> complex:
-        if np.ndim(value) == 0:
-            return complex(value)
-        rows = np.reshape(value, (-1, np.shape(value)[-1]))
-        return complex(rows[min(design, len(rows) - 1), min(pose, rows.shape[1] - 1)])
-
-    placed = structure.mechanism.geometry.points
-    return {link: {name: one(value) for name, value in points.items()} for link, points in placed.items()}
+        possible = prod(self.expected.values())
+        return Configurations(
+            Named("link", tuple(self.block.world), pose),
+            last(real),
+            possible,
+            possible,
+            all(bool(np.all(found)) for found in self.certified.values()),
+            self.plan.structure,
+            {name: values[0] for name, values in self.given.drives.items()},
+            tuple(every[k] for k in which),
+            {k: shaped(margin) for k, margin in self.block.margins.items()},
+        )
 
 
-def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] | None = None) -> AllConfigurations:
+def closed_redundant(plan: SolvingOrder, block: Block) -> Number:
+    """Where the pairs that are left out as redundant are closed: not all configurations of the others close them."""
+    pairs = plan.structure.redundant
+    return residual(pairs, block) <= (CLOSED * plan.size) ** 2 if pairs else True
+
+
+def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] | None = None) -> Configurations:
     """All configurations of a mechanism at driver values (radians or lengths; arrays; those of `solve` if left out).
 
     Groups of pins and slides give all their configurations; others those that a search finds, so that `certified` is
@@ -178,14 +163,11 @@ def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] |
     plan = plan_of(mechanism)
     with np.errstate(all="ignore"):
         given = inputs(plan, by_name(plan.structure.mechanism, values), None, None, None)
-        choices = AllModes.of(plan, given)
-        real = choices.real
-        kept = np.flatnonzero(real.any(axis=(1, 2)))
-        if not len(kept):
+        found = AllModes.of(plan, given)
+        real = found.real
+        if not real.any():
             raise NotAssembled(_nothing(plan, given))
-    modes = choices.names_of()
-    names = tuple(named(plan.structure, modes[k]) for k in kept)
-    return AllConfigurations(plan.structure, given, names, choices, kept)
+        return found.kept(real, given.shape)
 
 
 def _nothing(plan: SolvingOrder, given: Inputs) -> Problem:
@@ -212,10 +194,10 @@ def _nearest(plan: SolvingOrder, given: Inputs, name: str) -> tuple[float, float
     if not good.any():
         return np.inf, here
     order = np.argsort(np.abs(offsets), kind="stable")
-    best = order[good[order]][0]
-    near, far = offsets[best], offsets[best] - np.sign(offsets[best]) * 2.0 * span / (TRIED - 1)
-    near, _ = bisected(lambda off: _any(plan, first, name, np.array([here + off]))[0], near, far, HALVINGS)
-    return abs(near) / (1.0 if is_angle else plan.size), here + near
+    best = int(order[good[order]][0])
+    far = offsets[[best]] - np.sign(offsets[[best]]) * 2.0 * span / (TRIED - 1)
+    near, _ = bisected(lambda offset: _any(plan, first, name, here + offset), offsets[[best]], far, HALVINGS)
+    return abs(near[0]) / (1.0 if is_angle else plan.size), here + near[0]
 
 
 def _any(plan: SolvingOrder, given: Inputs, name: str, values: Number) -> Number:

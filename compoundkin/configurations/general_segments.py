@@ -1,4 +1,4 @@
-"""Strands lifted over a group without a closed form: the web of its configurations, cut at turning points."""
+"""Segments lifted over a group without a closed form: the roadmap of its configurations, cut at turning points."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 
 from compoundkin.base.arrays import whole_turns
 from compoundkin.base.series import Number
-from compoundkin.configurations.roadmap import STRIPS, Port, Web
-from compoundkin.configurations.segment_closure import Equations
-from compoundkin.configurations.segment_run import Sweep
-from compoundkin.configurations.segments import LIMIT, NONE, Strands, Way
-from compoundkin.kinematics.configuration import state_distance
+from compoundkin.configurations.roadmap import STRIPS, Port, Roadmap
+from compoundkin.configurations.segment_closure import SegmentClosure
+from compoundkin.configurations.segment_poses import Sweep
+from compoundkin.configurations.segments import LIMIT, NONE, SegmentCurve, Segments
+from compoundkin.kinematics.configuration_arrays import state_distance
 
 
 @dataclass(frozen=True)
-class Piece:
-    """A part of the lifted curve between turning points or ends of the parent strand, by increasing angle.
+class CurvePiece:
+    """A part of the lifted curve between turning points or ends of the parent segment, by increasing angle.
 
     `y` are states with the angle last; `before` and `after` the numbers of the pieces that are glued to its ends at
     turning points, NONE at ends of the parent.
@@ -30,32 +30,32 @@ class Piece:
     after: int
 
 
-def lifted(sweep: Sweep, strands: Strands, k: int, fineness: int = 1) -> tuple[Strands, int]:
-    """The strands of the first `k` groups and group `k`, slices `fineness` times as dense; how many arcs were lost."""
-    web = Web(Equations(sweep, strands, k), STRIPS * fineness)
-    pieces: list[Piece] = []
+def lifted(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> tuple[Segments, int]:
+    """The segments of the first `k` groups and group `k`, slices `fineness` times as dense; how many arcs were lost."""
+    roadmap = Roadmap(SegmentClosure(sweep, segments, k), STRIPS * fineness)
+    pieces: list[CurvePiece] = []
     seen: set[tuple[int, int, int]] = set()
-    every = [Port(row, j, c, 1) for (row, j), found in web.known.items() for c in range(len(found))]
-    outer = [port for p in every for port in (p, p.across) if web.is_outer(port)]
+    every = [Port(row, j, c, 1) for (row, j), found in roadmap.known.items() for c in range(len(found))]
+    outer = [port for p in every for port in (p, p.across) if roadmap.is_outer(port)]
     for port in [*(p.across for p in outer), *every]:
         if port[:3] not in seen:
-            _add(pieces, *_walked(web, port, seen))
-    return _glued(web.equations, pieces), web.lost
+            _add(pieces, *_walked(roadmap, port, seen))
+    return _glued(roadmap.closure, pieces), roadmap.lost
 
 
-def _walked(web: Web, start: Port, seen: set[tuple[int, int, int]]) -> tuple[int, Number, list[int], bool]:
+def _walked(roadmap: Roadmap, start: Port, seen: set[tuple[int, int, int]]) -> tuple[int, Number, list[int], bool]:
     """The curve from a port: its row, states, the indices of turning points, and whether it is closed."""
-    states, turns = [web.state(start)], list[int]()
+    states, turns = [roadmap.state(start)], list[int]()
     seen.add(start[:3])
     port = start
-    while port in web.ends:
-        arc, backward = web.arcs[port]
+    while port in roadmap.ends:
+        arc, backward = roadmap.arcs[port]
         nodes = arc.nodes[::-1] if backward else arc.nodes
         at = [len(nodes) - 1 - i for i in arc.turns][::-1] if backward else arc.turns
         offset = _whole_turns(states[-1], nodes[0])
         turns += [len(states) - 1 + i for i in at]
         states += [y + offset for y in nodes[1:]]
-        port = web.ends[port].across
+        port = roadmap.ends[port].across
         if port == start:
             return start.row, np.array(states), turns, True
         seen.add(port[:3])
@@ -70,7 +70,7 @@ def _whole_turns(reached: Number, known: Number) -> Number:
     return out
 
 
-def _add(pieces: list[Piece], row: int, y: Number, turns: list[int], closed: bool) -> None:
+def _add(pieces: list[CurvePiece], row: int, y: Number, turns: list[int], closed: bool) -> None:
     """The pieces of a curve; those of a closed one from its first turning point on."""
     if len(y) < 2:
         return  # both arcs of a configuration were lost: there is no curve
@@ -86,20 +86,20 @@ def _add(pieces: list[Piece], row: int, y: Number, turns: list[int], closed: boo
         after = first + (i + 1) % count if closed or i < count - 1 else NONE
         part = y[a : b + 1]
         rising = part[-1, -1] > part[0, -1]
-        pieces.append(Piece(row, part, before, after) if rising else Piece(row, part[::-1], after, before))
+        pieces.append(CurvePiece(row, part, before, after) if rising else CurvePiece(row, part[::-1], after, before))
 
 
-def _glued(equations: Equations, pieces: list[Piece]) -> Strands:
-    """The lifted strands, their ends glued."""
-    strands, k = equations.strands, equations.k
+def _glued(closure: SegmentClosure, pieces: list[CurvePiece]) -> Segments:
+    """The lifted segments, their ends glued."""
+    segments, k = closure.segments, closure.k
     order = sorted(range(len(pieces)), key=lambda i: (pieces[i].row, *np.round(pieces[i].y[0, 2:-1:3], 6), i))
     new = {old: i for i, old in enumerate(order)} | {NONE: NONE}
     pieces = [replace(p, before=new[p.before], after=new[p.after]) for p in (pieces[i] for i in order)]
     parent = np.array([piece.row for piece in pieces], dtype=int)
     first = np.array([piece.y[0, -1] for piece in pieces]).reshape(-1, 1)
     last = np.array([piece.y[-1, -1] for piece in pieces]).reshape(-1, 1)
-    low, high = strands.at(parent, first)[:, 0], strands.at(parent, last)[:, 0]
-    kind, group, partner, side = (getattr(strands, name)[parent] for name in ("kind", "group", "partner", "side"))
+    low, high = segments.at(parent, first)[:, 0], segments.at(parent, last)[:, 0]
+    kind, group, partner, side = (getattr(segments, name)[parent] for name in ("kind", "group", "partner", "side"))
     for i, piece in enumerate(pieces):
         for own, other in enumerate((piece.before, piece.after)):
             if other != NONE:
@@ -108,20 +108,20 @@ def _glued(equations: Equations, pieces: list[Piece]) -> Strands:
                 partner[i, own] = side[i, own] = NONE
             elif partner[i, own] != NONE:
                 partner[i, own] = _nearest(pieces, piece, own, int(partner[i, own]), int(side[i, own]))
-    signs = {j: sign[parent] for j, sign in strands.signs.items()}
-    ways = {j: tuple(way[row] for row in parent) for j, way in strands.ways.items()}
-    ways[k] = tuple(_way(equations, *entry) for entry in zip(pieces, low.tolist(), high.tolist(), strict=True))
-    return Strands(low, high, signs, ways, kind, group, partner, side)
+    signs = {j: sign[parent] for j, sign in segments.signs.items()}
+    curves = {j: tuple(curve[row] for row in parent) for j, curve in segments.curves.items()}
+    curves[k] = tuple(_curve(closure, *entry) for entry in zip(pieces, low.tolist(), high.tolist(), strict=True))
+    return Segments(low, high, signs, curves, kind, group, partner, side)
 
 
-def _is_inside(piece: Piece, side: int) -> bool:
+def _is_inside(piece: CurvePiece, side: int) -> bool:
     """Whether it ends where its parent does not: an arc was lost there."""
     phi = piece.y[-side, -1]
     return bool(phi != (np.pi if side else 0.0))
 
 
-def _nearest(pieces: list[Piece], piece: Piece, own: int, row: int, side: int) -> int:
-    """The piece of the partner's strand that begins or ends with the same state."""
+def _nearest(pieces: list[CurvePiece], piece: CurvePiece, own: int, row: int, side: int) -> int:
+    """The piece of the partner's segment that begins or ends with the same state."""
     found, least = NONE, np.inf
     for i, other in enumerate(pieces):
         if other.row == row and not _is_inside(other, side) and (other.before, other.after)[side] == NONE:
@@ -131,11 +131,11 @@ def _nearest(pieces: list[Piece], piece: Piece, own: int, row: int, side: int) -
     return found
 
 
-def _way(equations: Equations, piece: Piece, low: float, high: float) -> Way:
+def _curve(closure: SegmentClosure, piece: CurvePiece, low: float, high: float) -> SegmentCurve:
     """The states over the piece's own angle."""
     cosine = np.cos(piece.y[:, -1])
     part = 2.0 * (cosine[0] - cosine) / (cosine[0] - cosine[-1])
     nodes = np.maximum.accumulate(np.arccos(np.clip(1.0 - part, -1.0, 1.0)))
     kept = np.flatnonzero(np.append(True, np.diff(nodes) > 1e-9))
     kept[-1] = len(nodes) - 1
-    return Way(low, high, nodes[kept], piece.y[kept, :-1] / equations.weights)
+    return SegmentCurve(low, high, nodes[kept], piece.y[kept, :-1] / closure.weights)

@@ -1,4 +1,4 @@
-"""All configurations of a group at slices of the strands it is attached to, joined by arcs from slice to slice.
+"""All configurations of a group at slices of the segments it is attached to, joined by arcs from slice to slice.
 
 Every configuration at a slice has two ports, toward greater and lesser angles. An arc leaves through one port and
 arrives at another; it arrives at a configuration that is known, or the slice lacked one.
@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.configurations.arcs import LONGEST, Arc, Paths
-from compoundkin.configurations.segment_closure import Equations
-from compoundkin.kinematics.configuration import state_distance
+from compoundkin.configurations.continuation_arcs import LONGEST, ContinuationArc, ContinuationPaths
+from compoundkin.configurations.segment_closure import SegmentClosure
+from compoundkin.kinematics.configuration_arrays import state_distance
 
-# Every strand is cut by so many slices.
+# Every segment is cut by so many slices.
 STRIPS = 48
 # An arc arrives at a configuration within this (parts of the size, radians).
 MATCHED = 1e-5
@@ -24,7 +24,7 @@ FINER = 0.1
 
 
 class Port(NamedTuple):
-    """A way out of a configuration: the row of the strand, the slice, the number there, +1 ahead or -1 back."""
+    """A way out of a configuration: the row of the segment, the slice, the number there, +1 ahead or -1 back."""
 
     row: int
     slice: int
@@ -37,30 +37,30 @@ class Port(NamedTuple):
         return self._replace(ahead=-self.ahead)
 
 
-class Web:
+class Roadmap:
     """The configurations at all slices and the arcs between them; `lost` counts arcs that ended nowhere."""
 
-    def __init__(self, equations: Equations, strips: int) -> None:
-        self.equations = equations
+    def __init__(self, closure: SegmentClosure, strips: int) -> None:
+        self.closure = closure
         self.slices = np.linspace(0.0, np.pi, strips + 1)
-        shape = (equations.strands.rows, strips + 1)
-        block = equations.blocks(self.slices)
-        states = equations.solver.every(block).states
+        shape = (closure.segments.rows, strips + 1)
+        block = closure.blocks(self.slices)
+        states = closure.solver.every(block).states
         states = np.broadcast_to(states, (*shape, *states.shape[-2:]))
         self.known = {
             (row, j): [self._scaled(state, j) for state in states[row, j] if np.isfinite(state).all()]
             for row, j in np.ndindex(*shape)
         }
-        self.arcs: dict[Port, tuple[Arc, bool]] = {}
+        self.arcs: dict[Port, tuple[ContinuationArc, bool]] = {}
         self.ends: dict[Port, Port] = {}
         self.lost = 0
         self._join()
 
     def _scaled(self, state: Number, j: int) -> Number:
-        return np.append(state * self.equations.weights, self.slices[j])
+        return np.append(state * self.closure.weights, self.slices[j])
 
     def is_outer(self, port: Port) -> bool:
-        """Whether it leads out of the strand."""
+        """Whether it leads out of the segment."""
         return port.slice == (len(self.slices) - 1 if port.ahead > 0 else 0)
 
     def ports(self, ahead: int) -> list[Port]:
@@ -94,13 +94,15 @@ class Web:
             return
         rows, at, ahead = (np.array([getattr(p, name) for p in ports]) for name in ("row", "slice", "ahead"))
         with np.errstate(all="ignore"):
-            paths = Paths(self.equations, rows, np.array([self.state(p) for p in ports]), at, ahead, self.slices)
+            paths = ContinuationPaths(
+                self.closure, rows, np.array([self.state(p) for p in ports]), at, ahead, self.slices
+            )
             arcs = paths.go(longest)
         for port, arc in zip(ports, arcs, strict=True):
             if arc.end is not None and port not in self.ends:
                 self._arrive(port, arc)
 
-    def _arrive(self, port: Port, arc: Arc) -> None:
+    def _arrive(self, port: Port, arc: ContinuationArc) -> None:
         assert arc.end is not None
         number = self._number(port.row, arc.end, arc.nodes[-1])
         # an even number of turning points is passed, or the arc comes back

@@ -1,4 +1,4 @@
-"""The way along a circuit from one configuration to another, through limit positions where the driver turns back."""
+"""Places on circuits: where a configuration lies, and the way along a circuit from one to another."""
 
 from __future__ import annotations
 
@@ -7,14 +7,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from compoundkin.base.errors import Problem, UnknownName
+from compoundkin.base.arrays import Number, row
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
-from compoundkin.configurations.circuit import Circuit, Place
-from compoundkin.configurations.enumeration import dimensions_at
-from compoundkin.configurations.segment_chains import Visit
-from compoundkin.configurations.segment_poses import Placing
-from compoundkin.configurations.segments import NONE
+from compoundkin.configurations.circuit import Circuit, CircuitPlace
+from compoundkin.configurations.segment_poses import SegmentPoses, gap_between
+from compoundkin.configurations.segments import NONE, Visit
+from compoundkin.kinematics.configuration import Configuration, dimensions_at
+
+# A configuration lies on a segment within this: it may be at a limit position, where poses are known to the square
+# root of rounding, or read off a drawing that was drawn exactly.
+MATCHED = 1e-5
+# The other drivers stand where they stood when the circuits were found, within this.
+STANDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +45,17 @@ class Route:
 
 
 @dataclass(frozen=True)
-class Leg:
-    """A strand passed from one angle to another; 0 is the low end, pi the high one."""
+class RouteLeg:
+    """A segment passed from one angle to another; 0 is the low end, pi the high one."""
 
     visit: Visit
     start: float
     end: float
 
 
-def route(placing: Placing, circuit: Circuit, period: float, first: Place, last: Place, poses: int) -> Route:
+def route(
+    placing: SegmentPoses, circuit: Circuit, period: float, first: CircuitPlace, last: CircuitPlace, poses: int
+) -> Route:
     """The shorter of both ways around."""
     ways = [way for sense in (1, -1) if (way := _legs(placing, circuit, first, last, sense)) is not None]
     count = max(2, poses)
@@ -56,29 +63,31 @@ def route(placing: Placing, circuit: Circuit, period: float, first: Place, last:
     return min(found, key=lambda one: float(one.along[-1]))
 
 
-def _legs(placing: Placing, circuit: Circuit, first: Place, last: Place, sense: int) -> list[Leg] | None:
-    """The strands from one place to another in one direction around the circuit; None where the chain ends before."""
+def _legs(
+    placing: SegmentPoses, circuit: Circuit, first: CircuitPlace, last: CircuitPlace, sense: int
+) -> list[RouteLeg] | None:
+    """The segments from one place to another in one direction around the circuit; None where the chain ends before."""
     visits = [v if sense > 0 else Visit(v.row, -v.sense, v.periods) for b in circuit.branches for v in b.visits]
     visits = visits[::sense]
     here = next(i for i, v in enumerate(visits) if v.row == first.visit.row)
     begin, goal = _angle(placing, first), _angle(placing, last)
     same = first.visit.row == last.visit.row
     if same and (goal - begin) * visits[here].sense >= 0:
-        return [Leg(visits[here], begin, goal)]
-    legs = [Leg(visits[here], begin, _exit(visits[here]))]
+        return [RouteLeg(visits[here], begin, goal)]
+    legs = [RouteLeg(visits[here], begin, _exit(visits[here]))]
     for k in range(1, len(visits) + 1):
         i = here + k
         if i >= len(visits) and not circuit.closed:
             return None
         visit = visits[i % len(visits)]
         if visit.row == last.visit.row:
-            return [*legs, Leg(visit, np.pi - _exit(visit), goal)]
-        legs.append(Leg(visit, np.pi - _exit(visit), _exit(visit)))
+            return [*legs, RouteLeg(visit, np.pi - _exit(visit), goal)]
+        legs.append(RouteLeg(visit, np.pi - _exit(visit), _exit(visit)))
     return None
 
 
-def _angle(placing: Placing, place: Place) -> float:
-    low, high = (float(v[place.visit.row]) for v in (placing.strands.low, placing.strands.high))
+def _angle(placing: SegmentPoses, place: CircuitPlace) -> float:
+    low, high = (float(v[place.visit.row]) for v in (placing.segments.low, placing.segments.high))
     return float(np.arccos(np.clip(1.0 - 2.0 * (place.inside - low) / (high - low), -1.0, 1.0)))
 
 
@@ -86,7 +95,7 @@ def _exit(visit: Visit) -> float:
     return np.pi if visit.sense > 0 else 0.0
 
 
-def _sampled(placing: Placing, circuit: Circuit, period: float, legs: list[Leg], poses: int) -> Route:
+def _sampled(placing: SegmentPoses, circuit: Circuit, period: float, legs: list[RouteLeg], poses: int) -> Route:
     total = sum(abs(leg.end - leg.start) for leg in legs) or 1.0
     parts = [_leg(placing, leg, max(2, round(poses * abs(leg.end - leg.start) / total) + 1)) for leg in legs]
     values = np.concatenate([values for values, _ in parts])
@@ -99,20 +108,20 @@ def _sampled(placing: Placing, circuit: Circuit, period: float, legs: list[Leg],
     shown = np.unwrap(values[kept], period=period) if period else values[kept]
     numbers = [next(b.number for b in circuit.branches for v in b.visits if v.row == leg.visit.row) for leg in legs]
     passed = tuple(n for i, n in enumerate(numbers) if i == 0 or n != numbers[i - 1])
-    poses_of = {name: Pose(constant(z), constant(u)) for name, (z, u) in links.items()}
+    poses_of = {name: Pose.of(z, u) for name, (z, u) in links.items()}
     dimensions = dimensions_at(placing.sweep.plan.structure, placing.design, 0)
     return Route(shown, poses_of, along, passed, dimensions)
 
 
-def _leg(placing: Placing, leg: Leg, count: int) -> tuple[Number, dict[str, tuple[Number, Number]]]:
+def _leg(placing: SegmentPoses, leg: RouteLeg, count: int) -> tuple[Number, dict[str, tuple[Number, Number]]]:
     """Driver values along a leg, and the origin and orientation of every link."""
     phi = np.linspace(leg.start, leg.end, count)
     rows = np.array([leg.visit.row])
     sides = np.where(phi == 0.0, 0, np.where(phi == np.pi, 1, NONE))
-    s = placing.strands.at(rows, phi[None])
+    s = placing.segments.at(rows, phi[None])
     with np.errstate(all="ignore"):
-        block = placing.sweep.run(placing.strands, rows, s, sides=sides)
-    found = {name: (_row(pose.z.c[0], count), _row(pose.u.c[0], count)) for name, pose in block.world.items()}
+        block = placing.sweep.run(placing.segments, rows, s, sides=sides)
+    found = {name: (row(pose.z.c[0], count), row(pose.u.c[0], count)) for name, pose in block.world.items()}
     return s[0], found
 
 
@@ -120,11 +129,43 @@ def _joined(parts: list[tuple[Number, dict[str, tuple[Number, Number]]]], name: 
     return np.concatenate([part[name][i] for _, part in parts])
 
 
-def _row(value: Number, count: int) -> Number:
-    return np.broadcast_to(value, (1, count))[0]
-
-
 def _steps(links: Mapping[str, tuple[Number, Number]], size: float) -> Number:
     """How far all links move from pose to pose."""
     squares = [np.abs(np.diff(z) / size) ** 2 + np.abs(np.angle(u[1:] / u[:-1])) ** 2 for z, u in links.values()]
     return np.sqrt(np.sum(squares, axis=0))
+
+
+def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration) -> CircuitPlace:
+    """The place of a configuration; raises InvalidInput where it lies on none of the circuits."""
+    sweep, segments = placing.sweep, placing.segments
+    if one.structure.mechanism != sweep.plan.structure.mechanism:
+        raise InvalidInput(Problem("configuration", "it is one of another mechanism"))
+    moved = [name for name, value in sweep.fixed.items() if abs(one.values[name] - value) > STANDING * (1 + abs(value))]
+    if moved:
+        what = f"{', '.join(moved)} stand elsewhere than in these circuits"
+        raise InvalidInput(Problem("configuration", what, "find the circuits with these values of the other drivers"))
+    value = one.values[sweep.driver]
+    shift = period * np.floor((value - np.min(segments.low)) / period) if period else 0.0
+    candidates = [(row, value - s) for s in ((shift, shift + period, shift - period) if period else (0.0,))
+                  for row in _crossed(placing, value - s)]  # fmt: skip
+    if candidates:
+        rows, s = np.array([row for row, _ in candidates]), np.array([s for _, s in candidates])
+        s = np.clip(s, segments.low[rows], segments.high[rows])
+        with np.errstate(all="ignore"):
+            gaps = gap_between(one, placing.run(rows, s), len(rows), sweep.plan.size)
+        best = int(np.argmin(np.nan_to_num(gaps, nan=np.inf)))
+        if gaps[best] < MATCHED:
+            return _place(circuits, int(rows[best]), float(s[best]), value)
+    raise InvalidInput(Problem("configuration", "it does not close, or lies on none of the circuits that were found"))
+
+
+def _crossed(placing: SegmentPoses, s: float) -> list[int]:
+    segments = placing.segments
+    near = MATCHED**2 * (1.0 + abs(s))
+    return np.flatnonzero((segments.low - near <= s) & (s <= segments.high + near)).tolist()
+
+
+def _place(circuits: tuple[Circuit, ...], row: int, s: float, value: float) -> CircuitPlace:
+    found = ((c, b, v) for c in circuits for b in c.branches for v in b.visits if v.row == row)
+    circuit, branch, visit = next(found)
+    return CircuitPlace(circuit.number, branch.number, value, visit, s)

@@ -1,6 +1,6 @@
-"""The closure equations of a group along strands of what it is attached to: unknown are its bodies and the angle.
+"""The closure equations of a group along segments of what it is attached to: unknown are its bodies and the angle.
 
-A state is x, y (parts of the size) and theta of every body, and last the angle along the strand.
+A state is x, y (parts of the size) and theta of every body, and last the angle along the segment.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import numpy as np
 
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
-from compoundkin.configurations.segment_run import Sweep
-from compoundkin.configurations.segments import NONE, Strands
+from compoundkin.configurations.segment_poses import Sweep
+from compoundkin.configurations.segments import NONE, Segments
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations
@@ -23,11 +23,11 @@ BESIDE = 1e-5
 
 
 @dataclass(frozen=True)
-class Equations:
-    """The equations of group `k`, which has no closed form, on strands of the groups before it."""
+class SegmentClosure:
+    """The equations of group `k`, which has no closed form, on segments of the groups before it."""
 
     sweep: Sweep
-    strands: Strands
+    segments: Segments
     k: int
 
     @property
@@ -48,9 +48,9 @@ class Equations:
         return np.tile([1.0 / size, 1.0 / size, 1.0], self.own.n)
 
     def at(self, rows: Number, y: Number) -> tuple[Number, Number]:
-        """The residuals (paths, 3 n) and their Jacobian (paths, 3 n, 3 n + 1), at states `y` of strands `rows`."""
+        """The residuals (paths, 3 n) and their Jacobian (paths, 3 n, 3 n + 1), at states `y` of segments `rows`."""
         phi = np.clip(y[:, -1], BESIDE, np.pi - BESIDE)[:, None]
-        block = self.block(rows, phi, self.strands.rate(rows, phi))
+        block = self.block(rows, phi, self.segments.rate(rows, phi))
         found, by_angle, matrix = self._assembled(y, block)
         ends = phi[:, 0] != y[:, -1]
         if np.any(ends):
@@ -64,13 +64,13 @@ class Equations:
 
     def block(self, rows: Number, phi: Number, rate: Number | None, sides: Number | None = None) -> Block:
         """What the group is attached to, at angles (rows, columns)."""
-        return self.sweep.run(self.strands, rows, self.strands.at(rows, phi), rate, sides, self.k)
+        return self.sweep.run(self.segments, rows, self.segments.at(rows, phi), rate, sides, self.k)
 
     def blocks(self, phi: Number) -> Block:
-        """What it is attached to on all strands, at angles from one end to the other."""
+        """What it is attached to on all segments, at angles from one end to the other."""
         sides = np.full(len(phi), NONE)
         sides[0], sides[-1] = 0, 1
-        return self.block(np.arange(self.strands.rows), phi[None], None, sides)
+        return self.block(np.arange(self.segments.rows), phi[None], None, sides)
 
     def _assembled(self, y: Number, block: Block) -> tuple[Number, Number, Number]:
         """Residuals, their derivatives by the angle, and by x, y, theta of the bodies."""

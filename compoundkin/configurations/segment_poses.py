@@ -1,36 +1,97 @@
-"""The poses of a mechanism on strands, as configurations with their names."""
+"""A plan run at any place of any segment, and the poses there as configurations with their names."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
-from compoundkin.configurations.dyad_segments import TOUCHING
-from compoundkin.configurations.enumeration import dimensions_at
-from compoundkin.configurations.segment_run import Sweep
-from compoundkin.configurations.segments import NONE, Strands
+from compoundkin.base.arrays import Number, column
+from compoundkin.base.series import Series, constant
+from compoundkin.configurations.segments import NONE, TOUCHING, Segments
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import SIGNS, Configuration, state_distance
+from compoundkin.kinematics.configuration import SIGNS, Configuration, dimensions_at, numbers_at, placed_at
+from compoundkin.kinematics.configuration_arrays import state_distance
 from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups.general import bodies_at
+from compoundkin.kinematics.limits import EDGE
+from compoundkin.kinematics.solving_order import SolvingOrder, run
+from compoundkin.model.pairs.contract import Ends
 
 
 @dataclass(frozen=True)
-class Placing:
-    """All strands of a mechanism, and what makes poses of them."""
+class Sweep:
+    """A plan, the dimensions of one design, the values of all drivers but one."""
+
+    plan: SolvingOrder
+    ends: Mapping[str, Ends]
+    fixed: Mapping[str, float]
+    driver: str
+
+    def start(self, s: Number, rate: Number | None = None) -> Block:
+        """The frame and the driven links at driver values, with their derivatives by whatever `rate` is taken by."""
+        moving = constant(s) if rate is None else Series((s, rate))
+        drives = {name: constant(value) for name, value in self.fixed.items()}
+        drives[self.driver] = moving
+        return self.plan.start(self.ends, drives, 0 if rate is None else 1, np.shape(s), EDGE)
+
+    def run(
+        self,
+        segments: Segments,
+        rows: Number,
+        s: Number,
+        rate: Number | None = None,
+        sides: Number | None = None,
+        upto: int | None = None,
+    ) -> Block:
+        """Segments `rows` at driver values `s` (rows, columns), up to a group; `sides` says which columns are ends."""
+        return run(self.plan, self.start(s, rate), _OnSegments(self.plan, segments, rows, s, sides), upto)
+
+
+@dataclass(frozen=True)
+class _OnSegments:
+    """The choice on segments: each has its modes and its states."""
+
+    plan: SolvingOrder
+    segments: Segments
+    rows: Number
+    s: Number
+    sides: Number | None
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the states of a group, its signs, or 1 where it has one mode."""
+        if solver.equations is not None:
+            return solver.equations.state(bodies_at(self.segments.seeds(solver.index, self.rows, self.s)))
+        if solver.has_limits:
+            return self.segments.sign(solver.index, self.rows, self.sides)
+        return 1.0
+
+    def angle(self, solver: GroupSolver, link: str) -> Number:
+        """Return the drawn angle of a link."""
+        return drawn_angle(self.plan, link)
+
+
+def drawn_angle(plan: SolvingOrder, link: str) -> Number:
+    """Return the drawn angle of a link, from which its full turns count; 0 where it is not drawn."""
+    drawn = plan.structure.mechanism.geometry.drawn.get(link)
+    return 0.0 if drawn is None else drawn.angle.c[0]
+
+
+@dataclass(frozen=True)
+class SegmentPoses:
+    """All segments of a mechanism, and what makes poses of them."""
 
     sweep: Sweep
-    strands: Strands
+    segments: Segments
     design: int
 
     def run(self, rows: Number, s: Number, sides: Number | None = None) -> Block:
-        """Strands at one driver value each, which is their low (0) or high (1) end where `sides` say so."""
-        return self.sweep.run(self.strands, rows, s[:, None], sides=None if sides is None else sides[:, None])
+        """Segments at one driver value each, which is their low (0) or high (1) end where `sides` say so."""
+        return self.sweep.run(self.segments, rows, s[:, None], sides=None if sides is None else sides[:, None])
 
     def configurations(self, rows: Number, s: Number, sides: Number | None = None) -> list[Configuration]:
-        """Each strand's configuration at one driver value each."""
+        """Each segment's configuration at one driver value each."""
         if not len(rows):
             return []
         sides = np.full(len(rows), NONE) if sides is None else sides
@@ -40,10 +101,9 @@ class Placing:
         dimensions = dimensions_at(structure, self.design, 0)
         found = []
         for i, value in enumerate(s.tolist()):
-            poses = {name: Pose(_one(p.z.c[0], i), _one(p.u.c[0], i)) for name, p in block.world.items()}
-            margins = {k: float(_column(margin, len(s))[i]) for k, margin in block.margins.items()}
             values = {**self.sweep.fixed, self.sweep.driver: value}
             ordered = {drive.name: values[drive.name] for drive in structure.mechanism.drives}
+            poses, margins = placed_at(block.world, (i, 0)), numbers_at(block.margins, (i, 0))
             found.append(Configuration(structure, ordered, poses, modes[i], margins, dimensions))
         return found
 
@@ -53,10 +113,10 @@ class Placing:
         for k, solver in enumerate(self.sweep.plan.solvers):
             if solver.modes == 0:
                 texts = self._numbers(k, solver, rows, s, sides)
-            elif k in self.strands.signs and solver.modes == 2:
-                sign = self.strands.sign(k, rows, sides[:, None])[:, 0]
+            elif k in self.segments.signs and solver.modes == 2:
+                sign = self.segments.sign(k, rows, sides[:, None])[:, 0]
                 # a second group may be at its limit there, as in a pantograph that is stretched
-                at_limit = np.abs(_column(block.margins.get(k, 1.0), len(rows))) < TOUCHING
+                at_limit = np.abs(column(block.margins.get(k, 1.0), len(rows))) < TOUCHING
                 texts = [SIGNS[int(one)] for one in np.where(at_limit & (sides != NONE), 0.0, sign)]
             else:
                 continue
@@ -67,30 +127,21 @@ class Placing:
     def _numbers(self, k: int, solver: GroupSolver, rows: Number, s: Number, sides: Number) -> list[str]:
         """The number of a group's configuration among all that are real there."""
         size = self.sweep.plan.size
-        block = self.sweep.run(self.strands, rows, s[:, None], sides=sides[:, None], upto=k)
+        block = self.sweep.run(self.segments, rows, s[:, None], sides=sides[:, None], upto=k)
         every = solver.every(block).states
         every = np.broadcast_to(every, (len(rows), 1, *every.shape[-2:]))[:, 0]
-        own = self.strands.seeds(k, rows, s[:, None])
+        own = self.segments.seeds(k, rows, s[:, None])
         gaps = np.nan_to_num(state_distance(every, own, size), nan=np.inf)
-        limit = self.strands.is_limit(k, rows, sides[:, None])[:, 0]
+        limit = self.segments.is_limit(k, rows, sides[:, None])[:, 0]
         numbers = np.argmin(gaps, axis=1) + 1 if gaps.shape[1] else np.ones(len(rows), dtype=int)
         return [SIGNS[0] if at_limit else str(n) for n, at_limit in zip(numbers.tolist(), limit, strict=True)]
 
 
-def _one(value: Number, i: int) -> Number:
-    array = np.asarray(value)
-    return constant(complex(array) if array.ndim == 0 else complex(array[min(i, len(array) - 1), 0]))
-
-
-def _column(value: Number, rows: int) -> Number:
-    return np.broadcast_to(value, (rows, 1))[:, 0]
-
-
 def gap_between(one: Configuration, block: Block, rows: int, size: float) -> Number:
-    """How far each of `rows` strands is from a configuration: parts of the size, radians; the farthest link."""
+    """How far each of `rows` segments is from a configuration: parts of the size, radians; the farthest link."""
     found = np.zeros(rows)
     for name, pose in one.poses.items():
-        z = _column(block.world[name].z.c[0] - pose.z.c[0], rows)
-        u = _column(block.world[name].u.c[0] - pose.u.c[0], rows)
+        z = column(block.world[name].z.c[0] - pose.z.c[0], rows)
+        u = column(block.world[name].u.c[0] - pose.u.c[0], rows)
         found = np.maximum(found, np.maximum(np.abs(z) / size, np.abs(u)))
     return found

@@ -1,28 +1,31 @@
-"""Strands: pieces of the curve of all configurations on which no group passes a limit position, many in arrays.
+"""Segments: pieces of the curve of all configurations on which no group passes a limit position, many in arrays.
 
-A strand is an interval of the driver's value and what each group does on it. Its ends are glued to those of other
-strands; where both leave the common end in the same direction of the driver, that end is a limit position.
+A segment is an interval of the driver's value and what each group does on it. Its ends are glued to those of other
+segments; where both leave the common end in the same direction of the driver, that end is a limit position.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from compoundkin.base.series import Number
 
-# What the end of a strand is: a limit position of a group; a change point of a group, where its modes meet and the
+# What the end of a segment is: a limit position of a group; a change point of a group, where its modes meet and the
 # motion goes on; the seam where a full turn begins again; the end of the range that was asked for; a place where a
 # link goes to infinity.
 LIMIT, CHANGE, SEAM, RANGE, AWAY = range(5)
 NONE = -1
+# A margin (a squared sine, or a length) that is below this at its least touches zero: rounding times its curvature.
+TOUCHING = 1e-12
 
 
 @dataclass(frozen=True)
-class Way:
-    """The states of a group's bodies along a strand: x, y, theta of each at `nodes`, angles from 0 to pi.
+class SegmentCurve:
+    """The states of a group's bodies along a segment: x, y, theta of each at `nodes`, angles from 0 to pi.
 
     By that angle `low` and `high` are the ends of a half circle, so that states are smooth at limit positions.
     """
@@ -51,18 +54,18 @@ class Way:
 
 
 @dataclass(frozen=True)
-class Strands:
-    """Strands as arrays over rows.
+class Segments:
+    """Segments as arrays over rows.
 
-    `low` and `high` bound the driver's value; `signs[k]` is the mode of a group with modes, `ways[k]` for each row the
-    way of a group without. Of both ends (rows, 2): `kind`, the `group` responsible, and the `partner` (row) and
+    `low` and `high` bound the driver's value; `signs[k]` is the mode of a group with modes, `curves[k]` for each row
+    the curve of a group without. Of both ends (rows, 2): `kind`, the `group` responsible, and the `partner` (row) and
     `side` it is glued to, NONE where it ends.
     """
 
     low: Number
     high: Number
     signs: Mapping[int, Number]
-    ways: Mapping[int, tuple[Way, ...]]
+    curves: Mapping[int, tuple[SegmentCurve, ...]]
     kind: Number
     group: Number
     partner: Number
@@ -99,24 +102,119 @@ class Strands:
         wide = np.broadcast_to(sides, (len(rows), np.shape(sides)[-1]))
         return (wide != NONE) & np.take_along_axis(own, np.maximum(wide, 0), axis=1)
 
-    def kept(self, good: Number) -> Strands:
+    def kept(self, good: Number) -> Segments:
         """Those rows only; ends glued to others end there."""
         rows = np.flatnonzero(good)
         new = np.full(self.rows + 1, NONE)
         new[rows] = np.arange(len(rows))
         signs = {k: sign[rows] for k, sign in self.signs.items()}
-        ways = {k: tuple(way[row] for row in rows) for k, way in self.ways.items()}
-        return Strands(self.low[rows], self.high[rows], signs, ways, self.kind[rows], self.group[rows],
+        curves = {k: tuple(curve[row] for row in rows) for k, curve in self.curves.items()}
+        return Segments(self.low[rows], self.high[rows], signs, curves, self.kind[rows], self.group[rows],
                        new[self.partner[rows]], self.side[rows])  # fmt: skip
 
     def seeds(self, k: int, rows: Number, s: Number) -> Number:
         """About the states of a group without modes, (rows, columns, 3 n)."""
-        return np.stack([self.ways[k][row].seeds(values) for row, values in zip(rows, s, strict=True)])
+        return np.stack([self.curves[k][row].seeds(values) for row, values in zip(rows, s, strict=True)])
 
 
-def base(low: float, high: float, periodic: bool) -> Strands:
-    """The strand of the drivers alone."""
+def driver_segment(low: float, high: float, periodic: bool) -> Segments:
+    """The segment of the drivers alone."""
     one = np.zeros((1, 2), dtype=int)
     kind = one + (SEAM if periodic else RANGE)
     partner = one if periodic else one + NONE
-    return Strands(np.array([low]), np.array([high]), {}, {}, kind, one + NONE, partner, np.array([[1, 0]]))
+    return Segments(np.array([low]), np.array([high]), {}, {}, kind, one + NONE, partner, np.array([[1, 0]]))
+
+
+@dataclass(frozen=True)
+class Visit:
+    """A segment as a chain passes it: its row, +1 from the low end to the high one, and how many periods are added."""
+
+    row: int
+    sense: int
+    periods: int
+
+    @property
+    def entered(self) -> int:
+        """The side at which it is entered, 0 low or 1 high."""
+        return 0 if self.sense > 0 else 1
+
+    @property
+    def left(self) -> int:
+        """The side at which it is left."""
+        return 1 - self.entered
+
+
+@dataclass(frozen=True)
+class SegmentChain:
+    """The segments of a circuit in order; `closed` where the last one leads to the first."""
+
+    visits: tuple[Visit, ...]
+    closed: bool
+    # how many periods once around
+    periods: int = 0
+
+    def branches(self) -> tuple[tuple[Visit, ...], ...]:
+        """The visits between turning points, each branch in the order of the chain."""
+        cuts = [k for k, (a, b) in enumerate(self._steps()) if a.sense != b.sense]
+        if not cuts:
+            return (self.visits,)
+        n = len(self.visits)
+        if not self.closed:
+            cuts = [-1, *cuts, n - 1]
+        bounds = zip(cuts, [*cuts[1:], cuts[0] + n] if self.closed else cuts[1:], strict=False)
+        parts = [tuple(self._visit(k) for k in range(a + 1, b + 1)) for a, b in bounds]
+        # that of the first segment comes first
+        return tuple([parts[-1], *parts[:-1]] if self.closed else parts)
+
+    def _visit(self, k: int) -> Visit:
+        """The k-th visit, counted on around the circuit."""
+        around, k = divmod(k, len(self.visits))
+        visit = self.visits[k]
+        return replace(visit, periods=visit.periods + around * self.periods)
+
+    def _steps(self) -> list[tuple[Visit, Visit]]:
+        around = [*self.visits, self.visits[0]] if self.closed else list(self.visits)
+        return list(pairwise(around))
+
+
+def chains_of(segments: Segments) -> tuple[SegmentChain, ...]:
+    """All circuits, in the order of their first segments."""
+    seen = np.zeros(segments.rows, dtype=bool)
+    found = []
+    for row in range(segments.rows):
+        if not seen[row]:
+            chain = _around(segments, row)
+            seen[[visit.row for visit in chain.visits]] = True
+            found.append(chain)
+    return tuple(found)
+
+
+def _around(segments: Segments, row: int) -> SegmentChain:
+    """The chain through a segment: forward; where that ends, backward too, and then from there."""
+    ahead, after = _walk(segments, Visit(row, 1, 0))
+    if after is not None:
+        return SegmentChain(tuple(ahead), True, after.periods)
+    back, _ = _walk(segments, Visit(row, -1, 0))
+    start = back[-1]
+    visits, _ = _walk(segments, Visit(start.row, -start.sense, 0))
+    return SegmentChain(tuple(visits), False)
+
+
+def _walk(segments: Segments, start: Visit) -> tuple[list[Visit], Visit | None]:
+    """The visits from one on, and the one with which they begin again; None where they end."""
+    visits = [start]
+    while True:
+        here = visits[-1]
+        nxt = following(segments, here)
+        if nxt is None or (nxt.row, nxt.sense) == (start.row, start.sense):
+            return visits, nxt
+        visits.append(nxt)
+
+
+def following(segments: Segments, visit: Visit) -> Visit | None:
+    """The visit after one, None where its segment ends."""
+    partner, side = int(segments.partner[visit.row, visit.left]), int(segments.side[visit.row, visit.left])
+    if partner == NONE:
+        return None
+    periods = visit.periods + (visit.sense if segments.kind[visit.row, visit.left] == SEAM else 0)
+    return Visit(partner, 1 if side == 0 else -1, periods)

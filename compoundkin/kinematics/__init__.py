@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from compoundkin.base.arrays import Vectors
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.results import LinkMotion, PairMotion, PointMotion, Vectors
+from compoundkin.kinematics.results import LinkMotion, PairMotion, PointMotion
 from compoundkin.kinematics.solution import solve
 
 __all__ = ["LinkMotion", "Motion", "PairMotion", "PointMotion", "Vectors", "solve"]

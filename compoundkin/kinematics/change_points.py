@@ -18,7 +18,6 @@ from compoundkin.base.bracketing import least
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import blocks, places
-from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.sampling import CLOSE, between
 from compoundkin.kinematics.tracking import Tracker
@@ -58,7 +57,7 @@ class _Way:
 def near_groups(tracker: Tracker) -> set[int]:
     """The groups that come near a limit position on the lead, or between the poses of a coarse motion."""
     found: set[int] = set()
-    upto = 1 + max((k for k, solver in enumerate(tracker.plan.solvers) if _may_change(solver)), default=-1)
+    upto = 1 + max((k for k, solver in enumerate(tracker.plan.solvers) if solver.modes_may_meet), default=-1)
     for way in _ways(tracker) if upto else ():
         if way.lead or way.unit < 1.0:
             for _, _, part, s, designs in way.blocks():
@@ -67,17 +66,12 @@ def near_groups(tracker: Tracker) -> set[int]:
     return found
 
 
-def _may_change(solver: GroupSolver) -> bool:
-    """Whether a group has modes that may meet."""
-    return solver.tells_margin and solver.modes > 1
-
-
 def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
     """Find the change points of the first group among `near` that has any; whether there is one.
 
     They are noted in the tracker, which changes the group's sign there.
     """
-    open_to = [k for k in sorted(near) if k not in tracker.flips and _may_change(tracker.plan.solvers[k])]
+    open_to = [k for k in sorted(near) if k not in tracker.flips and tracker.plan.solvers[k].modes_may_meet]
     if not open_to:
         return False
     found = [(way, _touching(way, tracker, open_to)) for way in _ways(tracker)]
@@ -165,10 +159,10 @@ def _touching(way: _Way, tracker: Tracker, groups: Sequence[int]) -> _Spots:
                                                            strict=True)))  # fmt: skip
     if not len(spots.groups):
         return spots
-    place, lowest_value = _minimum(way, tracker, spots)
+    place, lowest = _minimum(way, tracker, spots)
     place = place * way.unit
     snapped = np.where(np.abs(place - np.round(place)) < CLOSE, np.round(place), place)
-    return spots._replace(places=snapped).where((np.abs(lowest_value) < TOUCHING) & np.isfinite(lowest_value))
+    return spots._replace(places=snapped).where((np.abs(lowest) < TOUCHING) & np.isfinite(lowest))
 
 
 def _lowest(margin: Number) -> tuple[Number, Number]:
@@ -193,11 +187,13 @@ def _minimum(way: _Way, tracker: Tracker, spots: _Spots) -> tuple[Number, Number
     low = np.maximum(spots.places - 1.0, 0.0)
     high = np.minimum(spots.places + 1.0, way.samples.poses - 1.0)
     steepest = STEEP * np.fmax(_margins(way, tracker, spots, low), _margins(way, tracker, spots, high))
-
-    def going(found: Number, width: Number) -> Number:
-        return (found >= -TOUCHING) & (found <= steepest * width)
-
-    return least(lambda s, which: _margins(way, tracker, spots.where(which), s), low, high, STEPS, going)
+    return least(
+        lambda s, which: _margins(way, tracker, spots.where(which), s),
+        low,
+        high,
+        STEPS,
+        lambda values, widths: (values >= -TOUCHING) & (values <= steepest * widths),
+    )
 
 
 def _margins(way: _Way, tracker: Tracker, spots: _Spots, s: Number) -> Number:

@@ -1,17 +1,17 @@
-"""Configurations: one of a mechanism, where all its links are; and arrays of them, of a group's bodies."""
+"""One configuration of a mechanism: where all its links are; and how configurations are called."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import wrapped
+from compoundkin.base.arrays import Number, entry
 from compoundkin.base.display import Shows
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
 from compoundkin.structure.kinematic_structure import Structure
 
 BETWEEN = " / "
@@ -59,80 +59,35 @@ class Configuration(Shows):
 
 
 def label(structure: Structure, k: int) -> str:
-    """What group `k` is called in a configuration's name: its kind and its first link."""
+    """Return what group `k` is called in a configuration's name: its kind and its first link."""
     group = structure.groups[k]
     return f"{group.name}({group.links[0]})"
 
 
 def named(structure: Structure, modes: Mapping[int, str]) -> str:
-    """The name of a configuration: signs as RRR(coupler)+, numbers as RRR-RRR(plate) 3."""
+    """Return the name of a configuration: signs as RRR(coupler)+, numbers as RRR-RRR(plate) 3."""
     parts = (f"{label(structure, k)}{' ' if mode.isdecimal() else ''}{mode}" for k, mode in sorted(modes.items()))
     return BETWEEN.join(parts) or ONLY
 
 
-@dataclass(frozen=True)
-class Configurations:
-    """All configurations of a group: arrays (..., m) over poses and configurations, NaN where there are fewer.
-
-    `turns` and `origins` (..., m, n) are the bodies' unit orientations and origins, for a configuration that is
-    not `real` complex continuations without a picture. `count` (...) are found; `expected` is their number for
-    generic dimensions (0 unknown), `exact` whether it is known by theory or from a generic instance solved numerically.
-    """
-
-    turns: Number
-    origins: Number
-    real: Number
-    count: Number
-    expected: int
-    exact: bool
-
-    @classmethod
-    def of_bodies(cls, bodies: Sequence[Pose], real: Number, shape: tuple[int, ...]) -> Configurations:
-        """Return those of closed forms: none is missing; all arrays with the configurations as their first axis."""
-        z, u = (np.stack([np.broadcast_to(v, shape) for v in values], axis=-1) for values in (
-            [pose.z.c[0] for pose in bodies], [pose.u.c[0] for pose in bodies]))  # fmt: skip
-        turns, origins = np.moveaxis(u, 0, -2), np.moveaxis(z, 0, -2)
-        count = np.full(shape[1:], shape[0])
-        return cls(turns, origins, np.moveaxis(np.broadcast_to(real, shape), 0, -1), count, shape[0], True)
-
-    @classmethod
-    def of_states(cls, states: Number) -> Configurations:
-        """Return those that a search found: states (..., m, 3 n), x, y, theta of each body, NaN pads."""
-        theta = states[..., 2::3]
-        real = np.isfinite(states).all(axis=-1)
-        origins = states[..., 0::3] + 1j * states[..., 1::3]
-        return cls(np.cos(theta) + 1j * np.sin(theta), origins, real, real.sum(axis=-1), 0, False)
-
-    @property
-    def certified(self) -> Number:
-        """Where no configuration is missing, for as many were found as theory knows."""
-        return self.exact & (self.count == self.expected)
-
-    @property
-    def real_count(self) -> Number:
-        """The number of real configurations at every pose."""
-        return self.real.sum(axis=-1)
-
-    @property
-    def states(self) -> Number:
-        """The real configurations as states (..., most real ones, 3 n): x, y, theta of each body; NaN pads."""
-        most = int(self.real_count.max(initial=0))
-        shown = self.real[..., :most]
-        z, u = self.origins[..., :most, :], self.turns[..., :most, :]
-        states = np.stack([z.real, z.imag, np.angle(u)], axis=-1)
-        return np.where(shown[..., None], states.reshape(*shown.shape, 3 * u.shape[-1]), np.nan)
-
-    def poses(self, number: int) -> list[Pose]:
-        """Return the bodies' poses (...) in one configuration; NaN at the poses where it is not real."""
-        shown = self.real[..., number, None]
-        z = np.where(shown, self.origins[..., number, :], np.nan)
-        u = np.where(shown, self.turns[..., number, :], np.nan)
-        return [Pose.of(z[..., b], u[..., b]) for b in range(z.shape[-1])]
+def placed_at(poses: Mapping[str, Pose], at: tuple[int, ...]) -> dict[str, Pose]:
+    """Return the poses of links at one index of their arrays."""
+    return {k: Pose.of(complex(entry(p.z.c[0], at)), complex(entry(p.u.c[0], at))) for k, p in poses.items()}
 
 
-def state_distance(one: Number, other: Number, size: float) -> Number:
-    """Return how far states (..., 3 n) are from each other: parts of the size, radians; whole turns do not count."""
-    gap = one - other
-    turn = np.abs(wrapped(gap[..., 2::3]))
-    shift = np.maximum(np.abs(gap[..., 0::3]), np.abs(gap[..., 1::3])) / size
-    return np.maximum(turn, shift).max(axis=-1)
+def numbers_at(values: Mapping[Any, Number], at: tuple[int, ...]) -> dict[Any, float]:
+    """Return numbers at one index of their arrays."""
+    return {name: float(entry(value, at)) for name, value in values.items()}
+
+
+def dimensions_at(structure: Structure, design: int, pose: int) -> dict[str, dict[str, complex]]:
+    """Return the points of all links, in their frames, of one design."""
+
+    def one(value: Number) -> complex:
+        if np.ndim(value) == 0:
+            return complex(value)
+        rows = np.reshape(value, (-1, np.shape(value)[-1]))
+        return complex(rows[min(design, len(rows) - 1), min(pose, rows.shape[1] - 1)])
+
+    placed = structure.mechanism.geometry.points
+    return {link: {name: one(value) for name, value in points.items()} for link, points in placed.items()}

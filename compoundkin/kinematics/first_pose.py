@@ -62,7 +62,7 @@ def first_state(
     """
     if number is not None:
         return _numbered(solver, block, number), "number"
-    search = _Search(plan, solver, block, sketch)
+    search = _ClosedStates(plan, solver, block, sketch)
     letters = shown(plan, solver, sketch)
     designs = block.shape[0]
     best = np.full((designs, 1, search.equations.width), np.nan)
@@ -112,7 +112,7 @@ def _numbered(solver: GroupSolver, block: Block, number: int) -> Number:
     return every[number - 1]
 
 
-class _Search:
+class _ClosedStates:
     """Where a closed state is looked for; `complete` where all bodies are drawn."""
 
     def __init__(self, plan: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number]) -> None:

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.arrays import column
+from compoundkin.base.arrays import Number, column
 from compoundkin.base.bracketing import bisected
-from compoundkin.base.series import Number
-from compoundkin.kinematics import Motion
+from compoundkin.kinematics.motion import Motion
 
 # Halvings of the distance between two neighbouring poses: 2**-45 of it is far below 1e-9 of any driver value.
 HALVINGS = 45
@@ -98,9 +97,10 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[s
     inside = (good >= 0) & (good < motion.inputs.poses)
     near: Number = bad + np.where(inside, good - bad, 0.0)
 
-    def closes(s: Number) -> Number:
-        part = motion.inputs.pick(designs, s)
-        return column(motion.tracker.run(part, 0, s[:, None], designs[:, None]).failed == 0, len(designs))
+    def closes(middle: Number) -> Number:
+        part = motion.inputs.pick(designs, middle)
+        block = motion.tracker.run(part, 0, middle[:, None], designs[:, None])
+        return column(block.failed == 0, len(designs))
 
     near, _ = bisected(closes, near, bad.astype(float), HALVINGS)
     drives = motion.inputs.pick(designs, near).drives

@@ -1,4 +1,4 @@
-"""What a solution is asked for, brought into one form: designs x poses."""
+"""The numbers of a solution: brought into one form, designs x poses, and shown in the user's own."""
 
 from __future__ import annotations
 
@@ -10,19 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import rates
-from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.kinematics.times import RATES, timed
-from compoundkin.model.elements import Drive
-from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
 from compoundkin.model.pairs.contract import Ends
-
-# A full turn in steps of five degrees: what a driver of a pin does when it is not told otherwise.
-FULL_TURN = np.deg2rad(np.arange(0.0, 361.0, 5.0))
-FULL_TURN.setflags(write=False)
 
 
 @dataclass(frozen=True)
@@ -99,126 +92,50 @@ class Inputs:
     def _each(self, change: Any) -> Inputs:
         ends = self.ends
         if not self._rigid:
-            ends = {name: tuple(_map(end, change) for end in sides) for name, sides in ends.items()}
+            ends = {name: tuple(mapped(end, change) for end in sides) for name, sides in ends.items()}
         return replace(self, ends=ends, drives={k: tuple(change(v) for v in vs) for k, vs in self.drives.items()})
 
 
-def inputs(
-    plan: SolvingOrder,
-    values: Mapping[str, Any] | None,
-    speed: Any,
-    acceleration: Any,
-    jerk: Any,
-    times: Number | None = None,
-    order: int = RATES - 1,
-) -> Inputs:
-    """The inputs of a solution, in time where `times` are given (see `timing`).
+@dataclass(frozen=True)
+class PoseGrid:
+    """How a motion shows its numbers: its shape, the order it was solved to, and which poses do not close."""
 
-    Raises InvalidInput for unknown drivers or shapes that do not fit.
-    """
-    mechanism = plan.structure.mechanism
-    asked = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk}
-    _only_known(mechanism, asked)
-    given = {drive.name: _driver(plan, drive, asked, times, order) for drive in mechanism.drives}
-    shape = _shape(plan, given)
-    fitted = fit(shape)
-    return Inputs(
-        shape,
-        {k: tuple(_map(end, fitted) for end in ends) for k, ends in plan.ends.items()},
-        {k: tuple(fitted(v) for v in vs) for k, vs in given.items()},
-    )
+    shape: tuple[int, ...]
+    order: int
+    failed: Number  # (designs, poses)
 
+    def require(self, order: int) -> None:
+        """Raise InvalidInput for a derivative that was not solved for."""
+        if not 0 <= order <= self.order:
+            known = 0 <= order <= HIGHEST_ORDER
+            what = OF_POINTS[order] if known else f"derivative {order}"
+            remedy = f"solve(..., order={order})" if known else f"0 to {HIGHEST_ORDER}"
+            raise InvalidInput(Problem(what, f"the motion was solved to order {self.order}", remedy))
 
-def by_name(mechanism: Mechanism, values: Any) -> Mapping[str, Any] | None:
-    """The values of the drivers by name, those of the only one also without; raises InvalidInput."""
-    if values is None or isinstance(values, Mapping):
-        return values
-    if len(mechanism.drives) != 1:
-        raise InvalidInput(Problem("values", "there is more than one driver", "name them: {'driver': ...}"))
-    return {mechanism.drives[0].name: values}
+    def shaped(self, value: Number) -> Number:
+        """Return a value of the form (1 or designs, 1 or poses) in the motion's shape."""
+        return np.broadcast_to(value, self.failed.shape).reshape(self.shape)
 
+    def known(self, value: Number) -> Number:
+        """Return a value in the motion's shape, not a number at poses that are not assembled."""
+        shaped = self.shaped(value)
+        if not self.failed.any():
+            return shaped
+        nothing = complex(np.nan, np.nan) if np.iscomplexobj(shaped) else np.nan
+        return np.where(self.shaped(self.failed == 0), shaped, nothing)
 
-def _driver(
-    plan: SolvingOrder, drive: Drive, asked: Mapping[str, Any], times: Number | None, order: int
-) -> tuple[Number, ...]:
-    """Value, speed, acceleration and jerk of a driver; those of a law beyond the order are not asked for."""
-    value = (asked["values"] or {}).get(drive.name, drive.values)
-    if value is None:
-        value = _unsaid(plan, drive) if times is None else 0.0
-    only = len(plan.driven) == 1
-    rest = [_rate(drive, asked[key], getattr(drive, key), only) for key in ("speed", "acceleration", "jerk")]
-    given = tuple(_number(f"{drive.name}", v) for v in (value, *rest))
-    if times is None:
-        return given
-    called = {key: drive.name in what if isinstance(what, Mapping) else what is not None for key, what in asked.items()}
-    return timed(drive, given, times, called, order)
-
-
-def _unsaid(plan: SolvingOrder, drive: Drive) -> Number:
-    """The values of a driver that is given none: a full turn."""
-    if not plan.driven[drive.name].pair.free_is_angle:
-        raise InvalidInput(
-            Problem(f"drives.{drive.name}", "it has no values", f"solve(..., {{{drive.name!r}: lengths}})")
-        )
-    return FULL_TURN
-
-
-def _rate(drive: Drive, what: Any, default: Number, only: bool) -> Any:
-    if what is None:
-        return default
-    if isinstance(what, Mapping):
-        return what.get(drive.name, default)
-    if only:
-        return what
-    raise InvalidInput(
-        Problem("speed", "there are several drivers", f"give one for each by name: {{{drive.name!r}: ...}}")
-    )
-
-
-def _number(where: str, value: Any) -> Number:
-    try:
-        out = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidInput(Problem(where, f"{value!r} is not a number or an array of numbers")) from None
-    if out.size == 0 or not np.isfinite(out).all():
-        raise InvalidInput(Problem(where, "the value is empty or not finite"))
-    return float(out) if out.ndim == 0 else out
-
-
-def _only_known(mechanism: Mechanism, given: Mapping[str, Any]) -> None:
-    names = [d.name for d in mechanism.drives]
-    wrong = [
-        Problem(f"{what}.{name}", f"there is no driver {name!r}", nearest(name, names))
-        for what, table in given.items()
-        if isinstance(table, Mapping)
-        for name in table
-        if name not in names
-    ]
-    if wrong:
-        raise InvalidInput(wrong)
-
-
-def _shape(plan: SolvingOrder, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, ...]:
-    found: tuple[int, ...] = ()
-    named = [(f"drives.{k}", v) for k, vs in drives.items() for v in vs]
-    named += [(name, v) for name, ends in plan.ends.items() for end in ends for v in end if v is not None]
-    points = plan.structure.mechanism.geometry.points
-    named += [(f"links.{name}.points.{k}", v) for name, placed in points.items() for k, v in placed.items()]
-    for where, value in named:
-        if not isinstance(value, np.ndarray):
-            continue
+    def fitted(self, value: Number) -> Number:
+        """Return a value that broadcasts with the motion in the form (1 or designs, 1 or poses)."""
         try:
-            found = np.broadcast_shapes(found, np.shape(value))
+            np.broadcast_to(value, self.shape)
         except ValueError:
-            raise InvalidInput(
-                Problem(
-                    where, f"shape {np.shape(value)} does not broadcast with {found}", "the last axis is the motion"
-                )
-            ) from None
-    return found
+            what = f"shape {np.shape(value)} does not broadcast with {self.shape}"
+            raise InvalidInput(Problem("point", what, "the last axis is the motion")) from None
+        return fit(self.shape)(value)
 
 
-def _map(end: End, change: Any) -> End:
+def mapped(end: End, change: Any) -> End:
+    """Return an end with every number of it changed."""
     return End(*(None if value is None else change(value) for value in end))
 
 

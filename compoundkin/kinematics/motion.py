@@ -10,15 +10,13 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.display import ShowsPicture, way
-from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.inputs import Inputs, fit
+from compoundkin.kinematics.inputs import Inputs, PoseGrid, fit
 from compoundkin.kinematics.results import LinkMotion, Named, PairMotion, PointMotion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.table import Table, table_of
 from compoundkin.kinematics.tracking import Tracker
-from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
@@ -51,9 +49,14 @@ class Motion(ShowsPicture):
         return self.inputs.shape
 
     @cached_property
+    def grid(self) -> PoseGrid:
+        """How its numbers are shown."""
+        return PoseGrid(self.shape, self.order, self.failed)
+
+    @cached_property
     def assembled(self) -> Number:
         """Which poses are assembled, a bool array of the motion's shape."""
-        return self._shaped(self.failed == 0)
+        return self.grid.shaped(self.failed == 0)
 
     @cached_property
     def regular(self) -> Number:
@@ -77,7 +80,7 @@ class Motion(ShowsPicture):
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
         """The motion of every link by its name."""
-        return Named("link", tuple(self.mechanism.links), lambda name: LinkMotion(self, self.poses[name]))
+        return Named("link", tuple(self.mechanism.links), lambda name: LinkMotion(self.grid, self.poses[name]))
 
     @cached_property
     def pairs(self) -> Mapping[str, PairMotion]:
@@ -145,7 +148,7 @@ class Motion(ShowsPicture):
 
     def _point(self, name: str) -> PointMotion:
         link = self.mechanism.carriers[name][0]
-        return PointMotion(self, self._derivative(link, name))
+        return PointMotion(self.grid, self._derivative(link, name))
 
     def _derivative(self, link: str, name: str) -> Any:
         pose = self.poses[link]
@@ -157,39 +160,8 @@ class Motion(ShowsPicture):
         ends = self.inputs.ends[name]
         poses = tuple(self.poses[member] for member in pair.members)
         counted = all(pose.theta is not None for pose in poses)
-        return PairMotion(self, pair.coordinate(ends, poses), pair.free_is_angle, counted=counted)
+        return PairMotion(self.grid, pair.coordinate(ends, poses), pair.free_is_angle, counted=counted)
 
     def _drive(self, name: str) -> PairMotion:
         is_angle = self._plan.driven[name].pair.free_is_angle
-        return PairMotion(self, self.inputs.series(self.order)[name], is_angle, prescribed=True)
-
-    def _has(self, k: int) -> None:
-        if not 0 <= k <= self.order:
-            what = OF_POINTS[k] if 0 <= k <= HIGHEST_ORDER else f"derivative {k}"
-            remedy = f"solve(..., order={k})" if 0 <= k <= HIGHEST_ORDER else f"0 to {HIGHEST_ORDER}"
-            raise InvalidInput(Problem(what, f"the motion was solved to order {self.order}", remedy))
-
-    def _fitted(self, value: Number) -> Number:
-        """A value that broadcasts with the motion, in the form (1 or designs, 1 or poses)."""
-        try:
-            np.broadcast_to(value, self.shape)
-        except ValueError:
-            what = f"shape {np.shape(value)} does not broadcast with {self.shape}"
-            raise InvalidInput(Problem("point", what, "the last axis is the motion")) from None
-        return fit(self.shape)(value)
-
-    def _known(self, value: Number) -> Number:
-        """A value in the motion's shape, not a number at poses that are not assembled."""
-        shaped = self._shaped(value)
-        if self._complete:
-            return shaped
-        return np.where(self.assembled, shaped, complex(np.nan, np.nan) if np.iscomplexobj(shaped) else np.nan)
-
-    @cached_property
-    def _complete(self) -> bool:
-        return not self.failed.any()
-
-    def _shaped(self, value: Number) -> Number:
-        """A value of the form (1 or designs, 1 or poses) in the motion's shape."""
-        full = np.broadcast_to(value, (self.inputs.designs, self.inputs.poses))
-        return full.reshape(self.shape)
+        return PairMotion(self.grid, self.inputs.series(self.order)[name], is_angle, prescribed=True)

@@ -4,45 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import unwrapped
+from compoundkin.base.arrays import Vectors, unwrapped
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
+from compoundkin.kinematics.inputs import PoseGrid
 from compoundkin.model.geometry import vector
-
-if TYPE_CHECKING:
-    from compoundkin.kinematics.motion import Motion
-
-
-class Vectors(np.ndarray[Any, np.dtype[np.complex128]]):
-    """A complex array of planar vectors; `xy` splits it.
-
-    >>> np.array([1 + 2j]).view(Vectors).xy.tolist()
-    [[1.0, 2.0]]
-    """
-
-    @property
-    def xy(self) -> Number:
-        """The components, in a last axis of length 2."""
-        plain = np.asarray(self)
-        return np.stack([plain.real, plain.imag], axis=-1)
 
 
 class PointMotion:
     """The motion of a point: complex arrays of the motion's shape; `.xy` of each gives (..., 2)."""
 
-    def __init__(self, motion: Motion, derivative: Any) -> None:
-        self._motion = motion
+    def __init__(self, grid: PoseGrid, derivative: Any) -> None:
+        self._grid = grid
         self._derivative = derivative
 
     def derivative(self, k: int) -> Vectors:
         """The k-th time derivative of the position; raises InvalidInput beyond the order solved for."""
-        self._motion._has(k)
-        found: Vectors = self._motion._known(self._derivative(k)).astype(complex, copy=False).view(Vectors)
+        self._grid.require(k)
+        found: Vectors = self._grid.known(self._derivative(k)).astype(complex, copy=False).view(Vectors)
         return found
 
     @property
@@ -84,8 +68,8 @@ class PointMotion:
 class LinkMotion:
     """The motion of a link: its angle from the frame's x axis, and that of any of its points."""
 
-    def __init__(self, motion: Motion, pose: Pose) -> None:
-        self._motion = motion
+    def __init__(self, grid: PoseGrid, pose: Pose) -> None:
+        self._grid = grid
         self._pose = pose
 
     @cached_property
@@ -93,10 +77,10 @@ class LinkMotion:
         return self._pose.u.turning()
 
     def _rate(self, k: int) -> Number:
-        self._motion._has(k)
+        self._grid.require(k)
         if k:
-            return self._motion._known(self._turning.derivative(k - 1))
-        return self._motion._known(self._pose.angle.c[0])
+            return self._grid.known(self._turning.derivative(k - 1))
+        return self._grid.known(self._pose.angle.c[0])
 
     @cached_property
     def angle(self) -> Number:
@@ -121,21 +105,21 @@ class LinkMotion:
     @property
     def origin(self) -> PointMotion:
         """The motion of the origin of its frame."""
-        return PointMotion(self._motion, self._pose.z.derivative)
+        return PointMotion(self._grid, self._pose.z.derivative)
 
     def at(self, point: Any) -> PointMotion:
         """The motion of any point given in its frame, complex or (x, y)."""
-        p = self._motion._fitted(vector("point", point))
-        return PointMotion(self._motion, lambda k: self._pose.derivative(p, k))
+        p = self._grid.fitted(vector("point", point))
+        return PointMotion(self._grid, lambda k: self._pose.derivative(p, k))
 
 
 class PairMotion:
     """The free relative coordinate of a pair: an angle (radians, unwrapped) or a displacement, and its rates."""
 
     def __init__(
-        self, motion: Motion, coordinate: Series, is_angle: bool, prescribed: bool = False, counted: bool = False
+        self, grid: PoseGrid, coordinate: Series, is_angle: bool, prescribed: bool = False, counted: bool = False
     ) -> None:
-        self._motion = motion
+        self._grid = grid
         self._prescribed = prescribed
         self._counted = counted or prescribed
         self.coordinate = coordinate
@@ -143,9 +127,9 @@ class PairMotion:
 
     def derivative(self, k: int) -> Number:
         """The k-th time derivative; raises InvalidInput beyond the order solved for."""
-        self._motion._has(k)
+        self._grid.require(k)
         value = self.coordinate.derivative(k)
-        value = self._motion._shaped(value) if self._prescribed else self._motion._known(value)
+        value = self._grid.shaped(value) if self._prescribed else self._grid.known(value)
         return unwrapped(value) if k == 0 and self.is_angle and not self._counted else value
 
     @property

@@ -9,17 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, NotDetermined, Problem, UnassembledPoses
+from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem, UnassembledPoses
+from compoundkin.base.poses import Pose
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
 from compoundkin.kinematics.chosen_modes import read_hint, signs_of
-from compoundkin.kinematics.configuration import Configuration
-from compoundkin.kinematics.inputs import Inputs, by_name, inputs
+from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
+from compoundkin.kinematics.driver_values import by_name, inputs, times_of
+from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
 from compoundkin.kinematics.solvable import relaxed
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.kinematics.times import times_of
 from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER
 from compoundkin.model.mechanism import Mechanism
@@ -151,3 +152,32 @@ def _run(plan: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tup
 
 def _near(block: Block) -> set[int]:
     return {k for k, margin in block.margins.items() if np.any(margin < NEAR)}
+
+
+def starting_configuration(plan: SolvingOrder, values: Mapping[str, float], design: int) -> Configuration | None:
+    """The configuration in which `solve` begins at these values; None where it does not close there."""
+    given = inputs(plan, values, None, None, None)
+    try:
+        tracker = Tracker(plan, given, signs_of(plan), {})
+    except NotAssembled:
+        return None
+    block = tracker.run(tracker.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))
+    if np.broadcast_to(block.failed, block.shape)[design, 0]:
+        return None
+    return _picked(plan.structure, values, block.world, (design, 0))
+
+
+def first_configuration(motion: Motion, design: int) -> Configuration | None:
+    """The configuration of the first assembled pose of a motion, without its modes; None where it has none."""
+    known = np.flatnonzero(motion.failed[design] == 0)
+    if not known.size:
+        return None
+    at = design, int(known[0])
+    values = numbers_at({name: v[0] for name, v in motion.inputs.drives.items()}, at)
+    return _picked(motion.structure, values, motion.poses, at)
+
+
+def _picked(
+    structure: Structure, values: Mapping[str, float], poses: Mapping[str, Pose], at: tuple[int, int]
+) -> Configuration:
+    return Configuration(structure, dict(values), placed_at(poses, at), {}, {}, dimensions_at(structure, *at))

@@ -11,9 +11,9 @@ from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits
-from compoundkin.configurations.enumeration import AllConfigurations
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose, roman
@@ -166,7 +166,7 @@ def _(what: Circuits) -> Iterator[str]:
 
 
 @_parts.register
-def _(what: AllConfigurations) -> Iterator[str]:
+def _(what: Configurations) -> Iterator[str]:
     yield from sections_html([configurations_section(what)])
 
 

@@ -10,8 +10,8 @@ import pytest
 from scipy.optimize import brentq
 
 import compoundkin as ck
+from compoundkin.base.arrays import unwrapped
 from compoundkin.kinematics import Motion, Vectors, solution
-from compoundkin.kinematics.results import unwrapped
 from tests.support import KINDS_OF_DYAD, differences, home, random_sketch, well_conditioned
 
 
@@ -356,7 +356,7 @@ def test_relative_motion_in_the_pairs() -> None:
     for name, first, second in (("B", "crank", "coupler"), ("D", "frame", "rocker")):
         pair = motion.pairs[name]
         one, two = motion.links[first], motion.links[second]
-        sign = 1 if motion._plan.pairs[name].members == (first, second) else -1
+        sign = 1 if motion.tracker.plan.pairs[name].members == (first, second) else -1
         assert np.allclose(pair.rate, sign * (two.angular_velocity - one.angular_velocity), atol=1e-12)
         assert np.allclose(pair.third, sign * (two.angular_jerk - one.angular_jerk), atol=1e-10)
         assert np.allclose(np.exp(1j * pair.value), np.exp(1j * sign * (two.angle - one.angle)))

@@ -142,7 +142,7 @@ def solved_twists(motion: Motion, scale: OwnCoordinates) -> Number:
 
     Raises InvalidInput for a motion of order 0.
     """
-    motion._has(1)
+    motion.grid.require(1)
     count = motion.inputs.designs * motion.inputs.poses
     shape = (motion.inputs.designs, motion.inputs.poses)
     found = np.zeros((len(motion.mechanism.links), 3, count))

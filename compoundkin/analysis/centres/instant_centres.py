@@ -152,7 +152,7 @@ class Centres(CentreVectors, Shows):
         Raises InvalidInput for a motion of order 0.
         """
         motion = motion or self.motion
-        motion._has(1)
+        motion.grid.require(1)
         return velocity_check(self.velocities, motion)
 
     def collinearity(self) -> dict[tuple[str, str, str], Number]:

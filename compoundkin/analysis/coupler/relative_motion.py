@@ -39,7 +39,7 @@ def relative_link(motion: Motion, link: str, on: str = FRAME) -> LinkMotion:
     >>> crank.angular_velocity.tolist()
     [-2.0]
     """
-    return LinkMotion(motion, _pose(motion, link, on))
+    return LinkMotion(motion.grid, _pose(motion, link, on))
 
 
 def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> PointMotion:
@@ -194,5 +194,5 @@ def _pose(motion: Motion, link: str, on: str) -> Pose:
 
 
 def _shaped(motion: Motion, derivative: Callable[[int], Number]) -> Series:
-    point = PointMotion(motion, derivative)
+    point = PointMotion(motion.grid, derivative)
     return Series(tuple(np.asarray(point.derivative(k)) / factorial(k) for k in range(motion.order + 1)))

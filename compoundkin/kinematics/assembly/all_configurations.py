@@ -6,13 +6,14 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.poses import Pose
 from compoundkin.kinematics.assembly import elimination, homotopy, neighbours
 from compoundkin.kinematics.assembly.group_geometry import GroupGeometry, GroupGraph
 from compoundkin.kinematics.assembly.loop_closure import rotation_equations_of
 from compoundkin.kinematics.assembly.mode_count import exact_count
 from compoundkin.kinematics.assembly.neighbours import distinct
 from compoundkin.kinematics.assembly.rotation_equations import RotationEquations, conjugates, holds, polish, relative
-from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.configuration_arrays import Configurations
 
 # A solution this near to its own mirror image, its conjugate, is tried as a real one. Where it is none, two
 # complex configurations are about to meet in a real one; Newton then leaves the real numbers.
@@ -56,9 +57,9 @@ def all_configurations(geometry: GroupGeometry) -> Configurations:
     there = np.isfinite(x).all(axis=-1)
     turns, origins = loops.bodies(x)
     batch = batch_loops.batch
+    turns, origins = (v.reshape(*batch, *v.shape[1:]) for v in (turns, geometry.size * origins))
     return Configurations(
-        turns.reshape(*batch, *turns.shape[1:]),
-        geometry.size * origins.reshape(*batch, *origins.shape[1:]),
+        {body: Pose.of(origins[..., body], turns[..., body]) for body in range(geometry.n)},
         real.reshape(*batch, -1),
         there.sum(axis=-1).reshape(batch)[()],
         expected,

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Group
@@ -64,6 +64,11 @@ class GroupSolver(ABC):
         """Whether it may come to a limit position that its closed form shows."""
         return self.modes == 2 or self.tells_margin
 
+    @property
+    def modes_may_meet(self) -> bool:
+        """Whether it may pass from one mode to the other, where its margin is zero."""
+        return self.modes == 2 and self.tells_margin
+
     def margin(self, block: Block) -> Number | None:
         """Return how far it is from its limit position, negative beyond; None where it does not say."""
         return block.margins.get(self.index)
@@ -74,6 +79,6 @@ class GroupSolver(ABC):
         signs = np.array([1.0, -1.0])[: self.modes].reshape(-1, *[1] * len(block.shape))
         trial.failed = 0
         self.close(trial, signs)
-        return Configurations.of_bodies(
+        return Configurations.of_closed_form(
             [trial.world[body.links[0]] for body in self.group.bodies], trial.failed == 0, (self.modes, *block.shape)
         )

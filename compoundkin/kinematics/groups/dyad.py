@@ -16,7 +16,7 @@ import numpy as np
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.mounted_body import side_of
 from compoundkin.kinematics.limits import Root, clipped_root
@@ -29,7 +29,7 @@ from compoundkin.structure.parts import Body, Group
 COINCIDENT = 1e-13
 
 
-class Attachment(NamedTuple):
+class OuterPair(NamedTuple):
     """An outer pair: its side in the world, and its side in the frame of the group's body."""
 
     world: End
@@ -58,7 +58,7 @@ class DyadSolver(GroupSolver):
     @staticmethod
     @abstractmethod
     def assemble(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Assemble the bodies; `inner` is the inner pair's side on the first and on the second body.
 
@@ -68,7 +68,7 @@ class DyadSolver(GroupSolver):
     @staticmethod
     @abstractmethod
     def explain(
-        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
         """Say why it cannot be assembled at the flat pose index `at`; `names` are the letters of its pairs."""
 
@@ -91,13 +91,13 @@ class DyadSolver(GroupSolver):
         dyad, more = _by_lower_pairs(group, ends)
         return cls(index, group, size, dyad, more) if dyad.name == cls.name else None
 
-    def arguments(self, block: Block) -> tuple[Attachment, tuple[End, End], Attachment]:
+    def arguments(self, block: Block) -> tuple[OuterPair, tuple[End, End], OuterPair]:
         """Return what `assemble` asks for, at a block of poses."""
         found = []
         for side in self.outer:
             ends = block.ends[side.pair.name]
             world = block.world[side.other].carry(ends[1 - side.own])
-            found.append(Attachment(world, side.in_body(block)))
+            found.append(OuterPair(world, side.in_body(block)))
         one, two = (side.in_body(block) for side in self.inner)
         return found[0], (one, two), found[1]
 

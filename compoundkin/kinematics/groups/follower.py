@@ -14,7 +14,7 @@ import numpy as np
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
 from compoundkin.kinematics.groups.mounted_body import MountedBody

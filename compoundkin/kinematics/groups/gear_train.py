@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.linear import inverted
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.mounted_body import FLAT, MountedBody
 from compoundkin.model.pairs import Pair

@@ -12,7 +12,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.kinematics.assembly import all_configurations, from_group
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import Configurations, state_distance
+from compoundkin.kinematics.configuration_arrays import Configurations, state_distance
 from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations

@@ -130,8 +130,6 @@ class GroupEquations:
         kept = self._kept_poses(list(np.moveaxis(state, -1, 0)))
         return stacked(self._rows(kept, block.leading()), self.width)
 
-    # --- equations ---
-
     def _next(self, kept: Mapping[int, Pose], inverse: Inverse, block: Block, k: int) -> list[Number]:
         """The k-th coefficients of the state, from poses known to the one before."""
         trial = {j: _turned((*b.z.c, 0j), (*b.angle.c, np.zeros_like(b.angle.c[0]))) for j, b in kept.items()}

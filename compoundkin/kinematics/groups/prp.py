@@ -11,7 +11,7 @@ import numpy as np
 
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.dyad import Attachment, Closed, DyadSolver, placed_at
+from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at
 from compoundkin.kinematics.limits import Root, clipped_root
 
 # Guides nearer to parallel than this (the sine of the angle between them) fix no point: their meeting
@@ -28,7 +28,7 @@ class PRP(DyadSolver):
 
     @staticmethod
     def assemble(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Meet the two lines on which the inner pin runs."""
         (here, u), (there, v) = _line(first, inner[0]), _line(second, inner[1])
@@ -41,13 +41,13 @@ class PRP(DyadSolver):
 
     @staticmethod
     def explain(
-        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
         """The guides are parallel."""
         return f"the guides of {names[0]} and {names[2]} are parallel, so that {names[1]} is not fixed"
 
 
-def _line(attachment: Attachment, pin: End) -> tuple[Series, Series]:
+def _line(attachment: OuterPair, pin: End) -> tuple[Series, Series]:
     """A point of the line on which the inner pin runs, and the orientation of the block that carries it."""
     u = attachment.world.along * attachment.local.along.conj()
     return Pose(as_series(attachment.world.point), u).at(pin.point - attachment.local.point), u

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, as_series
-from compoundkin.kinematics.groups.dyad import Attachment, Closed, DyadSolver, placed_at
+from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at
 from compoundkin.kinematics.groups.prp import separated
 from compoundkin.kinematics.limits import Root, clipped_root
 
@@ -23,7 +23,7 @@ class RPP(DyadSolver):
 
     @staticmethod
     def assemble(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Slide the second body along its known guide until the first one's guide passes through."""
         track = second.world.along
@@ -39,7 +39,7 @@ class RPP(DyadSolver):
 
     @staticmethod
     def explain(
-        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
         """The guides are parallel."""
         return f"the guides of {names[1]} and {names[2]} are parallel, so that the position along them is not fixed"

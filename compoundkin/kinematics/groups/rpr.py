@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.composition import planar
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.dyad import Attachment, Closed, DyadSolver, element, placed_at, text
+from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, element, placed_at, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -26,7 +26,7 @@ class RPR(DyadSolver):
 
     @staticmethod
     def assemble(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Turn the guide so that the pins have their known distance across it."""
         line, across = _distances(first, inner, second)
@@ -40,7 +40,7 @@ class RPR(DyadSolver):
 
     @staticmethod
     def explain(
-        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
         """The pins are nearer to each other than their eccentricity."""
         line, across = _distances(first, inner, second)
@@ -53,7 +53,7 @@ class RPR(DyadSolver):
         )
 
 
-def _distances(first: Attachment, inner: tuple[End, End], second: Attachment) -> tuple[Series, Series]:
+def _distances(first: OuterPair, inner: tuple[End, End], second: OuterPair) -> tuple[Series, Series]:
     """The vector between the outer pins, and their distance across the guide."""
     line = as_series(second.world.point) - first.world.point
     here = as_series(first.local.point - inner[0].point) * inner[0].along.conj()

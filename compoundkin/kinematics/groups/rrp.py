@@ -12,7 +12,7 @@ import numpy as np
 
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.dyad import Attachment, Closed, DyadSolver, placed_at, text
+from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -25,7 +25,7 @@ class RRP(DyadSolver):
 
     @staticmethod
     def assemble(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Intersect the circle about the outer pin with the line on which the inner pin runs."""
         rod, start, guide, v = _line(first, inner, second)
@@ -39,7 +39,7 @@ class RRP(DyadSolver):
 
     @staticmethod
     def explain(
-        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
         """The rod does not reach the line of its other pin."""
         rod, start, guide, _ = _line(first, inner, second)
@@ -50,7 +50,7 @@ class RRP(DyadSolver):
         )
 
 
-def _line(first: Attachment, inner: tuple[End, End], second: Attachment) -> tuple[Series, Series, Series, Series]:
+def _line(first: OuterPair, inner: tuple[End, End], second: OuterPair) -> tuple[Series, Series, Series, Series]:
     """The rod in its own frame; the line of the inner pin, a point from the outer pin and a direction; the block's
     orientation.
     """

@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.composition import planar
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.dyad import COINCIDENT, Attachment, Closed, DyadSolver, element, placed_at, text
+from compoundkin.kinematics.groups.dyad import COINCIDENT, Closed, DyadSolver, OuterPair, element, placed_at, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -25,7 +25,7 @@ class RRR(DyadSolver):
 
     @staticmethod
     def assemble(
-        first: Attachment, inner: tuple[End, End], second: Attachment, sign: Number, root: Root = clipped_root
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, sign: Number, root: Root = clipped_root
     ) -> Closed:
         """Intersect the circle about each outer pin."""
         a, b, line = _sides(first, inner, second)
@@ -41,7 +41,7 @@ class RRR(DyadSolver):
 
     @staticmethod
     def explain(
-        first: Attachment, inner: tuple[End, End], second: Attachment, at: int, names: tuple[str, str, str]
+        first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
         """Too far apart or too near."""
         a, b, line = (np.abs(s.c[0]) for s in _sides(first, inner, second))
@@ -54,7 +54,7 @@ class RRR(DyadSolver):
         return f"{outer} and {other} coincide, so that the direction of {outer}{pin} is not determined"
 
 
-def _sides(first: Attachment, inner: tuple[End, End], second: Attachment) -> tuple[Series, Series, Series]:
+def _sides(first: OuterPair, inner: tuple[End, End], second: OuterPair) -> tuple[Series, Series, Series]:
     """From the outer to the inner pin on each body, and from one outer pin to the other in the world."""
     return (
         as_series(inner[0].point - first.local.point),
@@ -63,5 +63,5 @@ def _sides(first: Attachment, inner: tuple[End, End], second: Attachment) -> tup
     )
 
 
-def _point(attachment: Attachment) -> Series:
+def _point(attachment: OuterPair) -> Series:
     return as_series(attachment.world.point)

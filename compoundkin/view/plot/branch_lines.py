@@ -1,4 +1,4 @@
-"""Branches of circuits as curves: quantities at places of every strand, whose ends are limit positions themselves."""
+"""Branches of circuits as curves: quantities at places of every segment, whose ends are limit positions themselves."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.configurations.circuit import Branch, Limit
 from compoundkin.configurations.circuit_search import Circuits
-from compoundkin.configurations.enumeration import dimensions_at
 from compoundkin.configurations.segments import CHANGE, NONE
+from compoundkin.kinematics.configuration import dimensions_at
 from compoundkin.kinematics.quantities import degrees, quantity, whole_and_part
 from compoundkin.model.attributes import ALSO, order_of, vector_of
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.view.plot.plotted_rows import TURN, Plotted
 
-# Places on a strand for a turn of the driver's period: equal steps on a half circle whose diameter is the strand's
+# Places on a segment for a turn of the driver's period: equal steps on a half circle whose diameter is the segment's
 # interval, so that they lie close where curves are steep.
 PLACES = 360
 # Where the one turn begins in which angles are shown, degrees; of equally good ones the first is taken.
@@ -58,7 +58,7 @@ class _Places(_Values):
 
 @dataclass(frozen=True, eq=False)
 class Positions:
-    """All that has a position on strands: `values` of the driver (rows, places), and the poses of the links there."""
+    """All that has a position on segments: `values` of the driver (rows, places), and the poses of the links there."""
 
     found: Circuits
     values: Number
@@ -105,13 +105,13 @@ class Positions:
 
 
 def all_positions(found: Circuits) -> Positions:
-    """Every strand from end to end."""
-    strands = found.placing.strands
+    """Every segment from end to end."""
+    segments = found.placing.segments
     count = PLACES * max(1, round(found.period / FULL)) + 1
-    rows, phi = np.arange(strands.rows), np.linspace(0.0, np.pi, count)
+    rows, phi = np.arange(segments.rows), np.linspace(0.0, np.pi, count)
     sides = np.full(count, NONE)
     sides[0], sides[-1] = 0, 1
-    return _positions(found, rows, strands.at(rows, phi[None]), sides)
+    return _positions(found, rows, segments.at(rows, phi[None]), sides)
 
 
 def start_position(found: Circuits) -> Positions | None:
@@ -123,12 +123,12 @@ def start_position(found: Circuits) -> Positions | None:
 
 def _positions(found: Circuits, rows: Number, values: Number, sides: Number) -> Positions:
     with np.errstate(all="ignore"):
-        run = found.placing.sweep.run(found.placing.strands, rows, values, sides=sides)
+        run = found.placing.sweep.run(found.placing.segments, rows, values, sides=sides)
     return Positions(found, values, run.world)
 
 
 def shown(positions: Positions, name: str) -> tuple[Plotted, ...]:
-    """A quantity by its name, (strands, places), angles in degrees; a point as its coordinates.
+    """A quantity by its name, (segments, places), angles in degrees; a point as its coordinates.
 
     Raises UnknownName with the nearest name there is, InvalidInput for rates.
     """
@@ -169,7 +169,7 @@ def curve_of(positions: Positions, branch: Branch, one: Plotted) -> BranchCurve:
     y = np.concatenate([one.values[v.row][:: v.sense] for v in visits])
     ends = branch.ends if visits[0].sense > 0 else branch.ends[::-1]
     limits = tuple((k, end) for k, end in zip((0, len(x) - 1), ends, strict=True) if end is not None)
-    kinds = found.placing.strands.kind
+    kinds = found.placing.segments.kind
     count = positions.values.shape[1]
     changes = tuple(count * (i + 1) - 1 for i, v in enumerate(visits) if kinds[v.row, v.left] == CHANGE)
     driver = degrees(x) if positions.drives[found.driver].is_angle else x

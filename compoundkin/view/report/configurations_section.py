@@ -9,12 +9,12 @@ from math import prod
 import numpy as np
 
 from compoundkin.base.errors import CompoundkinError, InvalidInput
-from compoundkin.configurations.circuit import Branch, Circuit, Limit, Place
+from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit
 from compoundkin.configurations.circuit_search import Circuits, circuits
-from compoundkin.configurations.enumeration import AllConfigurations
-from compoundkin.configurations.location import first_configuration
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.quantities import degrees
+from compoundkin.kinematics.solution import first_configuration
 from compoundkin.structure import Group, Structure
 from compoundkin.view.report.digits import number
 from compoundkin.view.report.report_data import NOT_SOLVED, Alert, Cell, Column, Outcome, Paragraph, Section, TableBlock
@@ -31,13 +31,13 @@ FLOOR = 1e-9
 MISSING = "The numbers of configurations and of branches do not agree everywhere, so that a circuit may be missing."
 
 
-def configurations_report(found: AllConfigurations) -> Report:
+def configurations_report(found: Configurations) -> Report:
     """All configurations at the first driver values."""
     outcome = Outcome(True, 1, int(any(True for _ in found)), 0, 0, 0, 0)
     return Report(found.structure.mechanism.title, (configurations_section(found),), outcome, found.structure)
 
 
-def configurations_section(found: AllConfigurations) -> Section:
+def configurations_section(found: Configurations) -> Section:
     """How many configurations there are, their names, and the angles of the links that are solved."""
     ones, structure = list(found), found.structure
     links = [link for group in structure.groups for link in group.links]
@@ -46,13 +46,13 @@ def configurations_section(found: AllConfigurations) -> Section:
     rows: tuple[tuple[Cell, ...], ...] = tuple(
         (i, one.name, *(float(degrees(one.angles[link])) for link in links)) for i, one in enumerate(ones, start=1)
     )
-    at = {name: float(np.ravel(rates[0])[0]) for name, rates in found.inputs.drives.items()}
+    at = {name: float(np.ravel(value)[0]) for name, value in found.values.items()}
     angles = "The angles are those of the links from the frame's x axis."
     text = f"{_drivers(structure, at)}: {_count(found, len(ones))} {angles}"
     return Section("configurations", "Configurations", (Paragraph(text), _table(columns, rows, keys=2)))
 
 
-def _count(found: AllConfigurations, real: int) -> str:
+def _count(found: Configurations, real: int) -> str:
     """How many are real of how many, and how that is known."""
     if not found.possible:
         return f"{counted(real, 'real configuration')} found by a search, which may have missed some."
@@ -101,7 +101,7 @@ def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
     return page.circuits(), *page.limits()
 
 
-def _begun(found: Circuits, motion: Motion, design: int) -> Place | None:
+def _begun(found: Circuits, motion: Motion, design: int) -> CircuitPlace | None:
     """Where on the circuits the motion begins, in whatever modes it was solved."""
     first = first_configuration(motion, design)
     try:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.inputs import FULL_TURN
+from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import (
     ANGLE,

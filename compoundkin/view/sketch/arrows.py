@@ -54,7 +54,7 @@ def rates_of(scene: Scene, kind: str) -> dict[str, complex]:
     if scene.shown is None:
         what = "a mechanism that is shown as drawn has no motion"
         raise InvalidInput(Problem("vectors", what, "give it drivers"))
-    scene.shown._has(order)
+    scene.shown.grid.require(order)
     moving = [letter for letter, links in scene.mechanism.carriers.items() if "frame" not in links]
     found = {letter: scene.rate(letter, order) for letter in moving}
     return {letter: v for letter, v in found.items() if np.isfinite(v)}

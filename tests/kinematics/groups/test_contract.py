@@ -16,7 +16,7 @@ from compoundkin.base.series import Series, as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import DYADS, DyadSolver
 from compoundkin.kinematics.groups.bars import Member
-from compoundkin.kinematics.groups.dyad import Attachment
+from compoundkin.kinematics.groups.dyad import OuterPair
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.limits import Root, clipped_root, nearest_root
 from compoundkin.model.pairs import KINDS, Pair
@@ -35,12 +35,12 @@ class Case:
     """A batch of dyads: the sides of their pairs (moving, of bodies that change their shape)."""
 
     pairs: tuple[Pair, Pair, Pair]  # first outer, inner, second outer
-    first: Attachment
+    first: OuterPair
     inner: tuple[End, End]
-    second: Attachment
+    second: OuterPair
 
     @property
-    def arguments(self) -> tuple[Attachment, tuple[End, End], Attachment]:
+    def arguments(self) -> tuple[OuterPair, tuple[End, End], OuterPair]:
         return self.first, self.inner, self.second
 
     def residuals(self, poses: tuple[Pose, Pose]) -> list[Series]:
@@ -62,7 +62,7 @@ def random_end(rng: np.random.Generator, pair: Pair, order: int, shape: tuple[in
 def loose(kind: type[DyadSolver], rng: np.random.Generator, order: int, shape: tuple[int, ...]) -> Case:
     """Sides with nothing in common: it may or may not close."""
     pairs = tuple(sample(BY_CODE[code], str(k)) for k, code in enumerate(kind.name))
-    outer = [Attachment(random_end(rng, p, order, shape), random_end(rng, p, order, shape)) for p in pairs[::2]]
+    outer = [OuterPair(random_end(rng, p, order, shape), random_end(rng, p, order, shape)) for p in pairs[::2]]
     inner = (random_end(rng, pairs[1], order, shape), random_end(rng, pairs[1], order, shape))
     return Case(pairs, outer[0], inner, outer[1])  # type: ignore[arg-type]
 
@@ -76,7 +76,7 @@ def closable(
     attachments = []
     for pair, attachment, pose in zip(case.pairs[::2], (case.first, case.second), poses, strict=True):
         attachments.append(
-            Attachment(moved_along(rng, pair, pose.carry(attachment.local), order, shape), attachment.local)
+            OuterPair(moved_along(rng, pair, pose.carry(attachment.local), order, shape), attachment.local)
         )
     here = poses[0].carry(case.inner[0])
     there = poses[1].inverse().carry(moved_along(rng, case.pairs[1], here, order, shape))
@@ -313,9 +313,9 @@ def test_works_with_plain_numbers_as_with_arrays(kind: type[DyadSolver]) -> None
     for k in range(7):
         single = Case(
             case.pairs,
-            Attachment(*[end(e, k) for e in case.first]),
+            OuterPair(*[end(e, k) for e in case.first]),
             (end(case.inner[0], k), end(case.inner[1], k)),
-            Attachment(*[end(e, k) for e in case.second]),
+            OuterPair(*[end(e, k) for e in case.second]),
         )
         alone, its = close(kind, single, -1.0)
         assert np.isclose(its, margin[k], rtol=1e-12)
@@ -351,9 +351,9 @@ def rrr(first: float, second: float, apart: complex | np.ndarray) -> Case:
     pairs = tuple(sample(BY_CODE["R"], str(k)) for k in range(3))
     return Case(
         pairs,
-        Attachment(pin(0j), pin(0j)),
+        OuterPair(pin(0j), pin(0j)),
         (pin(first + 0j), pin(second + 0j)),
-        Attachment(pin(apart), pin(0j)),
+        OuterPair(pin(apart), pin(0j)),
     )  # type: ignore[arg-type]
 
 
@@ -361,16 +361,16 @@ def rrp(rod: float, height: complex) -> Case:
     """A rod about the origin, its other pin on a block of a guide along x at some height."""
     pairs = (sample(BY_CODE["R"], "0"), sample(BY_CODE["R"], "1"), sample(BY_CODE["P"], "2"))
     guide = End(1j * height, 1 + 0j)
-    return Case(pairs, Attachment(pin(0j), pin(0j)), (pin(rod + 0j), pin(0j)), Attachment(guide, End(0j, 1 + 0j)))
+    return Case(pairs, OuterPair(pin(0j), pin(0j)), (pin(rod + 0j), pin(0j)), OuterPair(guide, End(0j, 1 + 0j)))
 
 
 def rpr(across: float, apart: complex) -> Case:
     pairs = (sample(BY_CODE["R"], "0"), sample(BY_CODE["P"], "1"), sample(BY_CODE["R"], "2"))
     return Case(
         pairs,
-        Attachment(pin(0j), pin(0j)),
+        OuterPair(pin(0j), pin(0j)),
         (End(0j, 1 + 0j), End(1j * across, 1 + 0j)),
-        Attachment(pin(apart), pin(0j)),
+        OuterPair(pin(apart), pin(0j)),
     )
 
 
@@ -419,7 +419,7 @@ def test_parallel_guides_are_not_closed(name: str) -> None:
     case, _ = closable(kind, np.random.default_rng(4), 1, (50,))
     direction = case.second.world.along
     if directed(case.pairs[0]):
-        first = Attachment(End(case.first.world.point, direction), case.first.local)
+        first = OuterPair(End(case.first.world.point, direction), case.first.local)
         inner = case.inner
     else:
         first = case.first
@@ -484,7 +484,7 @@ def test_outer_pins_that_coincide_leave_the_direction_open() -> None:
     """A rhombus folded on itself, a guide pinned in its own block: nothing says which way the links point."""
     for kind, case in ((DYADS["RRR"], rrr(2, 2, 0j)), (DYADS["RPR"], rpr(0.0, 0j))):
         for apart in (0j, np.array([0j, 1.0 + 0j])):
-            case.second = Attachment(pin(apart), pin(0j))
+            case.second = OuterPair(pin(apart), pin(0j))
             poses, margin = close(kind, case, 1.0)
             assert np.array_equal(np.ravel(margin >= 0), np.ravel(finite(poses)))
             assert np.ravel(margin >= 0).tolist() == [False, True][: np.size(apart)]

@@ -13,7 +13,7 @@ from compoundkin.base.series import Number
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.kinematics import groups
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import Configurations
+from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups import SOLVERS, GroupSolver
 from compoundkin.kinematics.groups.general import bodies_at
 from compoundkin.kinematics.solving_order import SolvingOrder

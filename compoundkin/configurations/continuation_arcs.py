@@ -14,7 +14,7 @@ from compoundkin.base.bracketing import false_position
 from compoundkin.base.continuation import StepLengths, Taken, corrected_across, follow, tangent
 from compoundkin.base.newton import NewtonResult
 from compoundkin.base.series import Number
-from compoundkin.configurations.segment_closure import Equations
+from compoundkin.configurations.segment_closure import SegmentClosure
 
 # Newton has converged when its correction is below this; it is quadratic, so that the next would be rounding.
 CONVERGED = 1e-9
@@ -33,7 +33,7 @@ MOST_TRIALS = 40
 
 
 @dataclass
-class Arc:
+class ContinuationArc:
     """A path from a slice: its states from start to end; `turns` are the indices of turning points among them.
 
     `end` is the slice at which it arrives, None where it was lost. `changes` counts the change points passed.
@@ -45,22 +45,22 @@ class Arc:
     changes: int = 0
 
 
-class Paths:
+class ContinuationPaths:
     """Paths in strips: `slices` are the angles, `at` the slice where each begins and `ahead` +1 or -1."""
 
-    def __init__(self, equations: Equations, rows: Number, y: Number, at: Number, ahead: Number, slices: Number):
-        self.equations, self.rows, self.slices = equations, rows, slices
+    def __init__(self, closure: SegmentClosure, rows: Number, y: Number, at: Number, ahead: Number, slices: Number):
+        self.closure, self.rows, self.slices = closure, rows, slices
         self.low = np.where(ahead > 0, at, at - 1)
         self.y = np.array(y)
-        self.arcs = [Arc([start]) for start in y]
-        self.turnings: list[_Turning] = []
-        matrix = equations.at(rows, y)[1]
+        self.arcs = [ContinuationArc([start]) for start in y]
+        self.turnings: list[_TurningPoint] = []
+        matrix = closure.at(rows, y)[1]
         forward = np.zeros_like(y)
         forward[:, -1] = ahead
         self.tangent, self.side = tangent(matrix, forward)
         self.tangent *= np.where(self.tangent[:, -1] * ahead < 0, -1.0, 1.0)[:, None]
 
-    def go(self, longest: float = LONGEST) -> list[Arc]:
+    def go(self, longest: float = LONGEST) -> list[ContinuationArc]:
         """Follow all of them to the next slice."""
         lengths = StepLengths(longest, longest, SHORTEST, easy=1, most=MOST_STEPS)
         follow(self._step, np.isfinite(self.tangent).all(axis=1), lengths)
@@ -91,14 +91,14 @@ class Paths:
         return Taken(h, good, good & arriving)
 
     def _corrected(self, rows: Number, guess: Number, across: Number) -> NewtonResult:
-        return corrected_across(lambda y: self.equations.at(rows, y), guess, across, CONVERGED, CORRECTIONS)
+        return corrected_across(lambda y: self.closure.at(rows, y), guess, across, CONVERGED, CORRECTIONS)
 
     def _note_turnings(self, i: Number, good: Number, h: Number, new: Number, along: Number) -> None:
         turned = good & (along[:, -1] * self.tangent[i, -1] < 0)
         for a in np.flatnonzero(turned).tolist():
             arc, j = self.arcs[i[a]], int(i[a])
             self.turnings.append(
-                _Turning(j, len(arc.nodes), self.y[j].copy(), self.tangent[j].copy(), h[a], along[a, -1])
+                _TurningPoint(j, len(arc.nodes), self.y[j].copy(), self.tangent[j].copy(), h[a], along[a, -1])
             )
             arc.turns.append(len(arc.nodes))
             arc.nodes.append(new[a])
@@ -131,7 +131,7 @@ class Paths:
             self.arcs[one.path].nodes[one.place] = state
 
 
-class _Turning(NamedTuple):
+class _TurningPoint(NamedTuple):
     """A turning point in a step `h` along the tangent from `y`; `after` is the tangent's last component behind it."""
 
     path: int
