@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Protocol, Self
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -175,8 +175,7 @@ def _whole(motion: HasQuantities, name: str) -> Quantity:
     raise UnknownName(Problem(name, f"{owner!r} has no {word!r}", _nearest(owner, word, words)))
 
 
-@dataclass(frozen=True)
-class Owner:
+class Owner(NamedTuple):
     """A point, link, pair or driver of a motion: its name, the attributes it has, the unit of each order."""
 
     name: str

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 from types import MappingProxyType
-from typing import Literal, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -21,8 +20,7 @@ RADIANS, DEGREES = "rad", "deg"
 RAISED = {"^2": "²", "^3": "³"}
 
 
-@dataclass(frozen=True)
-class Attribute:
+class Attribute(NamedTuple):
     """What may follow a name: a word, its symbol, and how many time derivatives it takes."""
 
     word: str
