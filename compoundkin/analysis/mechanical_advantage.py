@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.analysis.coupler.relative_motion import SMALL, moving, relative_link, relative_point
 from compoundkin.base.arrays import Number, dot
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
@@ -22,8 +23,8 @@ class TorquePort:
     on: str = FRAME
 
 
-@dataclass(frozen=True, eq=False)
-class ForcePort:
+@dataclass(frozen=True, eq=False, repr=False)
+class ForcePort(PrintsShort):
     """A force at a point of `link` in a direction (radians), against `on`.
 
     The direction is in the frame of `on`, a number or an array.
@@ -39,8 +40,8 @@ class ForcePort:
 Port: TypeAlias = str | TorquePort | ForcePort
 
 
-@dataclass(frozen=True, eq=False)
-class Advantage:
+@dataclass(frozen=True, eq=False, repr=False)
+class Advantage(PrintsShort):
     """Velocity ratio and mechanical advantage at every pose; real arrays of the motion's shape.
 
     `velocity_ratio` is output rate / input rate, `advantage` its reciprocal: the output force or torque that balances a

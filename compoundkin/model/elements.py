@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.fields import Key
@@ -15,8 +16,8 @@ from compoundkin.model.laws import Law, as_law
 from compoundkin.model.pairs import Pair
 
 
-@dataclass(frozen=True, eq=False)
-class Link:
+@dataclass(frozen=True, eq=False, repr=False)
+class Link(PrintsShort):
     """A rigid link: its name and its points.
 
     `points` maps each letter to its place in the link's own frame (complex, a number or an array), or to
@@ -37,8 +38,8 @@ class Link:
         return any(p is None for p in self.points.values())
 
 
-@dataclass(frozen=True, eq=False)
-class Drive:
+@dataclass(frozen=True, eq=False, repr=False)
+class Drive(PrintsShort):
     """A driver: it prescribes the free coordinate of the pair between `link` and `on`.
 
     `values` (radians or a length, None for a full turn), `speed`, `acceleration` and `jerk` are numbers or
@@ -76,8 +77,8 @@ class Mode:
     sign: int
 
 
-@dataclass(frozen=True, eq=False)
-class Drawn:
+@dataclass(frozen=True, eq=False, repr=False)
+class Drawn(PrintsShort):
     """Points of one pose in global coordinates, drawn exactly or roughly. They choose the assembly mode."""
 
     points: Mapping[str, Number]

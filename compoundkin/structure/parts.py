@@ -9,6 +9,9 @@ from compoundkin.base.poses import Pose
 from compoundkin.model.elements import Drive
 from compoundkin.model.pairs import Pair
 
+# So many links are named where a group is printed.
+SHOWN_LINKS = 8
+
 
 @dataclass(frozen=True)
 class DrivenPair:
@@ -35,7 +38,7 @@ class Body:
     driven: tuple[DrivenPair, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Group:
     """An Assur group with its bodies, its inner pairs and its outer pairs.
 
@@ -61,6 +64,11 @@ class Group:
         own = set(self.links)
         known = [link for pair in (*self.outer, *self.inner) for link in pair.members if link not in own]
         return tuple(dict.fromkeys(known))
+
+    def __repr__(self) -> str:
+        attached = f" on {', '.join(self.uses)}" if len(self.links) <= SHOWN_LINKS else ""
+        links = ", ".join(self.links[:SHOWN_LINKS]) + (" ..." if len(self.links) > SHOWN_LINKS else "")
+        return f"Group({self.name!r}: {links}{attached})"
 
 
 @dataclass(frozen=True)

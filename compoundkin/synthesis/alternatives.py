@@ -15,12 +15,11 @@ from compoundkin.structure import Structure, decompose
 from compoundkin.structure.cycles import find
 from compoundkin.synthesis.chains import Coloured, canonical
 from compoundkin.synthesis.chains.coloured_graphs import Permutation
-from compoundkin.synthesis.chains.joints import Joints
 from compoundkin.synthesis.chains.mechanism_names import titled
 from compoundkin.synthesis.chains.structure_names import configurations_of, structure_joints
 from compoundkin.synthesis.driver_places import (
     DriverPlace,
-    Outline,
+    UncheckedMechanism,
     driver_at,
     driver_places,
     means,
@@ -39,7 +38,7 @@ DYADIC = 2
 FEW = 4
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Alternative:
     """A choice of frame and drivers, and the groups that it gives.
 
@@ -65,6 +64,11 @@ class Alternative:
     def dyadic(self) -> bool:
         """Whether it is determined and falls into dyads."""
         return not self.faults and self.class_ <= DYADIC
+
+    def __repr__(self) -> str:
+        drivers = ", ".join(map(str, self.drivers))
+        found = "; ".join(self.faults) or "groups " + ", ".join(name for name, *_ in self.groups)
+        return f"Alternative({self.title!r}: frame {self.frame}, drivers {drivers}, {found})"
 
 
 def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None = None) -> tuple[Alternative, ...]:
@@ -123,7 +127,7 @@ class _Choices:
 
     def of(self, frame: str, alike: int) -> Iterator[Alternative]:
         """Yield the choices with one frame."""
-        outline = Outline.of(self.mechanism, frame)
+        outline = UncheckedMechanism.of(self.mechanism, frame)
         names = swapped_names(frame)
         for chosen, number in self._driven(frame):
             drives = tuple(driver_at(names, self.places[k]) for k in chosen)
@@ -212,6 +216,4 @@ class _Choices:
         return _titled(self.joints, links.index(spun.get(frame, frame)), links.index(driver) if few else None)
 
 
-@cache
-def _titled(joints: Joints, frame: int, driver: int | None) -> str:
-    return titled(joints, frame, driver)
+_titled = cache(titled)

@@ -23,7 +23,7 @@ _TOWARD = " toward "
 DYAD_NAMES = tuple(DYADS)
 
 
-class Attachment(NamedTuple):
+class AttachmentPoint(NamedTuple):
     """Where something is attached. A link, there a point, and of a guide a second one. "" for new points."""
 
     link: str
@@ -130,15 +130,15 @@ class Composer(LetteredLinks):
         items += [drive(**self._driver(told, places)) for told in self._drives]
         return Mechanism(self.title, *items, drawn(**places), **words)
 
-    def _place(self, text: str) -> Attachment:
+    def _place(self, text: str) -> AttachmentPoint:
         """Return a link, or points on it. "B on crank", "E toward F on frame"."""
         if text in self.links:
-            return Attachment(text)
+            return AttachmentPoint(text)
         points, on, name = text.partition(ON)
         if not on:
             points, name = "", text
         point, _, toward = points.partition(_TOWARD)
-        return Attachment(self.link(name), point.strip(), toward.strip())
+        return AttachmentPoint(self.link(name), point.strip(), toward.strip())
 
     def _write(self, pair: _GroupPair) -> str:
         """Write a pair: its letter, or the name of the slide."""

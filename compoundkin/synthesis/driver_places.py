@@ -27,7 +27,7 @@ class DriverPlace:
         return f"{self.link} on {self.on} ({self.pair})"
 
 
-class Outline(Mechanism):
+class UncheckedMechanism(Mechanism):
     """A mechanism of which only the structure counts. It is not checked, and has no drawing."""
 
     def __init__(self, title: str, items: tuple[Item, ...]) -> None:
@@ -36,7 +36,7 @@ class Outline(Mechanism):
         self.outputs, self.time = (), None
 
     @classmethod
-    def of(cls, mechanism: Mechanism, frame: str) -> Outline:
+    def of(cls, mechanism: Mechanism, frame: str) -> UncheckedMechanism:
         """Return one with another frame, and no drivers."""
         names = swapped_names(frame)
         links = [replace(item, name=names.get(name, name), points=mechanism.geometry.points[name])
@@ -44,9 +44,9 @@ class Outline(Mechanism):
         pairs = [renamed_pair(pair, names) for pair in mechanism.written_pairs]
         return cls(mechanism.title, (*links, *pairs))
 
-    def driven(self, drives: tuple[Drive, ...]) -> Outline:
+    def driven(self, drives: tuple[Drive, ...]) -> UncheckedMechanism:
         """Return it with drivers."""
-        return Outline(self.title, (*self.items, *drives))
+        return UncheckedMechanism(self.title, (*self.items, *drives))
 
 
 def swapped_names(frame: str) -> dict[str, str]:

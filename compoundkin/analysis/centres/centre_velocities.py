@@ -12,6 +12,7 @@ from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.driver_rates import DriverRates
 from compoundkin.analysis.centres.homogeneous import OwnCoordinates, PrimaryCentres, cross, dot
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
@@ -67,8 +68,8 @@ class Velocities:
         return (1j * (w * own - (x + 1j * y)) * scale.size).reshape(self.centres.motion.shape)
 
 
-@dataclass(frozen=True)
-class VelocityCheck:
+@dataclass(frozen=True, repr=False)
+class VelocityCheck(PrintsShort):
     """Solved velocities against those from centres, relative to the fastest link.
 
     By link and by point.

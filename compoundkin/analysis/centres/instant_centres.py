@@ -20,7 +20,7 @@ from compoundkin.analysis.centres.centre_velocities import (
 )
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation_steps import DerivationStep, crossing_text
-from compoundkin.base.display import Shows
+from compoundkin.base.display import PrintsShort, Shows
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
@@ -41,8 +41,8 @@ class Status(IntEnum):
     UNDETERMINED = 4  # geometry and rates do not give it
 
 
-@dataclass(frozen=True)
-class Centre:
+@dataclass(frozen=True, repr=False)
+class Centre(PrintsShort):
     """The relative instant centre of two links. Arrays of the motion's shape, NaN where `status` is not FOUND.
 
     `homogeneous` (..., 3) is (x, y, w) in the user's length unit, a unit vector in the mechanism's own

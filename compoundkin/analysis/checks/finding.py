@@ -31,7 +31,7 @@ class Finding:
         return self.value <= self.limit
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Check(Shows):
     """All findings about a motion. `poses` of them were checked, `singular` had no rates to check."""
 
@@ -43,6 +43,11 @@ class Check(Shows):
     def passed(self) -> bool:
         """Whether every finding passed, and there was something to check."""
         return self.poses > 0 and all(finding.passed for finding in self.findings)
+
+    def __repr__(self) -> str:
+        failed = [finding.name for finding in self.findings if not finding.passed]
+        outcome = "passed" if self.passed else f"failed: {', '.join(failed) or 'nothing to check'}"
+        return f"Check({len(self.findings)} findings at {self.poses} poses, {outcome})"
 
 
 def worst(motion: Motion, name: str, limit: float, parts: dict[str, Number], counted: Number) -> Finding:

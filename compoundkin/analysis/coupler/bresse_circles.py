@@ -9,12 +9,13 @@ import numpy as np
 from compoundkin.analysis.coupler.centrodes import pole_moves
 from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, Relative, direction, relative
 from compoundkin.base.arrays import Number, cross, dot
+from compoundkin.base.display import PrintsShort
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 
 
-@dataclass(frozen=True, eq=False)
-class CanonicalFrame:
+@dataclass(frozen=True, eq=False, repr=False)
+class CanonicalFrame(PrintsShort):
     """The frame at the pole whose y axis points to the inflection pole. Arrays of the motion's shape.
 
     `origin` is the pole, `tangent` and `normal` are unit vectors (``normal = i tangent``), `diameter` is that of the
@@ -38,8 +39,8 @@ class CanonicalFrame:
         return self.origin + self.tangent * points
 
 
-@dataclass(frozen=True, eq=False)
-class BresseCircle:
+@dataclass(frozen=True, eq=False, repr=False)
+class BresseCircle(PrintsShort):
     """A circle, or a line, by a point it runs through. Arrays of the motion's shape.
 
     `through` is the pole, or a point of the line where the pole is at infinity; `direction` the unit vector from there

@@ -8,13 +8,14 @@ import numpy as np
 
 from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, UNKNOWN, Relative, direction, rate, relative
 from compoundkin.base.arrays import cross
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 
 
-@dataclass(frozen=True, eq=False)
-class Pole:
+@dataclass(frozen=True, eq=False, repr=False)
+class Pole(PrintsShort):
     """The pole (relative instant centre) of two links at every pose. Arrays of the motion's shape.
 
     `fixed`, `moving`, `world`: complex, in the frame of the observing link, of the moving link and of the mechanism.
@@ -38,8 +39,8 @@ class Pole:
         return np.stack([place.real, place.imag, weight], axis=-1)
 
 
-@dataclass(frozen=True, eq=False)
-class Centrodes:
+@dataclass(frozen=True, eq=False, repr=False)
+class Centrodes(PrintsShort):
     """The two curves a pole runs along, and how fast. The moving centrode rolls on the fixed one.
 
     `fixed` is the locus of the pole in the observing link's frame, `moving` that in the moving link's frame, pose by

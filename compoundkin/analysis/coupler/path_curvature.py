@@ -20,6 +20,7 @@ from compoundkin.analysis.coupler.relative_motion import (
     relative_point,
 )
 from compoundkin.base.arrays import Number, cross, dot
+from compoundkin.base.display import PrintsShort
 from compoundkin.kinematics import Motion
 from compoundkin.model.elements import FRAME
 
@@ -28,8 +29,8 @@ from compoundkin.model.elements import FRAME
 COINCIDENT = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class PathCurvature:
+@dataclass(frozen=True, eq=False, repr=False)
+class PathCurvature(PrintsShort):
     """The curvature of a point's path at every pose, in the observing link's frame. Arrays of the motion's shape.
 
     `curvature` (1/length) is positive where the path bends to the left of the point's velocity; `radius` is
@@ -123,9 +124,8 @@ def curvature_rate(motion: Motion, link: str, point: Any, on: str = FRAME) -> Nu
     path = relative_point(motion, link, point, on)
     v, a, j = (np.asarray(path.derivative(k)) for k in (1, 2, 3))
     speed = np.abs(v)
-    along = cross(v, j) / speed**4 - 3.0 * cross(v, a) * dot(v, a) / speed**6
     known = path_curvature(motion, link, point, on)
-    return seen.masked(along, known.defined & ~known.cusp)
+    return seen.masked(cross(v, j) / speed**4 - 3.0 * cross(v, a) * dot(v, a) / speed**6, known.defined & ~known.cusp)
 
 
 def _length(motion: Motion, p: Number) -> Number:
@@ -149,8 +149,8 @@ def _path(seen: Relative, x: Number, left: Number, curvature: Number, resting: N
     return PathCurvature(x, centre, radius, curvature, normal, inflection, cusp, defined)
 
 
-@dataclass(frozen=True, eq=False)
-class StationaryCurvature:
+@dataclass(frozen=True, eq=False, repr=False)
+class StationaryCurvature(PrintsShort):
     """The points whose paths keep their curvature for a moment, at every pose. Arrays of the motion's shape.
 
     In the canonical frame `frame` at polar coordinates (r, psi) the cubic is ``1/r = inverse_m / sin psi + inverse_n /

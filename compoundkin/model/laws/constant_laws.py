@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
@@ -77,8 +78,8 @@ def hold_numbers(law: Any, *names: str) -> None:
         object.__setattr__(law, name, as_number(held))
 
 
-@dataclass(frozen=True, eq=False)
-class ConstantSpeed(Compared):
+@dataclass(frozen=True, eq=False, repr=False)
+class ConstantSpeed(PrintsShort, Compared):
     """The coordinate grows at a constant speed (rad/s or length/s).
 
     From `start` at time 0.
@@ -106,8 +107,8 @@ class ConstantSpeed(Compared):
         return taylor((self.start, self.speed), t, order)
 
 
-@dataclass(frozen=True, eq=False)
-class ConstantAcceleration(Compared):
+@dataclass(frozen=True, eq=False, repr=False)
+class ConstantAcceleration(PrintsShort, Compared):
     """The coordinate grows at a constant acceleration (rad/s^2 or length/s^2).
 
     From `start` at `speed` at time 0.

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
@@ -18,8 +19,8 @@ SLACK = 1e-9
 DEGREES = (3, 5)
 
 
-@dataclass(frozen=True, eq=False)
-class TimeTable(Compared):
+@dataclass(frozen=True, eq=False, repr=False)
+class TimeTable(PrintsShort, Compared):
     """A spline through values at times: quintic, with continuous jerk, or cubic (`degree` 3). Ends not-a-knot.
 
     With `repeat` it is periodic and goes on after the table's end from the value reached. A table too short for

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.curves import Analytic, Curve, Function, Spline
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.model.fields import Key
 from compoundkin.model.geometry import number_of, place_of
@@ -55,8 +56,8 @@ def disc(radius: float, middle: Any = 0j) -> DiscProfile:
     return DiscProfile(number_of(radius, "profile.radius"), place_of(middle, "profile.middle"))
 
 
-@dataclass(frozen=True)
-class PointsProfile(Profile):
+@dataclass(frozen=True, repr=False)
+class PointsProfile(PrintsShort, Profile):
     """A smooth curve through given points, closed or open."""
 
     points: tuple[complex, ...]

@@ -39,7 +39,7 @@ def canonical(graph: Coloured) -> Canonical:
     ((0, 2), (1,))
     """
     cells = [bits_of(members) for _, members in _by_colour(graph.colours)]
-    search = _Search(graph.masks)
+    search = _CanonicalSearch(graph.masks)
     search.visit(refined(graph.masks, cells, cells), (), ())
     code = f"{_colour_text(graph.colours)}:{search.best.adjacency:x}"
     return Canonical(code, search.best.adjacency, search.best.order, tuple(search.generators), search.symmetries())
@@ -59,7 +59,7 @@ class _Leaf:
 
 
 @dataclass
-class _Search:
+class _CanonicalSearch:
     """The tree of orderings. The first leaf, the best one so far, and the symmetries found between leaves."""
 
     masks: Sequence[int]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import networkx as nx
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Chain:
     """A chain: how many links, and between which two of them each pair is.
 
@@ -38,6 +38,9 @@ class Chain:
 
     links: int
     pairs: tuple[tuple[int, int], ...]
+
+    def __repr__(self) -> str:
+        return f"Chain({self.links} links, {len(self.pairs)} pairs, mobility {self.mobility}, {self.graph6!r})"
 
     @classmethod
     def of(cls, links: int, pairs: Iterable[tuple[int, int]]) -> Chain:

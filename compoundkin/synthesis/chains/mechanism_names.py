@@ -20,7 +20,7 @@ _MANY = 4
 MOST_COMPARED = 120
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ChainName:
     """What is known of a mechanism from its graph alone.
 
@@ -54,6 +54,9 @@ class ChainName:
 
     def __str__(self) -> str:
         return self.title
+
+    def __repr__(self) -> str:
+        return f"ChainName({self.title!r}: {self.assortment}, mobility {self.mobility})"
 
 
 def named(joints: Joints, frame: str | None = None, driver: str | Iterable[str] | None = None) -> ChainName:
