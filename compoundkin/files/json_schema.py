@@ -10,7 +10,7 @@ from typing import Any
 from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
 from compoundkin.files.atomic import write_atomically
-from compoundkin.files.kind_tables import KIND, PROGRAM, SEGMENT
+from compoundkin.files.document import KIND, PROGRAM, SEGMENT
 from compoundkin.model.elements import FRAME
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import WRITTEN as LAWS

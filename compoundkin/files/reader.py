@@ -8,7 +8,7 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.files import document as doc
-from compoundkin.files.kind_tables import TAGGED
+from compoundkin.files.document import TAGGED
 from compoundkin.files.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
 from compoundkin.files.single_values import bad, described, single, wrong
 from compoundkin.files.written_quantities import rate, values

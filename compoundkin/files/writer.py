@@ -9,7 +9,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
-from compoundkin.files.kind_tables import DWELL, KIND, PROGRAM, SEGMENT
+from compoundkin.files.document import DWELL, KIND, PROGRAM, SEGMENT
 from compoundkin.files.reader import default_name
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.elements import Expectation, Link

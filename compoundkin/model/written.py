@@ -6,7 +6,7 @@ from functools import cached_property
 
 from compoundkin.base.series import Number
 from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
-from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs import Pair, pairs_among
 
 
 class Written:
@@ -29,7 +29,7 @@ class Written:
     def written_pairs(self) -> tuple[Pair, ...]:
         """The pairs that are written out: all but the pins."""
         letters = {name: item.letters for name, item in self.links.items()}
-        return tuple(item.completed(letters) for item in self.items if isinstance(item, Pair))
+        return tuple(pair.completed(letters) for pair in pairs_among(self.items))
 
     @cached_property
     def drives(self) -> tuple[Drive, ...]:

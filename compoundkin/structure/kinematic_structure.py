@@ -10,8 +10,7 @@ from compoundkin.base.display import ShowsPicture
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.graph import Loop, independent_loops, kinematic_graph
-from compoundkin.structure.mobility import Mobility
-from compoundkin.structure.parts import Body, Fault, Group, Passive, Relaxation
+from compoundkin.structure.parts import Body, Fault, Group, Mobility, Passive, Relaxation
 
 if TYPE_CHECKING:
     import networkx as nx

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from heapq import heapify, heappop, heappush
+from itertools import count
 
 
 def strong_components(successors: Sequence[Sequence[int]]) -> list[list[int]]:
@@ -14,20 +15,19 @@ def strong_components(successors: Sequence[Sequence[int]]) -> list[list[int]]:
     >>> strong_components([[1], [0], [1]])
     [[0, 1], [2]]
     """
-    count = len(successors)
-    index, low = [0] * count, [0] * count
-    position = [0] * count
-    on_stack = bytearray(count)
+    size = len(successors)
+    index, low = [0] * size, [0] * size
+    position = [0] * size
+    on_stack = bytearray(size)
     stack: list[int] = []
     components: list[list[int]] = []
-    clock = 0
-    for root in range(count):
+    clock = count(1)
+    for root in range(size):
         path = [] if index[root] else [root]
         while path:
             node = path[-1]
             if not index[node]:
-                clock += 1
-                index[node] = low[node] = clock
+                index[node] = low[node] = next(clock)
                 stack.append(node)
                 on_stack[node] = 1
             if position[node] < len(successors[node]):

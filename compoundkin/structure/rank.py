@@ -13,7 +13,8 @@ import numpy as np
 from compoundkin.base.poses import FIXED
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.composites import GROUND
-from compoundkin.structure.system import LINK_FREEDOMS, Constraint, System
+from compoundkin.structure.parts import LINK_FREEDOMS
+from compoundkin.structure.system import Constraint, System
 
 # Random Jacobians of some hundred columns keep their least singular value far above this fraction of the
 # largest, and rounding keeps that of a deficient one far below.

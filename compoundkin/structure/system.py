@@ -14,9 +14,8 @@ from functools import cached_property
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.composites import GROUND, Composites, pin_at
-from compoundkin.structure.parts import Dropped
+from compoundkin.structure.parts import LINK_FREEDOMS, Dropped
 
-LINK_FREEDOMS = 3
 POINT_FREEDOMS = 2
 
 

@@ -179,7 +179,6 @@ def random_mechanism(
 ) -> Mechanism:
     """Return a crank with so many random groups, the same for the same seed.
 
-    The same for the same seed.
     A share `multiple` of outer pins are put on pins that there are already. Links of group k are "k-0", "k-1", ...
     It assembles as drawn, where the crank stays; it may not far from there.
 

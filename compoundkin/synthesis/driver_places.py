@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 
-from compoundkin.model.elements import FRAME, Drive, Item, Link
+from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.synthesis.chains.joints import Joints
@@ -99,7 +99,7 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
         return replace(item, name=names.get(item.name, item.name))
     if isinstance(item, Drive):
         return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
-    return renamed_pair(item, names) if isinstance(item, Pair) else item
+    return item if isinstance(item, Mode | Drawn | Expectation) else renamed_pair(item, names)
 
 
 def renamed_pair(pair: Pair, names: Mapping[str, str]) -> Pair:

@@ -66,8 +66,8 @@ class Unchecked(Mechanism):
 @settings(max_examples=200, deadline=None)
 @given(made)
 def test_a_made_profile_is_read_as_it_was_written(item: Synthesised) -> None:
-    from compoundkin.files.kind_tables import TAGGED
-    from compoundkin.files.kind_tables import profile as read_profile
+    from compoundkin.files.document import TAGGED
+    from compoundkin.files.document import profile as read_profile
     from compoundkin.files.recovery import Recovery
 
     whole = document(Unchecked(link("frame", A=0), cam("follower", on="cam", at="P", profile=item)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from compoundkin.model.pairs.arc import ArcSlot, arc
 from compoundkin.model.pairs.belt import Belt, belt
 from compoundkin.model.pairs.cam import Cam, cam
@@ -24,6 +26,12 @@ KINDS: tuple[type[Pair], ...] = (
 # The kinds that a mechanism writes out, by their table in a file; pins follow from shared letters.
 WRITTEN: dict[str, type[Pair]] = {kind.table: kind for kind in KINDS if kind.table}
 
+
+def pairs_among(items: Iterable[object]) -> tuple[Pair, ...]:
+    """Return the pairs among the words of a mechanism, as written."""
+    return tuple(item for item in items if isinstance(item, Pair))
+
+
 __all__ = [
     "KINDS",
     "WRITTEN",
@@ -44,6 +52,7 @@ __all__ = [
     "cam",
     "face",
     "gear",
+    "pairs_among",
     "rack",
     "roll",
     "roll_around",

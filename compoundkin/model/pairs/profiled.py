@@ -12,7 +12,7 @@ from compoundkin.base.curves import Curve
 from compoundkin.base.curves.samples import spans
 from compoundkin.base.series import Number
 from compoundkin.model.pairs.contact import Contact
-from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.contract import Ends, Pair, Poses
 from compoundkin.model.profiles import Profile
 
 # A roller that cuts into the profile elsewhere by this part of the profile's size would touch there first; less is
@@ -108,3 +108,8 @@ class Profiled(Contact):
         middle = curve.at(s).c[0] + curve.normal(s).c[0] * self.outward * self.roller
         nearer = np.abs(middle - curve.at(curve.foot(middle).c[0]).c[0])
         return CUTS * curve.size - (self.roller - nearer)
+
+
+def profiled(pair: Pair) -> Profiled | None:
+    """Return a pair as one with a profile, or None."""
+    return pair if isinstance(pair, Profiled) else None
