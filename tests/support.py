@@ -15,6 +15,7 @@ import numpy as np
 import compoundkin as ck
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series
+from compoundkin.model.fields import point_fields
 from compoundkin.model.pairs import Pair
 
 REFERENCE = Path(__file__).parent / "reference"
@@ -58,9 +59,11 @@ def largest(values: Iterable[Any]) -> float:
 
 
 def sample(kind: type[Pair], tag: str = "") -> Pair:
-    """A pair of a kind, every field that must be given holding its own name and a tag; profiles an oval."""
-    given = [f for f in fields(kind) if f.default is MISSING and f.default_factory is MISSING]  # type: ignore[arg-type]
-    return kind(*[OVAL if f.name == "profile" else f.name + tag for f in given])
+    """A pair of a kind, every name that it needs being that of its field and a tag; profiles an oval."""
+    numbers = {"profile": OVAL, "radius": 1.0, "circle": 2.0}
+    given = [f.name for f in fields(kind) if f.default is MISSING]
+    names = [*given, "name", *(name for name in point_fields(kind) if name != "toward")]
+    return kind(**{name: numbers.get(name, name + tag) for name in names})
 
 
 # Flat enough for its centres of curvature to keep away from the random points of most tests.

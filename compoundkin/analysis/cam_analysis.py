@@ -14,7 +14,7 @@ from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.model.pairs.profiled import Profiled, profiled
+from compoundkin.model.pairs.profiled import Profiled, as_profiled
 from compoundkin.model.profiles import Synthesised
 
 # Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and
@@ -177,14 +177,14 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
 
 def cam_pairs(motion: Motion) -> tuple[str, ...]:
     """Return the names of the pairs that can be analysed, in order."""
-    return tuple(pair.name for pair in motion.mechanism.written_pairs if profiled(pair))
+    return tuple(pair.name for pair in motion.mechanism.written_pairs if as_profiled(pair))
 
 
 def _pair_of(motion: Motion, name: str) -> Profiled:
     known = {pair.name: pair for pair in motion.structure.pairs}
     if name not in known:
         raise UnknownName(Problem(str(name), "there is no such pair", nearest(str(name), list(cam_pairs(motion)))))
-    pair = profiled(known[name])
+    pair = as_profiled(known[name])
     if pair is None:
         raise InvalidInput(Problem(name, f"a {known[name].title} has no profile", nearest("", list(cam_pairs(motion)))))
     if motion.order < 1:

@@ -20,7 +20,7 @@ from compoundkin.model.attributes import RATES
 from compoundkin.model.elements import Drive, Item, Link, drawn, drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair, slide
-from compoundkin.model.pairs.contract import Osculation
+from compoundkin.model.pairs.optional_answers import Osculation, osculation
 
 # A centre of curvature farther away than this many times the mechanism's size belongs to a straight profile.
 STRAIGHT = 1e8
@@ -113,10 +113,10 @@ class _Builder:
     def _pair(self, pair: Pair) -> Iterator[Item]:
         poses = tuple(self.poses[name] for name in pair.members)
         ends = self.inputs.ends[pair.name]
-        found = pair.osculation(ends, poses)
+        found = osculation(pair, ends, poses)
         if found is not None:
             yield from self._replaced(pair, _plain(found, self.motion.size))
-        elif ends[0].direction is not None and ends[1].direction is not None:
+        elif pair.is_simple and not pair.free_is_angle:
             on, link = pair.members
             start, block = (self._letter(*side, pair.name) for side in zip(pair.members, ends, strict=True))
             angle, turn = _angle(ends[0]), -_angle(ends[1])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import MISSING, fields, replace
 from typing import Any
 
 from compoundkin.base.errors import InvalidMechanism, Problem
@@ -133,10 +132,7 @@ def _pair(kind: type[Pair], raw: Any, where: str, log: Recovery) -> Pair:
     table = log.table(raw, kind.keys, where)
     if any(map(stands_in, table.values())):
         log.doubts += JOINED
-    # what a table leaves out is the field's own default, or empty for the pair to complete
-    blank = {field.name: "" for field in fields(kind) if field.default is MISSING}  # type: ignore[arg-type]
-    pair = kind(**{**blank, **table})
-    return pair if pair.name else replace(pair, name=default_name(pair))  # type: ignore[type-var]
+    return kind(**table)
 
 
 def _drive(base: Mechanism | None, raw: Any, where: str, log: Recovery) -> Drive:

@@ -17,7 +17,7 @@ from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.mechanism import Mechanism, same
-from compoundkin.model.pairs import WRITTEN, Pair
+from compoundkin.model.pairs import WRITTEN
 
 
 def document(mechanism: Mechanism) -> dict[str, Any]:
@@ -31,8 +31,8 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
     """
     out: dict[str, Any] = {"format": doc.FORMATS[-1], **_table(mechanism, doc.HEAD)}
     out["links"] = {name: _link(item) for name, item in mechanism.links.items()}
-    for name, kind in WRITTEN.items():
-        out[name] = [_pair(item) for item in mechanism.items if isinstance(item, kind)]
+    for name in WRITTEN:
+        out[name] = [_pair(item) for item in mechanism.items if getattr(item, "table", "") == name]
     out["drives"] = [_drive(mechanism, i) for i in range(len(mechanism.drives))]
     out[doc.DRAWN.name] = _points(mechanism.sketch)
     out["modes"] = [_table(item, doc.MODE) for item in mechanism.modes]
@@ -65,7 +65,7 @@ def _points(points: Mapping[str, Number]) -> dict[str, Any]:
     return {letter: exact_numbers.point(p) for letter, p in points.items()}
 
 
-def _pair(item: Pair) -> dict[str, Any]:
+def _pair(item: Any) -> dict[str, Any]:
     for key in item.keys:
         if key.kind == "profile" and not getattr(item, key.name).keys:
             what, remedy = "a Python function cannot be written to a file", "write a profile of its points instead"

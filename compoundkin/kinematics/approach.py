@@ -13,6 +13,7 @@ from compoundkin.base.series import Number, constant
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.sampling import CLOSE, spacings
 from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.pairs.optional_answers import as_turn_counting
 
 
 def approach(
@@ -70,10 +71,11 @@ def _counted_on(plan: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], t
     ends = dict(way.ends)
     for name, pair in plan.pairs.items():
         ahead = tuple(turns.get(member, 0.0) for member in pair.members)
-        if pair.counts_turns and name in rounds:
-            ends[name] = pair.with_driver_turns(ends[name], geometry, rounds[name])
-        elif pair.counts_turns and any(np.any(turn != 0.0) for turn in ahead):
-            ends[name] = pair.with_link_turns(ends[name], geometry, ahead)
+        counting = as_turn_counting(pair)
+        if counting and name in rounds:
+            ends[name] = counting.with_driver_turns(ends[name], geometry, rounds[name])
+        elif counting and any(np.any(turn != 0.0) for turn in ahead):
+            ends[name] = counting.with_link_turns(ends[name], geometry, ahead)
     return replace(way, ends=ends)
 
 

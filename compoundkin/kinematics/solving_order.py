@@ -15,6 +15,7 @@ from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.limits import CLIPPED, LimitRule
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.optional_answers import as_turn_counting
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import Body, DrivenPair
 
@@ -42,7 +43,7 @@ class SolvingOrder:
     @cached_property
     def turning(self) -> frozenset[str]:
         """The links whose angles some pair asks for with full turns, and those from which such angles count."""
-        asked = {name for pair in self.pairs.values() if pair.counts_turns for name in pair.members}
+        asked = {name for pair in self.pairs.values() if as_turn_counting(pair) for name in pair.members}
         return frozenset(asked.union(*(solver.counted_from for solver in self.solvers)))
 
     @cached_property

@@ -1,9 +1,17 @@
-"""The keys a mechanism file may hold, declared beside what they describe; readers, writers and the schema follow."""
+"""The keys a mechanism file may hold, declared beside what they describe; readers, writers and the schema follow.
+
+A kind of pair declares each of its fields once: as a field of a dataclass, with `value_key`, `link_key` or `point_key`
+as its metadata. The argument of its word, the key in files, the schema, the text on it and the checks of names follow.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Literal
+import inspect
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import MISSING, Field, dataclass, fields
+from typing import Any, Literal, ParamSpec, TypeVar
+
+from compoundkin.base.errors import Problem, nearest
 
 # What a value is: how a file writes it and how Python holds it.
 #   name     text                                         str
@@ -54,3 +62,131 @@ class Key:
     doc: str
     required: bool = False
     default: Any = None
+
+
+def value_key(kind: Kind, doc: str) -> dict[str, Any]:
+    """Return the metadata of a field that is a key in files."""
+    return {"kind": kind, "doc": doc}
+
+
+def link_key(doc: str) -> dict[str, Any]:
+    """Return the metadata of a field that names a link."""
+    return {"kind": "name", "doc": doc, "is_link": True}
+
+
+def point_key(link: str, doc: str) -> dict[str, Any]:
+    """Return the metadata of a field that names a point of the link that the field `link` names.
+
+    Where the field may be empty, the only point of the link is meant.
+    """
+    return {"kind": "name", "doc": doc, "link": link}
+
+
+def keys_of(kind: type[Any]) -> tuple[Key, ...]:
+    """Return the keys in files of a kind, by its fields.
+
+    >>> from compoundkin.model.pairs.slot import Slot
+    >>> [key.name for key in keys_of(Slot) if key.required]
+    ['link', 'on', 'through']
+    """
+    return tuple(_key(kind, field) for field in fields(kind) if "kind" in field.metadata)
+
+
+def _key(kind: type[Any], field: Field[Any]) -> Key:
+    doc = field.metadata["doc"].format(called="/".join(link_fields(kind)[:2]).upper())
+    required = field.default is MISSING
+    return Key(field.name, field.metadata["kind"], doc, required, None if required else field.default)
+
+
+class DeclaredKeys:
+    """The keys of a kind as an attribute of its class."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[Key, ...]] = {}
+
+    def __get__(self, item: object, kind: type[Any]) -> tuple[Key, ...]:
+        name = f"{kind.__module__}.{kind.__qualname__}"
+        if name not in self._known:
+            self._known[name] = keys_of(kind)
+        return self._known[name]
+
+
+def link_fields(kind: type[Any]) -> tuple[str, ...]:
+    """Return the fields that name links."""
+    return tuple(field.name for field in fields(kind) if "is_link" in field.metadata)
+
+
+def point_fields(kind: type[Any]) -> Mapping[str, str]:
+    """Return the fields that name points, with those that name their links; first those that may be empty."""
+    points = [field for field in fields(kind) if "link" in field.metadata]
+    return {field.name: field.metadata["link"] for field in sorted(points, key=lambda field: field.default != "")}
+
+
+@dataclass(frozen=True)
+class NameWording:
+    """How a kind says what is wrong with its names."""
+
+    verb: str = "run"
+    two_links: str = "name two links"
+    point: str = "the one that is meant"
+
+
+def name_problems(
+    item: Any, links: Mapping[str, tuple[str, ...]], where: str, wording: NameWording
+) -> Iterator[Problem]:
+    """Find links that there are not, one link twice, and points that their link does not have."""
+    members = {field: getattr(item, field) for field in link_fields(type(item))}
+    missing = [(field, name) for field, name in members.items() if name not in links]
+    for field, name in missing:
+        yield Problem(f"{where}.{field}", f"there is no link {name!r}", nearest(name, list(links)))
+    if missing:
+        return
+    if len(set(members.values())) < len(members):
+        field, name = list(members.items())[-1]
+        yield Problem(f"{where}.{field}", f"{name!r} cannot {wording.verb} on itself", wording.two_links)
+    for field, link in point_fields(type(item)).items():
+        letter, name = getattr(item, field), members[link]
+        if letter == "":
+            choice = f"name {wording.point}: {', '.join(links[name])}"
+            yield Problem(f"{where}.{field}", f"link {name!r} has several points", choice)
+        elif letter is not None and letter not in links[name]:
+            remedy = nearest(letter, list(links[name]))
+            yield Problem(f"{where}.{field}", f"link {name!r} has no point {letter!r}", remedy)
+
+
+def only_points(item: Any, links: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
+    """Return the points that are left to be understood: the only ones of their links."""
+    found = {}
+    for field, link in point_fields(type(item)).items():
+        points = links.get(getattr(item, link), ())
+        if getattr(item, field) == "" and len(points) == 1:
+            found[field] = points[0]
+    return found
+
+
+P = ParamSpec("P")
+Made = TypeVar("Made")
+
+
+def word(name: str, kind: Callable[P, Made]) -> Callable[P, Made]:
+    """Return the function by which users write a kind: its fields are the arguments, their sentences the text.
+
+    >>> from compoundkin.model.pairs.slot import Slot
+    >>> word("slot", Slot)("crank", on="arm", at="B", through="C").name
+    'crank/arm'
+    """
+
+    def made(*args: P.args, **kwargs: P.kwargs) -> Made:
+        return kind(*args, **kwargs)
+
+    assert isinstance(kind, type)
+    text = inspect.cleandoc(kind.__doc__ or "").partition("\n\n>>>")
+    arguments = "\n".join(f"* `{key.name}`: {key.doc}{_UNITS.get(key.kind, '')}" for key in keys_of(kind))
+    made.__doc__ = f"{text[0]}\n\n{arguments}{''.join(text[1:])}"
+    made.__name__, made.__qualname__, made.__module__ = name, name, kind.__module__
+    made.__signature__ = inspect.signature(kind).replace(return_annotation=kind.__name__)  # type: ignore[attr-defined]
+    return made
+
+
+# What a sentence on a field leaves out for those who write Python.
+_UNITS: Mapping[Kind, str] = {"angle": " In radians; a number or an array."}

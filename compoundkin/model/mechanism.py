@@ -15,6 +15,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Link, Mode
 from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
+from compoundkin.model.pairs.profiled import as_profiled
 from compoundkin.model.validation import problems_of
 from compoundkin.model.written import Written
 
@@ -92,7 +93,7 @@ class Mechanism(Written, ShowsPicture):
     @property
     def _profiles(self) -> float:
         """The size of the largest profile."""
-        return max((pair.extent for pair in self.written_pairs), default=0.0)
+        return max((own.extent for pair in self.written_pairs if (own := as_profiled(pair))), default=0.0)
 
     def replace(self, *items: Item, **changes: Any) -> Mechanism:
         """Return a copy with items in the place of those of their names.

@@ -7,6 +7,7 @@ from functools import cached_property
 from compoundkin.base.series import Number
 from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
 from compoundkin.model.pairs import Pair, pairs_among
+from compoundkin.model.pairs.optional_answers import as_drivable
 
 
 class Written:
@@ -102,5 +103,5 @@ class Written:
         """Return the names of the pairs that a drive can mean."""
         pins = self.pins_between(drive.link, drive.on)
         between = self.pairs_between.get(frozenset((drive.link, drive.on)), ())
-        others = [pair.name for pair in between if pair.is_drivable]
+        others = [pair.name for pair in between if as_drivable(pair)]
         return [name for name in [*pins, *others] if drive.pair in ("", name)]

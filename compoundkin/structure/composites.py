@@ -10,6 +10,7 @@ from functools import cached_property
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair, Revolute
+from compoundkin.model.pairs.optional_answers import Drivable, as_drivable
 from compoundkin.structure.cycles import find
 from compoundkin.structure.parts import Body, DrivenPair, Passive
 
@@ -24,7 +25,7 @@ class Pins:
 
     mechanism: Mechanism
 
-    def pair(self, letter: str, first: str, second: str) -> Pair:
+    def pair(self, letter: str, first: str, second: str) -> Revolute:
         """Return the revolute pair of two links at a letter, named by it. Of a multiple pin, as ``J(crank-rod)``.
 
         >>> from compoundkin.model.elements import link
@@ -84,7 +85,7 @@ def composites(mechanism: Mechanism) -> Composites:
         if not _join(leader, drive.on, drive.link):
             closing.append(drive)
             continue
-        pair = driven_pair(pins, drive)
+        pair: Drivable = driven_pair(pins, drive)
         neighbours[drive.on].append(DrivenPair(drive, pair, drive.on, drive.link))
         neighbours[drive.link].append(DrivenPair(drive, pair, drive.link, drive.on))
     passive = tuple(passive_freedoms(mechanism))
@@ -126,14 +127,14 @@ def passive_freedoms(mechanism: Mechanism) -> Iterator[Passive]:
             yield Passive(name, on, pins[0])
 
 
-def driven_pair(pins: Pins, drive: Drive) -> Pair:
+def driven_pair(pins: Pins, drive: Drive) -> Drivable:
     """Return the pair that a drive prescribes. A written one, or the pin between precisely its two links."""
     mechanism = pins.mechanism
     (name,) = mechanism.drivable(drive)
     if name in mechanism.pins_between(drive.link, drive.on):
         return pins.pair(name, drive.on, drive.link)
     between = mechanism.pairs_between[frozenset((drive.link, drive.on))]
-    return next(pair for pair in between if pair.name == name)
+    return next(own for pair in between if pair.name == name and (own := as_drivable(pair)))
 
 
 def spanned(body: Body, links: Iterable[str]) -> tuple[DrivenPair, ...]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.optional_answers import as_drivable
 from compoundkin.structure.composites import GROUND, spanned
 from compoundkin.structure.cycles import find
 from compoundkin.structure.matching import Matching
@@ -171,7 +172,7 @@ def _drivable(system: System, constraint: Constraint) -> Iterator[str]:
     if constraint.letter and len(links) == 1:
         other = system.neighbour(constraint.letter, constraint.sides[1])
         links = (system.carrier(constraint.letter, other), *links)
-    if len(links) == 2 and constraint.pair.is_drivable:
+    if len(links) == 2 and as_drivable(constraint.pair):
         kind = "pin " if constraint.letter else ""
         yield f"{links[1]} on {links[0]} ({kind}{constraint.letter or constraint.pair.name})"
 

@@ -9,6 +9,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.model.elements import Drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.optional_answers import Drivable
 
 # How many freedoms a link has in the plane.
 LINK_FREEDOMS = 3
@@ -24,7 +25,7 @@ class DrivenPair:
     """
 
     drive: Drive
-    pair: Pair
+    pair: Drivable
     parent: str
     link: str
     is_passive: bool = False

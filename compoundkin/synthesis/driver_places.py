@@ -9,6 +9,7 @@ from itertools import combinations
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.optional_answers import as_drivable
 from compoundkin.synthesis.chains.joints import Joints
 
 # What the old frame is called while another link is the frame.
@@ -59,7 +60,7 @@ def driver_places(mechanism: Mechanism) -> Iterator[DriverPlace]:
     for letter, links in mechanism.pins.items():
         yield from (DriverPlace(second, first, letter) for first, second in combinations(links, 2))
     for pair in mechanism.written_pairs:
-        if pair.is_drivable and len(pair.members) == 2:
+        if as_drivable(pair) and len(pair.members) == 2:
             yield DriverPlace(pair.members[1], pair.members[0], pair.name)
 
 
@@ -112,5 +113,5 @@ def renamed_pair(pair: Pair, names: Mapping[str, str]) -> Pair:
     fields = [key.name for key in pair.keys if key.kind == "name" and key.name != "name"]
     told = {field: getattr(pair, field) for field in fields}
     changed = {field: names[name] for field, name in told.items() if name in pair.members and name in names}
-    renamed: Pair = replace(pair, **changed)  # type: ignore[type-var]
+    renamed: Pair = replace(pair, **changed)
     return renamed

@@ -18,7 +18,7 @@ from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.approach import column
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.structure import Structure, decompose
 from compoundkin.synthesis.driver_places import renamed
 
@@ -125,7 +125,7 @@ def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
     return mechanism.replace(replace(new, values=float(value) if np.ndim(value) == 0 else value))
 
 
-def _driven(structure: Structure, new: Drive) -> Pair | None:
+def _driven(structure: Structure, new: Drive) -> Drivable | None:
     bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
     return next((step.pair for body in bodies for step in body.driven if step.drive.name == new.name), None)
 

@@ -10,6 +10,7 @@ import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.kinematics.assembly.mode_count import laman_number
+from compoundkin.model.pairs.optional_answers import as_drivable
 from compoundkin.synthesis.alternatives import alternatives
 from compoundkin.synthesis.chains import chains, mechanism_from, structure_name
 from compoundkin.synthesis.chains.structure_names import group_count
@@ -32,7 +33,7 @@ def test_every_choice_is_the_inverted_mechanism_taken_apart(name):
     mechanism = load_named(name)
     found = alternatives(mechanism)
     places = sum(len(links) * (len(links) - 1) // 2 for links in mechanism.pins.values())
-    places += sum(pair.is_drivable and len(pair.members) == 2 for pair in mechanism.written_pairs)
+    places += sum(as_drivable(pair) is not None and len(pair.members) == 2 for pair in mechanism.written_pairs)
     assert sum(choice.alike for choice in found) == places * len(mechanism.links)
     assert sum(choice.present for choice in found) == 1
     made = {frame: with_frame(mechanism, frame) for frame in dict.fromkeys(choice.frame for choice in found)}

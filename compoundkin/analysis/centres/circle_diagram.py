@@ -13,6 +13,7 @@ from compoundkin.base.poses import FIXED
 from compoundkin.base.series import Number
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Line
+from compoundkin.model.pairs.optional_answers import as_turn_counting
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import DrivenPair
 
@@ -139,7 +140,7 @@ def _on_lines(primaries: tuple[Primary, ...], structure: Structure, number: dict
 
     That is where one link, such as the carrier of two gears, has a pair with both.
     """
-    turning = {pair.name for pair in structure.mechanism.written_pairs if pair.counts_turns and pair.held == 1}
+    turning = {pair.name for pair in structure.mechanism.written_pairs if as_turn_counting(pair) and pair.held == 1}
     for primary in primaries:
         on: tuple[int, ...] = ()
         if primary.pair in turning:
@@ -160,8 +161,6 @@ def _kind(pair: Pair) -> str:
     """Say what the pair says about the centre, asked at random geometry. "" where it says nothing."""
     ends = pair.generic(np.random.default_rng(0))
     centre = pair.centre(ends, (FIXED,) * len(ends))
-    if centre is None:
-        return ""
     if isinstance(centre, Line):
         return "line"
     return "ideal" if np.all(centre.w == 0.0) else "point"

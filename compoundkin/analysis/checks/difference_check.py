@@ -15,6 +15,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block, places
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.model.attributes import OF_POINTS
+from compoundkin.model.pairs.profiled import as_profiled
 
 # Central differences on eight neighbours: their error is of eighth, eighth and sixth order in the step.
 OFFSETS = np.arange(-4, 5)
@@ -82,12 +83,11 @@ def _largest(motion: Motion, k: int) -> Number:
         for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
             if series.order >= k:
                 found = np.maximum(found, np.abs(series.c[k]) / size)
-    for pair in motion.structure.pairs:
+    for pair in filter(None, map(as_profiled, motion.structure.pairs)):
         # in a sharp hollow the contact is faster than any link
-        if pair.has_profile:
-            poses = tuple(motion.poses[name] for name in pair.members)
-            series = pair.coordinate(motion.inputs.ends[pair.name], poses)
-            found = np.maximum(found, np.abs(series.c[k]) / pair.coordinate_scale) if series.order >= k else found
+        poses = tuple(motion.poses[name] for name in pair.members)
+        series = pair.coordinate(motion.inputs.ends[pair.name], poses)
+        found = np.maximum(found, np.abs(series.c[k]) / pair.coordinate_scale) if series.order >= k else found
     return found
 
 
@@ -111,7 +111,7 @@ def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
 def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
     """Return poses around which no contact passes a jump of its profile."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
-    for pair in motion.structure.pairs:
+    for pair in filter(None, map(as_profiled, motion.structure.pairs)):
         ends = motion.inputs.ends[pair.name]
         found = [pair.smooth_piece(ends, tuple(poses[name] for name in pair.members)) for poses in stencils]
         for piece in found[1:]:

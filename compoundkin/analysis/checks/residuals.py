@@ -21,6 +21,7 @@ from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.optional_answers import as_turn_counting
 
 # Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
 # over the groups of the solving order, and near a limit position by the inverse of the distance from it.
@@ -54,7 +55,8 @@ def residuals(motion: Motion) -> Iterator[Finding]:
 def _distance_errors(motion: Motion) -> Iterator[tuple[str, Number]]:
     """Yield by pair how far a length is off that no pair holds."""
     for name, pair in motion.tracker.plan.pairs.items():
-        error = pair.distance_error(motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members))
+        poses, counting = tuple(motion.poses[member] for member in pair.members), as_turn_counting(pair)
+        error = counting.distance_error(motion.inputs.ends[name], poses) if counting else None
         if error is not None:
             yield name, np.abs(error.c[0])
 

@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends, Equivalent
+from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.loop_terms import (
     Auxiliary,
     Implicit,
@@ -22,6 +22,7 @@ from compoundkin.model.pairs.loop_terms import (
     direction,
     place,
 )
+from compoundkin.model.pairs.optional_answers import Equivalent, lower_equivalent
 
 
 def pair_terms(pair: Pair, ends: Ends) -> LoopTerms:
@@ -33,7 +34,7 @@ def pair_terms(pair: Pair, ends: Ends) -> LoopTerms:
     said = pair.loop_terms(ends)
     if said is not None:
         return said
-    lower = pair.equivalent(ends)
+    lower = lower_equivalent(pair, ends)
     return _by_closure(pair, ends) if lower is None else _by_lower_pairs(pair, lower)
 
 

@@ -21,6 +21,7 @@ from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.mounted_body import side_of
 from compoundkin.kinematics.limits import Root, clipped_root
 from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.optional_answers import lower_equivalent
 from compoundkin.structure.assur_groups import named_group
 from compoundkin.structure.parts import Body, Group
 
@@ -130,7 +131,7 @@ def _by_lower_pairs(group: Group, ends: Mapping[str, Ends]) -> tuple[Group, Mapp
     if len(group.bodies) != 1 or len(group.outer) != 2:
         return group, {}
     lower, higher = sorted(group.outer, key=lambda pair: -pair.held)
-    found = higher.equivalent(ends[higher.name])
+    found = lower_equivalent(higher, ends[higher.name])
     if found is None:
         return group, {}
     own = next(j for j, name in enumerate(higher.members) if name in group.links)

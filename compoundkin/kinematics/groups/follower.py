@@ -18,8 +18,9 @@ from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
 from compoundkin.kinematics.groups.mounted_body import MountedBody
-from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, lower_equivalent
+from compoundkin.model.pairs.profiled import Profiled, as_profiled
 from compoundkin.structure.parts import Group
 
 # The members' poses where the body's coordinate is the one given.
@@ -42,7 +43,7 @@ class FollowerSolver(GroupSolver):
         "the follower is farther along its slide; on a pin, its roller is more clockwise, its face touches ahead of it"
     )
 
-    def __init__(self, index: int, group: Group, size: float, lower: Pair, higher: Pair) -> None:
+    def __init__(self, index: int, group: Group, size: float, lower: Drivable, higher: Profiled) -> None:
         super().__init__(index, group)
         self.size = size
         self.mounted = MountedBody(lower, higher, group.bodies[0])
@@ -55,9 +56,10 @@ class FollowerSolver(GroupSolver):
         if len(group.bodies) != 1 or len(group.outer) != 2:
             return None
         lower, higher = sorted(group.outer, key=lambda pair: -pair.held)
-        if not (higher.has_profile and lower.is_simple) or higher.equivalent(ends[higher.name]) is not None:
+        mount, profiled = as_drivable(lower), as_profiled(higher)
+        if not mount or not profiled or not lower.is_simple or lower_equivalent(higher, ends[higher.name]):
             return None
-        return cls(index, group, size, lower, higher)
+        return cls(index, group, size, mount, profiled)
 
     def close(self, block: Block, mode: Number) -> None:
         """Assemble the group and add its links to what is known."""

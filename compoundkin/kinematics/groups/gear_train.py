@@ -15,6 +15,8 @@ from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.mounted_body import FLAT, MountedBody
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends, table
+from compoundkin.model.pairs.geared import as_geared
+from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, as_turn_counting
 from compoundkin.structure.parts import Body, Group
 
 UNIT = Series((0.0, 1.0))
@@ -30,7 +32,7 @@ class GearTrainSolver(GroupSolver):
     modes: ClassVar[int] = 1
     sign_means: ClassVar[str] = "there is only one mode"
 
-    def __init__(self, index: int, group: Group, lowers: tuple[tuple[Pair, Body], ...], highers: tuple[Pair, ...]):
+    def __init__(self, index: int, group: Group, lowers: tuple[tuple[Drivable, Body], ...], highers: tuple[Pair, ...]):
         super().__init__(index, group)
         self.mounted = tuple(MountedBody(pair, highers[0], body) for pair, body in lowers)
         self.highers = highers
@@ -44,13 +46,14 @@ class GearTrainSolver(GroupSolver):
         if len(group.bodies) == 1 and len(group.outer) == 2:
             lower, higher = sorted(pairs, key=lambda pair: -pair.held)
             own = next(j for j, name in enumerate(higher.members) if name in group.links)
-            if higher.is_affine(lower, own):
-                return cls(index, group, ((lower, group.bodies[0]),), (higher,))
-        highers = tuple(pair for pair in pairs if pair.adds_angles)
-        pins = [pair for pair in pairs if pair.is_simple and pair.free_is_angle]
+            mount, wheel = as_drivable(lower), as_turn_counting(higher)
+            if mount and wheel and wheel.is_affine(lower, own):
+                return cls(index, group, ((mount, group.bodies[0]),), (higher,))
+        highers = tuple(pair for pair in pairs if as_geared(pair))
+        pins = [pin for pair in pairs if pair.is_simple and pair.free_is_angle and (pin := as_drivable(pair))]
         if not highers or len(pins) + len(highers) < len(pairs) or len(pins) != len(group.bodies):
             return None
-        left, found = list(group.bodies), list[tuple[Pair, Body]]()
+        left, found = list(group.bodies), list[tuple[Drivable, Body]]()
         for _ in pins:
             hung = [(pair, body) for body in left for pair in pins if _hangs(pair, body, left)]
             found += hung[:1]

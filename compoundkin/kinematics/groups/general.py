@@ -17,6 +17,7 @@ from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.profiled import as_profiled
 from compoundkin.structure.parts import Group
 
 # Where no theory counts a group's configurations, Newton searches them from so many random states.
@@ -65,7 +66,8 @@ class GeneralSolver(GroupSolver):
     def why(self, block: Block, at: int) -> str:
         """Say that its path has come to a limit position, or a pair to its end."""
         limit = "the tracked configuration ends at a limit position, where the group's equations become singular"
-        open_ = [f"{pair.letters[0]} leaves the profile of {pair.members[0]}" for pair in self.pairs if pair.has_ends]
+        profiled = (pair for pair in map(as_profiled, self.pairs) if pair and pair.has_ends)
+        open_ = [f"{pair.letters[0]} leaves the profile of {pair.members[0]}" for pair in profiled]
         return f"{limit}, or where {' or '.join(open_)} at an end" if open_ else limit
 
     def _searched(self, block: Block) -> Configurations:

@@ -8,7 +8,9 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Freedom, Poses
+from compoundkin.model.pairs.contact import Freedom
+from compoundkin.model.pairs.contract import Poses
+from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.structure.parts import Body
 
 # A higher pair whose closure a coordinate changes by less than this (length by length, or angle) does not determine
@@ -46,15 +48,16 @@ def side_of(pair: Pair, body: Body) -> Side:
 class MountedBody:
     """A body on a lower pair to a link that is known, as a value of the pair's coordinate places it."""
 
-    def __init__(self, lower: Pair, higher: Pair, body: Body) -> None:
+    def __init__(self, lower: Drivable, higher: Pair, body: Body) -> None:
         self.side = side_of(lower, body)
+        self.lower = lower
         self.higher = higher
         self.body = body
 
     def placed(self, block: Block, coordinate: Series) -> Pose:
         """The body's pose."""
         side = self.side
-        relative = side.pair.placed(block.ends[side.pair.name], coordinate)
+        relative = self.lower.placed(block.ends[side.pair.name], coordinate)
         link = block.world[side.other].compose(relative if side.own else relative.inverse())
         local = block.local.get(side.link)
         return link if local is None else link.compose(local.inverse())

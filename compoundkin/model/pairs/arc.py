@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -11,10 +11,11 @@ import numpy as np
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import Contact, Touch, named_problems, row
-from compoundkin.model.pairs.contract import Ends, Equivalent, Osculation, Poses
+from compoundkin.model.pairs.contact import Contact, Touch, row
+from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Groove, Mark, Stud, arc_line, reach
 
@@ -25,28 +26,25 @@ class ArcSlot(Contact):
 
     A roller on a round disc is the same with the sum of both radii. Held: the distance of the pin from the circle.
     Free: the angle at which the pin is seen from the centre, from the x axis of `on`, and the angle between the links.
+
+    >>> arc("rocker", on="frame", at="B", centre_at="C", radius=40).letters
+    ('B', 'C')
     """
 
-    name: str
-    link: str
-    on: str
-    at: str
-    centre_at: str
-    radius: Number = 1.0
+    link: str = field(metadata=link_key("The link with the pin."))
+    _: KW_ONLY
+    on: str = field(metadata=link_key("The link with the circular slot."))
+    at: str = field(
+        default="", metadata=point_key("link", "The pin's point; may be left out if its link has one point.")
+    )
+    centre_at: str = field(metadata=point_key("on", "The point of the slotted link about which the slot is curved."))
+    radius: Number = field(metadata=value_key("length", "Radius of the circle on which the middle of the pin runs."))
 
     code: ClassVar[str] = "A"
     title: ClassVar[str] = "pin-in-arc pair"
     free: ClassVar[tuple[str, ...]] = ("direction", "angle")
     free_is_angle: ClassVar[bool] = True
     table: ClassVar[str] = "arcs"
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
-        Key("link", "name", "The link with the pin.", required=True),
-        Key("on", "name", "The link with the circular slot.", required=True),
-        Key("at", "name", "The pin's point; may be left out if its link has one point."),
-        Key("centre_at", "name", "The point of the slotted link about which the slot is curved.", required=True),
-        Key("radius", "length", "Radius of the circle on which the middle of the pin runs.", required=True),
-    )
 
     @property
     def letters(self) -> tuple[str, ...]:
@@ -55,15 +53,9 @@ class ArcSlot(Contact):
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Unknown links and points, a radius that is none."""
-        points = {"at": (self.link, self.at), "centre_at": (self.on, self.centre_at)}
-        yield from named_problems(links, where, {"link": self.link, "on": self.on}, points)
+        yield from super().problems(links, where)
         if not np.all(np.asarray(self.radius) > 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a positive length")
-
-    def completed(self, links: Mapping[str, tuple[str, ...]]) -> ArcSlot:
-        """With the only point of its link as the pin, where none is named."""
-        points = links.get(self.link, ())
-        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
 
     def ends(self, geometry: Geometry) -> Ends:
         """The centre with the radius; the pin."""
@@ -118,10 +110,4 @@ class ArcSlot(Contact):
         return Groove(0, arc_line(ends[0].point, ends[0].measure, *way)), Stud(1, ends[1].point)
 
 
-def arc(link: str, *, on: str, centre_at: str, radius: Number, at: str = "", name: str = "") -> ArcSlot:
-    """A pin in a circular slot: the point `at` of `link` keeps its distance from the point `centre_at` of `on`.
-
-    >>> arc("rocker", on="frame", at="B", centre_at="C", radius=40).letters
-    ('B', 'C')
-    """
-    return ArcSlot(name or f"{link}/{on}", link, on, at, centre_at, radius)
+arc = word("arc", ArcSlot)

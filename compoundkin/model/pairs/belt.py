@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import KW_ONLY, dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
 from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.geared import Geared, two_of
+from compoundkin.model.pairs.geared import Geared
 from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, strap_line
 
 
@@ -22,17 +22,19 @@ class Belt(Geared):
     """Two pulleys or sprockets joined by a belt, chain or cable that does not slip.
 
     An open belt turns them alike, a `crossed` one does not. See `Geared` for the rest.
+
+    >>> belt("motor", "drum", radii=(30, 90)).turns_alike
+    True
     """
 
-    crossed: bool = False
+    _: KW_ONLY
+    crossed: bool = field(
+        default=False, metadata=value_key("flag", "Whether the belt is crossed: the pulleys turn against each other.")
+    )
 
     code: ClassVar[str] = "B"
     title: ClassVar[str] = "belt pair"
     table: ClassVar[str] = "belts"
-    keys: ClassVar[tuple[Key, ...]] = (
-        *Geared.keys,
-        Key("crossed", "flag", "Whether the belt is crossed: the pulleys turn against each other.", default=False),
-    )  # fmt: skip
 
     @property
     def turns_alike(self) -> bool:
@@ -67,23 +69,4 @@ class Belt(Geared):
         return *discs, Strap(2, strap_line((first, second), radii, self.crossed))
 
 
-def belt(
-    first: str,
-    second: str,
-    *,
-    carrier: str = "frame",
-    radii: Any = None,
-    teeth: Any = None,
-    crossed: bool = False,
-    phase: Number | None = None,
-    first_at: str = "",
-    second_at: str = "",
-    name: str = "",
-) -> Belt:
-    """A belt pair: pulleys on `first` and `second`, two `radii` (or two `teeth`), their axes carried by `carrier`.
-
-    >>> belt("motor", "drum", radii=(30, 90)).turns_alike
-    True
-    """
-    sizes = two_of("teeth", teeth), two_of("radii", radii)
-    return Belt(name or f"{first}/{second}", first, second, carrier, *sizes, phase, first_at, second_at, crossed)
+belt = word("belt", Belt)

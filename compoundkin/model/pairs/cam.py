@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import ClassVar
 
@@ -12,20 +12,21 @@ import numpy as np
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.arc import ArcSlot
 from compoundkin.model.pairs.contact import (
+    Freedom,
     PointPath,
     Touch,
     centre_of_curvature,
-    named_problems,
     outermost,
     path_of,
     row,
 )
-from compoundkin.model.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
+from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.loop_terms import Curved, LoopTerms, Unknown, angle_of
+from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.profiled import Profiled
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
@@ -43,15 +44,28 @@ class Cam(Profiled):
     that no roller cuts into its cam.
 
     Held: the distance of the roller from the profile. Free: the profile's parameter at the contact, and the angle.
+
+    >>> from compoundkin.model.profiles import disc
+    >>> cam("follower", on="cam", at="P", profile=disc(20, (5, 0)), radius=8).name
+    'follower/cam'
     """
 
-    name: str
-    link: str
-    on: str
-    at: str
-    profile: Profile
-    radius: Number = 0.0
-    inside: bool = False
+    link: str = field(metadata=link_key("The link with the point or roller: the follower, or the roller itself."))
+    _: KW_ONLY
+    on: str = field(metadata=link_key("The link with the profile."))
+    at: str = field(
+        default="",
+        metadata=point_key(
+            "link", "The point, or the middle of the roller; may be left out if its link has one point."
+        ),
+    )
+    profile: Profile = field(metadata=value_key("profile", "The profile, in the coordinates of its link."))
+    radius: Number = field(
+        default=0.0, metadata=value_key("length", "Radius of the roller; none for a knife edge or a pin in a slot.")
+    )
+    inside: bool = field(
+        default=False, metadata=value_key("flag", "Whether the profile is touched from inside, as that of a ring.")
+    )
 
     code: ClassVar[str] = "C"
     title: ClassVar[str] = "cam pair"
@@ -59,15 +73,6 @@ class Cam(Profiled):
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "cams"
     is_flat: ClassVar[bool] = False
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
-        Key("link", "name", "The link with the point or roller: the follower, or the roller itself.", required=True),
-        Key("on", "name", "The link with the profile.", required=True),
-        Key("at", "name", "The point, or the middle of the roller; may be left out if its link has one point."),
-        Key("profile", "profile", "The profile, in the coordinates of its link.", required=True),
-        Key("radius", "length", "Radius of the roller; none for a knife edge or a pin in a slot.", default=0.0),
-        Key("inside", "flag", "Whether the profile is touched from inside, as that of a ring.", default=False),
-    )
 
     @property
     def letters(self) -> tuple[str, ...]:
@@ -86,8 +91,7 @@ class Cam(Profiled):
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Unknown links and points, a radius that is none, a profile that is none."""
-        members = {"link": self.link, "on": self.on}
-        yield from named_problems(links, where, members, {"at": (self.link, self.at)})
+        yield from super().problems(links, where)
         if not np.all(np.asarray(self.radius) >= 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a length", "give a positive number, or none")
         if not isinstance(self.profile, Profile):
@@ -101,11 +105,6 @@ class Cam(Profiled):
         if self.inside and self.profile.circle and not np.all(np.asarray(self.radius) < self.profile.circle[1]):
             what = f"a roller of radius {self.radius:g} does not fit into a ring of radius {self.profile.circle[1]:g}"
             yield Problem(f"{where}.radius", what, "take a smaller roller")
-
-    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Cam:
-        """With the only point of its link as the one that runs on the profile, where none is named."""
-        points = links.get(self.link, ())
-        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
 
     def ends(self, geometry: Geometry) -> Ends:
         """The profile's frame; the roller's middle with its radius."""
@@ -159,7 +158,8 @@ class Cam(Profiled):
             return None
         middle, radius = self.profile.circle
         reach = radius - ends[1].measure if self.inside else radius + ends[1].measure
-        arc = ArcSlot(self.name, self.link, self.on, self.at, "middle of the disc", reach)
+        at = {"at": self.at, "centre_at": "middle of the disc"}
+        arc = ArcSlot(self.link, on=self.on, radius=reach, name=self.name, **at)
         return arc.equivalent((End(middle, 1 + 0j, reach), End(ends[1].point)))
 
     def loop_terms(self, ends: Ends) -> LoopTerms | None:
@@ -237,22 +237,4 @@ class Cam(Profiled):
         return (Outline(0, line, True, self.inside) if self.curve.closed else Groove(0, line)), edge
 
 
-def cam(
-    link: str,
-    *,
-    on: str,
-    profile: Profile,
-    at: str = "",
-    radius: Number = 0.0,
-    inside: bool = False,
-    name: str = "",
-) -> Cam:
-    """A cam pair: the point `at` of `link`, or a roller of `radius` about it, runs on the `profile` of the link `on`.
-
-    `profile` is one of `disc`, `profile`, `formula`, `synthesise`. See `Cam`.
-
-    >>> from compoundkin.model.profiles import disc
-    >>> cam("follower", on="cam", at="P", profile=disc(20, (5, 0)), radius=8).name
-    'follower/cam'
-    """
-    return Cam(name or f"{link}/{on}", link, on, at, profile, radius, inside)
+cam = word("cam", Cam)

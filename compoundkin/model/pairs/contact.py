@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
 from compoundkin.base.curves import Curve
-from compoundkin.base.errors import Problem, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.model.pairs.contract import Ends, Freedom, Line, Pair, Poses, table
+from compoundkin.model.pairs.contract import Ends, Line, Poses, table
+from compoundkin.model.pairs.optional_answers import Replaceable
 
 
 class Touch(NamedTuple):
@@ -26,7 +26,7 @@ class Touch(NamedTuple):
     gap: Series
 
 
-class Contact(Pair):
+class Contact(Replaceable):
     """A higher pair that holds one coordinate, the distance along a common normal: first the link with the profile."""
 
     held: ClassVar[int] = 1
@@ -66,6 +66,15 @@ def centre_of_curvature(curve: Curve, s: Number, place: Number, u: Number) -> Nu
     """The centre of curvature of a profile at a parameter, whose point is at a place of the world; inf if straight."""
     along = curve.tangent(s).c[0] * u
     return place + 1j * along / curve.curvature(s)
+
+
+class Freedom(NamedTuple):
+    """How a body moves as a coordinate grows at unit rate: about a point of the world, `sense` +1 counterclockwise; or,
+    where `about` is None, in the direction `along`."""
+
+    about: Number
+    along: Number
+    sense: Number
 
 
 class PointPath(NamedTuple):
@@ -171,27 +180,3 @@ def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
 
 def _arms(poses: Sequence[Pose], place: Number) -> tuple[Number, ...]:
     return tuple(1j * (place - pose.z.c[0]) for pose in poses)
-
-
-def named_problems(
-    links: Mapping[str, tuple[str, ...]], where: str, members: Mapping[str, str], points: Mapping[str, tuple[str, str]]
-) -> Iterator[Problem]:
-    """Links that there are not, one link twice, and points that their link does not have.
-
-    `members` are links by the key that names them, `points` (link, letter) by theirs.
-    """
-    missing = [(key, name) for key, name in members.items() if name not in links]
-    for key, name in missing:
-        yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, list(links)))
-    if missing:
-        return
-    if len(set(members.values())) < len(members):
-        key, name = list(members.items())[-1]
-        yield Problem(f"{where}.{key}", f"{name!r} cannot run on itself", "name two links")
-    for key, (link, letter) in points.items():
-        if not letter:
-            choice = f"name the one that is meant: {', '.join(links[link])}"
-            yield Problem(f"{where}.{key}", f"link {link!r} has several points", choice)
-        elif letter not in links[link]:
-            remedy = nearest(letter, list(links[link]))
-            yield Problem(f"{where}.{key}", f"link {link!r} has no point {letter!r}", remedy)

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import Key
+from compoundkin.base.series import Number, Series, constant
+from compoundkin.model.fields import DeclaredKeys, NameWording, link_fields, name_problems, only_points, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.symbols import Mark
@@ -46,56 +47,30 @@ Ends: TypeAlias = tuple[End, ...]
 Poses: TypeAlias = tuple[Pose, ...]
 
 
-class Equivalent(NamedTuple):
-    """Two lower pairs and a link between them that stand for a higher pair at every pose, not at one only.
-
-    `pairs` join `link` to the first and to the second member; `ends` are their sides by their names.
-    """
-
-    link: str
-    pairs: tuple[Pair, Pair]
-    ends: Mapping[str, Ends]
-
-
-class Osculation(NamedTuple):
-    """Where the profiles of two members have their centres of curvature while they touch, in the world.
-
-    None for a straight one. A bar between the centres, or a block on the straight profile pinned at the other one's
-    centre, gives the members the same velocities and accelerations. `normal` is a unit vector between the centres.
-    """
-
-    first: Number
-    second: Number
-    normal: Number
-
-
-class Freedom(NamedTuple):
-    """How a body moves as a coordinate grows at unit rate: about a point of the world, `sense` +1 counterclockwise; or,
-    where `about` is None, in the direction `along`."""
-
-    about: Number
-    along: Number
-    sense: Number
-
-
+@dataclass(frozen=True, eq=False)
 class Pair(ABC):
     """A kinematic pair between two links, or two and their carrier; kinds are frozen dataclasses, one file each."""
+
+    name: str = field(
+        default="",
+        kw_only=True,
+        metadata=value_key("name", "What the pair is called in reports; {called} where it is left out."),
+    )
 
     code: ClassVar[str]  # the letter in a group's name
     title: ClassVar[str]  # "revolute pair"
     held: ClassVar[int]  # how many relative coordinates stay zero
     free: ClassVar[tuple[str, ...]]  # the names of the others; the first is its `coordinate`
     free_is_angle: ClassVar[bool]  # whether the coordinate is an angle (else a length)
-    counts_turns: ClassVar[bool] = False  # whether it asks for its members' angles with full turns
     is_simple: ClassVar[bool] = False  # whether its coordinate only turns a member about a point, or only shifts it
-    has_profile: ClassVar[bool] = (
-        False  # whether it leads a member along a profile, so that it has `contact_candidates`
-    )
-    adds_angles: ClassVar[bool] = False  # whether its closure is a sum of its members' angles times constants
     table: ClassVar[str] = ""  # its table in a mechanism file; "" for pairs that are not written out
-    keys: ClassVar[tuple[Key, ...]] = ()
+    wording: ClassVar[NameWording] = NameWording()  # how it says what is wrong with its names
+    keys = DeclaredKeys()  # the keys of its table in a mechanism file, by its fields
 
-    name: str
+    def __post_init__(self) -> None:
+        """A pair that is given no name has that of its links."""
+        if not self.name:
+            object.__setattr__(self, "name", self.called)
 
     @property
     @abstractmethod
@@ -110,15 +85,15 @@ class Pair(ABC):
     @property
     def called(self) -> str:
         """Its name where none is given."""
-        return "/".join(reversed(self.members))
+        return "/".join(getattr(self, name) for name in link_fields(type(self))[:2])
 
-    @abstractmethod
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """What is wrong with the pair as written; `links` maps each link to its point names."""
+        yield from name_problems(self, links, where, self.wording)
 
     def completed(self, links: Mapping[str, tuple[str, ...]]) -> Pair:
-        """The pair with what its words leave to be understood filled in."""
-        return self
+        """The pair with the points that its words leave to be understood: the only ones of their links."""
+        return replace(self, **only_points(self, links))
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
         """What is wrong with its dimensions: teeth that do not fit, a profile that crosses itself."""
@@ -136,51 +111,44 @@ class Pair(ABC):
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """The (first) free relative coordinate as a series."""
 
-    def drawn_coordinate(self, sketch: Mapping[str, Number]) -> Number | None:
-        """The free coordinate as drawn points alone show it, without the links' poses; None where they do not."""
-        return None
-
-    @abstractmethod
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """The derivatives of `closure` and then `coordinate` by x, y, theta of the first member, then of the second.
 
-        Shape (..., held + 1, 3 members), at the leading coefficient of the poses.
+        Shape (..., held + 1, 3 members), at the leading coefficient of the poses. By series, unless a kind knows it.
         """
+        fixed = tuple(End(*(side.c[0] if isinstance(side, Series) else side for side in end)) for end in ends)
+        still = [_still(pose) for pose in poses]
+        columns = []
+        for k, pose in enumerate(still):
+            for moved in _moving(pose):
+                moving = (*still[:k], moved, *still[k + 1 :])
+                rows = *self.closure(fixed, moving), self.coordinate(fixed, moving)
+                columns.append([row.c[1] if len(row.c) > 1 else 0.0 for row in rows])
+        return table(*zip(*columns, strict=True))
 
-    def centre(self, ends: Ends, poses: Poses) -> Point | Line | None:
-        """Where the relative instant centre of the first two members is: a point, a line it must lie on, or nothing.
+    def centre(self, ends: Ends, poses: Poses) -> Point | Line:
+        """Where the relative instant centre of the first two members is: a point, or a line it must lie on.
 
-        At the leading coefficient of the poses; which of the three it is depends on the kind of pair only.
+        At the leading coefficient of the poses; which of the two it is depends on the kind of pair only. By the
+        Jacobian, unless a kind knows it; with a carrier the members turn about their own points.
         """
-        return None
+        rows = self.jacobian(ends, poses)
+        first, second = (_lines(rows[..., 3 * k : 3 * k + 3], poses[k].z.c[0]) for k in range(2))
+        if len(self.members) == 2 and self.held == 1:
+            return Line(*second[0])
+        if len(self.members) == 2:
+            (a, b, c), (d, e, f), free = second
+            place = b * f - c * e, c * d - a * f, a * e - b * d
+            return Point(*(at / _dot(free, place) for at in place))
+        axes = [pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True)]
+        one, two = ((axis.real, axis.imag, 1.0) for axis in axes)
+        turn, other = -_dot(second[0], two), _dot(first[0], one)
+        rate = turn * _dot(first[-1], one) + other * _dot(second[-1], two)
+        return Point(*((other * at - turn * before) / rate for before, at in zip(one, two, strict=True)))
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
         """Whether a closed pair is in the way that is meant, where its closure does not tell."""
         return True
-
-    @property
-    def coordinate_scale(self) -> float:
-        """The scale of its coordinate where it has a profile."""
-        return 1.0
-
-    @property
-    def has_ends(self) -> bool:
-        """Whether it has an open profile, which its contact may run off."""
-        return False
-
-    @property
-    def extent(self) -> float:
-        """The size of its profile, where it has one: a length scale of the mechanism."""
-        return 0.0
-
-    @property
-    def is_drivable(self) -> bool:
-        """Whether a driver may prescribe its coordinate: where nothing else is free."""
-        return self.held == 2
-
-    def placed(self, ends: Ends, free: Series) -> Pose:
-        """The pose of the second member in the first one's frame when the coordinate is `free`; of drivable pairs."""
-        raise NotImplementedError(f"a {self.title} leaves more than one coordinate free")
 
     @abstractmethod
     def generic(self, rng: np.random.Generator) -> Ends:
@@ -191,53 +159,9 @@ class Pair(ABC):
         """All that the rank of its generic Jacobian may depend on."""
         return type(self)
 
-    def driven_by(self, link: str) -> int:
-        """+1 if driving `link` drives the coordinate itself, -1 if its opposite."""
-        return 1
-
-    def is_affine(self, lower: Pair, own: int) -> bool:
-        """Whether `closure` grows in proportion to the coordinate of the pair `lower`, on which the member `own` is."""
-        return False
-
-    def equivalent(self, ends: Ends) -> Equivalent | None:
-        """The lower pairs that stand for a higher pair at every pose, where there are such."""
-        return None
-
-    def distance_error(self, ends: Ends, poses: Poses) -> Series | None:
-        """A length that must be zero though the pair does not hold it: other pairs must; None where there is none."""
-        return None
-
-    def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
-        """The ends of a pair that counts turns where its members' angles are by whole `turns` from the drawn ones."""
-        return ends
-
-    def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
-        """The coordinates at which a member of one freedom is in contact in mode -1 and +1, nearly; of pairs that lead.
-
-        `poses` are those where the coordinate is zero; NaN where there is no contact. The modes are those of the lower
-        pairs that stand for a round disc.
-        """
-        raise NotImplementedError(f"a {self.title} has no profile")
-
-    def smooth_piece(self, ends: Ends, poses: Poses) -> Number:
-        """On which smooth piece of its profile a pair is, an index: derivatives may jump from one to the next."""
-        return 0
-
-    def no_contact_reason(self) -> str:
-        """Why a member has no contact where there are no candidates, in a sentence."""
-        return f"{self.name} does not close"
-
     def loop_terms(self, ends: Ends) -> LoopTerms | None:
         """Return what it adds to vector loops; None to have it from its lower pairs, or else from its closure."""
         return None
-
-    def osculation(self, ends: Ends, poses: Poses) -> Osculation | None:
-        """The centres of curvature of a higher pair at the leading coefficient of the poses; None for other pairs."""
-        return None
-
-    def with_driver_turns(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
-        """The ends of a driven pair that counts turns where its coordinate is by whole `turns` from the drawn one."""
-        return ends
 
     def round_at(self, link: str) -> str | None:
         """The point about which a member may turn without any effect on the pair, such as a roller's pin."""
@@ -246,6 +170,30 @@ class Pair(ABC):
     @abstractmethod
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """What there is to see of it, in the members' frames: `ends` are numbers, `poses` a whole motion (poses,)."""
+
+
+def _lines(rows: Number, z: Number) -> list[tuple[Number, Number, Number]]:
+    """By each Jacobian row (a, b, c): a twist of the member about (x, y, w) changes ``a x + b y + c w``."""
+    across = np.moveaxis(rows, (-2, -1), (0, 1))
+    return [(-y, x, turn + y * z.real - x * z.imag) for x, y, turn in across]
+
+
+def _dot(line: tuple[Number, ...], place: tuple[Number, ...]) -> Number:
+    return sum(own * at for own, at in zip(line, place, strict=True))
+
+
+def _still(pose: Pose) -> Pose:
+    """A pose that does not move."""
+    theta = None if pose.theta is None else constant(pose.theta.c[0])
+    return Pose(constant(pose.z.c[0]), constant(pose.u.c[0]), theta)
+
+
+def _moving(pose: Pose) -> Iterator[Pose]:
+    """A pose as it moves at unit rate in x, in y and in angle."""
+    yield Pose(Series((pose.z.c[0], 1.0 + 0j)), pose.u, pose.theta)
+    yield Pose(Series((pose.z.c[0], 1j)), pose.u, pose.theta)
+    theta = None if pose.theta is None else Series((pose.theta.c[0], 1.0))
+    yield Pose(pose.z, Series((pose.u.c[0], 1j * pose.u.c[0])), theta)
 
 
 def table(*rows: tuple[Number, ...]) -> Number:

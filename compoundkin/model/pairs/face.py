@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import ClassVar
 
@@ -13,18 +13,18 @@ from compoundkin.base.arrays import dot
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import (
+    Freedom,
     Touch,
     centre_of_curvature,
-    named_problems,
     nearest_angle,
     outermost,
     path_of,
     row,
 )
-from compoundkin.model.pairs.contract import Ends, Equivalent, Freedom, Osculation, Poses
+from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.loop_terms import (
     Curved,
     LoopTerms,
@@ -36,6 +36,7 @@ from compoundkin.model.pairs.loop_terms import (
     difference,
     direction,
 )
+from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.model.pairs.profiled import Profiled
 from compoundkin.model.pairs.revolute import Revolute
@@ -60,15 +61,26 @@ class Face(Profiled):
 
     Held: the distance of the face from the profile. Free: the displacement of the contact along the face from `at`, and
     the angle.
+
+    >>> from compoundkin.model.profiles import disc
+    >>> face("follower", on="cam", at="P", profile=disc(20, (5, 0)), side=-1).letters
+    ('P',)
     """
 
-    name: str
-    link: str
-    on: str
-    at: str
-    profile: Profile
-    angle: Number = 0.0
-    side: int = 1
+    link: str = field(metadata=link_key("The link with the flat face: the follower."))
+    _: KW_ONLY
+    on: str = field(metadata=link_key("The link with the profile."))
+    at: str = field(
+        default="", metadata=point_key("link", "A point of the face; may be left out if its link has one point.")
+    )
+    profile: Profile = field(metadata=value_key("profile", "The profile, in the coordinates of its link."))
+    angle: Number = field(
+        default=0.0, metadata=value_key("angle", "Direction of the face from the x axis of its link.")
+    )
+    side: int = field(
+        default=1,
+        metadata=value_key("sign", "1 where the profile lies to the left of that direction, -1 to the right."),
+    )
 
     code: ClassVar[str] = "F"
     title: ClassVar[str] = "flat-faced cam pair"
@@ -76,15 +88,6 @@ class Face(Profiled):
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "faces"
     is_flat: ClassVar[bool] = True
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
-        Key("link", "name", "The link with the flat face: the follower.", required=True),
-        Key("on", "name", "The link with the profile.", required=True),
-        Key("at", "name", "A point of the face; may be left out if its link has one point."),
-        Key("profile", "profile", "The profile, in the coordinates of its link.", required=True),
-        Key("angle", "angle", "Direction of the face from the x axis of its link.", default=0.0),
-        Key("side", "sign", "1 where the profile lies to the left of that direction, -1 to the right.", default=1),
-    )
 
     @property
     def letters(self) -> tuple[str, ...]:
@@ -98,8 +101,7 @@ class Face(Profiled):
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Unknown links and points, a profile that is none."""
-        members = {"link": self.link, "on": self.on}
-        yield from named_problems(links, where, members, {"at": (self.link, self.at)})
+        yield from super().problems(links, where)
         if self.side not in (1, -1):
             yield Problem(f"{where}.side", f"{self.side!r} is not a side", "write 1 (left) or -1 (right)")
         if not isinstance(self.profile, Profile):
@@ -107,11 +109,6 @@ class Face(Profiled):
             yield Problem(f"{where}.profile", what, "write disc(...), profile(points) or one made for a motion")
         else:
             yield from self.profile.problems(f"{where}.profile")
-
-    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Face:
-        """With the only point of its link as that of the face, where none is named."""
-        points = links.get(self.link, ())
-        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
 
     def ends(self, geometry: Geometry) -> Ends:
         """The profile's frame; point and direction of the face."""
@@ -147,10 +144,10 @@ class Face(Profiled):
         if self.profile.circle is None:
             return None
         middle, radius = self.profile.circle
-        block = f"{self.name} (block)"
+        block, centre = f"{self.name} (block)", "middle of the disc"
         pairs = (
-            Revolute(f"{self.name} (pin)", "middle of the disc", self.on, block),
-            Prismatic(f"{self.name} (slide)", block, self.link, "middle of the disc", self.at),
+            Revolute(f"{self.name} (pin)", centre, self.on, block),
+            Prismatic(block, on=self.link, at=centre, through=self.at, name=f"{self.name} (slide)"),
         )
         along = ends[1].along.c[0]
         track = End(ends[1].point + 1j * self.side * radius * along, along)
@@ -261,22 +258,4 @@ class Face(Profiled):
         return Outline(0, line, self.curve.closed), track
 
 
-def face(
-    link: str,
-    *,
-    on: str,
-    profile: Profile,
-    at: str = "",
-    angle: Number = 0.0,
-    side: int = 1,
-    name: str = "",
-) -> Face:
-    """A flat-faced cam pair: the face of `link` through its point `at` rests on the `profile` of the link `on`.
-
-    `angle` (radians) is the direction of the face; the profile lies to its left, or right for `side=-1`. See `Face`.
-
-    >>> from compoundkin.model.profiles import disc
-    >>> face("follower", on="cam", at="P", profile=disc(20, (5, 0)), side=-1).letters
-    ('P',)
-    """
-    return Face(name or f"{link}/{on}", link, on, at, profile, angle, side)
+face = word("face", Face)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import KW_ONLY, dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
 from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.geared import Geared, check_distance, two_of
+from compoundkin.model.pairs.geared import Geared, check_distance
 from compoundkin.model.pairs.symbols import Mark, Wheel
 
 # The pressure angle of standard involute teeth; it shows in the equivalent linkage only, not in any motion.
@@ -29,19 +29,22 @@ class Gear(Geared):
 
     With a `module`, or with radii, the pitch circles must fit the distance of the axes; by teeth alone they take it.
     See `Geared` for the rest.
+
+    >>> gear("sun", "planet", carrier="arm", teeth=(20, 40)).name
+    'sun/planet'
     """
 
-    internal: bool = False
-    module: Number | None = None
+    _: KW_ONLY
+    internal: bool = field(
+        default=False, metadata=value_key("flag", "Whether the second is an internal gear (a ring) around the first.")
+    )
+    module: Number | None = field(
+        default=None, metadata=value_key("length", "Pitch diameter by number of teeth; checked against the axes.")
+    )
 
     code: ClassVar[str] = "G"
     title: ClassVar[str] = "gear pair"
     table: ClassVar[str] = "gears"
-    keys: ClassVar[tuple[Key, ...]] = (
-        *Geared.keys,
-        Key("internal", "flag", "Whether the second is an internal gear (a ring) around the first.", default=False),
-        Key("module", "length", "Pitch diameter by number of teeth; checked against the axes.", default=None),
-    )
 
     @property
     def turns_alike(self) -> bool:
@@ -91,28 +94,4 @@ class Gear(Geared):
         )
 
 
-def gear(
-    first: str,
-    second: str,
-    *,
-    carrier: str = "frame",
-    teeth: Any = None,
-    radii: Any = None,
-    internal: bool = False,
-    module: Number | None = None,
-    phase: Number | None = None,
-    first_at: str = "",
-    second_at: str = "",
-    name: str = "",
-) -> Gear:
-    """A gear pair: `first` and `second` mesh, their axes carried by `carrier`; two `teeth` or two `radii`.
-
-    `internal=True` where the second is a ring around the first; `phase` in radians. See `Gear`.
-
-    >>> gear("sun", "planet", carrier="arm", teeth=(20, 40)).name
-    'sun/planet'
-    """
-    sizes = two_of("teeth", teeth), two_of("radii", radii)
-    return Gear(
-        name or f"{first}/{second}", first, second, carrier, *sizes, phase, first_at, second_at, internal, module
-    )
+gear = word("gear", Gear)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,10 +11,11 @@ import numpy as np
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import link_key, value_key
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Osculation, Pair, Point, Poses, table
+from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, times
+from compoundkin.model.pairs.optional_answers import Osculation, Replaceable, TurnCounting, as_drivable
 
 Two = tuple[Number, Number]
 
@@ -23,7 +24,7 @@ FITS = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
-class Geared(Pair):
+class Geared(TurnCounting, Replaceable):
     """The link `first` and the link `second` turn about their axes on the link `carrier` in a fixed ratio.
 
     An axis is the point that a link shares with the carrier; `first_at` and `second_at` name it where there are
@@ -35,32 +36,38 @@ class Geared(Pair):
     Machinery, chapter 9 (gear trains by Willis's equation).
     """
 
-    name: str
-    first: str
-    second: str
-    carrier: str = "frame"
-    teeth: Two | None = None
-    radii: Two | None = None
-    phase: Number | None = None
-    first_at: str = ""
-    second_at: str = ""
+    first: str = field(metadata=link_key("The link with the first wheel."))
+    second: str = field(metadata=link_key("The link with the second wheel."))
+    _: KW_ONLY
+    carrier: str = field(default="frame", metadata=link_key("The link that carries both axes."))
+    teeth: Sequence[Number] | None = field(
+        default=None, metadata=value_key("two", "Numbers of teeth of the two wheels.")
+    )
+    radii: Sequence[Number] | None = field(
+        default=None, metadata=value_key("two", "Radii of the two wheels, of pitch circles for gears.")
+    )
+    phase: Number | None = field(
+        default=None,
+        metadata=value_key("angle", "Angle of the second from the carrier where that of the first is zero."),
+    )
+    first_at: str = field(
+        default="",
+        metadata=value_key("name", "The axis of the first link, where it shares several points with the carrier."),
+    )
+    second_at: str = field(
+        default="",
+        metadata=value_key("name", "The axis of the second link, where it shares several points with the carrier."),
+    )
 
     held: ClassVar[int] = 1
     free: ClassVar[tuple[str, ...]] = ("angle",)
     free_is_angle: ClassVar[bool] = True
-    counts_turns: ClassVar[bool] = True
-    adds_angles: ClassVar[bool] = True
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the pair is called in reports; FIRST/SECOND where it is left out."),
-        Key("first", "name", "The link with the first wheel.", required=True),
-        Key("second", "name", "The link with the second wheel.", required=True),
-        Key("carrier", "name", "The link that carries both axes.", default="frame"),
-        Key("teeth", "two", "Numbers of teeth of the two wheels.", default=None),
-        Key("radii", "two", "Radii of the two wheels, of pitch circles for gears.", default=None),
-        Key("phase", "angle", "Angle of the second from the carrier where that of the first is zero.", default=None),
-        Key("first_at", "name", "The axis of the first link, where it shares several points with the carrier."),
-        Key("second_at", "name", "The axis of the second link, where it shares several points with the carrier."),
-    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        """Two sizes are numbers or arrays."""
+        super().__post_init__()
+        for name in ("teeth", "radii"):
+            object.__setattr__(self, name, two_of(name, getattr(self, name)))
 
     @property
     def turns_alike(self) -> bool:
@@ -71,11 +78,6 @@ class Geared(Pair):
     def members(self) -> tuple[str, ...]:
         """The two wheels and their carrier."""
         return self.first, self.second, self.carrier
-
-    @property
-    def called(self) -> str:
-        """The two wheels."""
-        return f"{self.first}/{self.second}"
 
     @property
     def letters(self) -> tuple[str, ...]:
@@ -216,7 +218,7 @@ class Geared(Pair):
 
     def is_affine(self, lower: Pair, own: int) -> bool:
         """On a pin, any of the three turns in proportion."""
-        return lower.free_is_angle
+        return lower.free_is_angle and as_drivable(lower) is not None
 
     def generic(self, rng: np.random.Generator) -> Ends:
         """Axes at random places, the ratio as it is: it may make a train lock."""
@@ -268,9 +270,14 @@ def check_distance(pair: Geared, geometry: Geometry, where: str, wanted: Number,
         yield Problem(where, what, "change the sizes or move an axis; give teeth alone for a distance as it is")
 
 
-def _proportional(one: Two, two: Two) -> bool:
+def _proportional(one: Sequence[Number], two: Sequence[Number]) -> bool:
     return bool(np.all(np.abs(one[0] * two[1] - one[1] * two[0]) <= FITS * np.abs(one[0] * two[1])))
 
 
-def _shown(sizes: Two) -> str:
+def _shown(sizes: Sequence[Number]) -> str:
     return " and ".join(f"{size:g}" if np.ndim(size) == 0 else str(np.asarray(size).tolist()) for size in sizes)
+
+
+def as_geared(pair: Pair) -> Geared | None:
+    """Return a pair as one whose closure is a sum of its members' angles times constants, or None."""
+    return pair if isinstance(pair, Geared) else None

@@ -13,8 +13,8 @@ from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import named_problems
-from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses
+from compoundkin.model.pairs.contract import Ends, Point, Poses
+from compoundkin.model.pairs.optional_answers import TurnCounting
 from compoundkin.model.pairs.symbols import Mark, Track, Wheel, reach
 
 # A radius fits a drawn distance that it meets to this part of it: drawings are given to some five digits.
@@ -23,12 +23,11 @@ FITS = 1e-5
 Row = tuple[Number, ...]
 
 
-class OnLine(Pair):
+class OnLine(TurnCounting):
     """A wheel of a radius that rolls along a straight line of another link; first the link with the line."""
 
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
-    counts_turns: ClassVar[bool] = True
 
     at: str
     through: str
@@ -47,15 +46,9 @@ class OnLine(Pair):
         """The axis of the wheel and the points that fix the line."""
         return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
 
-    def line_problems(
-        self, links: Mapping[str, tuple[str, ...]], where: str, names: Mapping[str, str]
-    ) -> Iterator[Problem]:
-        """Unknown links and points, a line without direction, a side that is none; `names` are the links by key."""
-        line, wheel = self.members
-        points = {"at": (wheel, self.at), "through": (line, self.through)}
-        if self.toward is not None:
-            points["toward"] = (line, self.toward)
-        yield from named_problems(links, where, names, points)
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Unknown links and points, a line without direction, a side that is none."""
+        yield from super().problems(links, where)
         if self.toward == self.through:
             yield Problem(f"{where}.toward", f"a line from {self.through!r} to itself has no direction")
         if self.side not in (1, -1):

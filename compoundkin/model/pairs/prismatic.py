@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
 from compoundkin.base.arrays import cross, dot
-from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import NameWording, link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.model.pairs.contract import Ends, Point, Poses, table
 from compoundkin.model.pairs.loop_terms import (
     Auxiliary,
     LoopTerms,
@@ -25,11 +25,12 @@ from compoundkin.model.pairs.loop_terms import (
     difference,
     direction,
 )
+from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 
 
 @dataclass(frozen=True, eq=False)
-class Prismatic(Pair):
+class Prismatic(Drivable):
     """The link `link` slides on the link `on`: its point `at` runs along a guide.
 
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x
@@ -39,17 +40,34 @@ class Prismatic(Pair):
 
     Held: the distance of `at` from the guide; the sine of the angle between block and guide. Free: the
     displacement from `through` to `at` along the guide.
+
+    >>> slide("block", on="bar", at="C", through="F").name
+    'block/bar'
     """
 
-    name: str
-    link: str
-    on: str
-    at: str
-    through: str
-    angle: Number = 0.0
-    toward: str | None = None
-    offset: Number | None = None
-    turn: Number | None = None
+    link: str = field(metadata=link_key("The link that slides (the block)."))
+    _: KW_ONLY
+    on: str = field(metadata=link_key("The link that carries the guide."))
+    at: str = field(
+        default="",
+        metadata=point_key(
+            "link",
+            "The point of the sliding link that runs along the guide; may be left out if the link has one point.",
+        ),
+    )
+    through: str = field(metadata=point_key("on", "A point of the guiding link on the guide."))
+    angle: Number = field(
+        default=0.0, metadata=value_key("angle", "Direction of the guide from the x axis of the guiding link.")
+    )
+    toward: str | None = field(
+        default=None, metadata=point_key("on", "A second point of the guiding link on the guide, instead of an angle.")
+    )
+    offset: Number | None = field(
+        default=None, metadata=value_key("length", "Distance by which the guide lies to the left of `through`.")
+    )
+    turn: Number | None = field(
+        default=None, metadata=value_key("angle", "Angle from the guide to the x axis of the sliding link.")
+    )
 
     code: ClassVar[str] = "P"
     title: ClassVar[str] = "prismatic pair"
@@ -58,21 +76,7 @@ class Prismatic(Pair):
     free_is_angle: ClassVar[bool] = False
     is_simple: ClassVar[bool] = True
     table: ClassVar[str] = "slides"
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
-        Key("link", "name", "The link that slides (the block).", required=True),
-        Key("on", "name", "The link that carries the guide.", required=True),
-        Key(
-            "at",
-            "name",
-            "The point of the sliding link that runs along the guide; may be left out if the link has one point.",
-        ),
-        Key("through", "name", "A point of the guiding link on the guide.", required=True),
-        Key("angle", "angle", "Direction of the guide from the x axis of the guiding link.", default=0.0),
-        Key("toward", "name", "A second point of the guiding link on the guide, instead of an angle."),
-        Key("offset", "length", "Distance by which the guide lies to the left of `through`.", default=None),
-        Key("turn", "angle", "Angle from the guide to the x axis of the sliding link.", default=None),
-    )
+    wording: ClassVar[NameWording] = NameWording("slide", "name the link that carries the guide", "the one that slides")
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -85,37 +89,10 @@ class Prismatic(Pair):
         return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a link that slides on itself or is pinned to its guide."""
-        missing = [(key, name) for key, name in (("link", self.link), ("on", self.on)) if name not in links]
-        for key, name in missing:
-            yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, list(links)))
-        if missing:
-            return
-        if self.link == self.on:
-            yield Problem(
-                f"{where}.on", f"{self.link!r} cannot slide on itself", "name the link that carries the guide"
-            )
-        wanted = [("at", self.link, self.at), ("through", self.on, self.through)]
-        if self.toward is not None:
-            wanted.append(("toward", self.on, self.toward))
-        for key, link, point in wanted:
-            if not point:
-                yield Problem(
-                    f"{where}.{key}",
-                    f"link {link!r} has several points",
-                    f"name the one that slides: {', '.join(links[link])}",
-                )
-            elif point not in links[link]:
-                yield Problem(
-                    f"{where}.{key}", f"link {link!r} has no point {point!r}", nearest(point, list(links[link]))
-                )
+        """Unknown links and points, a link that slides on itself, a guide from a point to itself."""
+        yield from super().problems(links, where)
         if self.toward is not None and self.toward == self.through:
             yield Problem(f"{where}.toward", f"a guide from {self.through!r} to itself has no direction")
-
-    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Prismatic:
-        """With the block's only point as the one that slides, where none is named."""
-        points = links.get(self.link, ())
-        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
 
     def ends(self, geometry: Geometry) -> Ends:
         """Guide point and direction on each link; the two directions are parallel when the pair is closed."""
@@ -213,23 +190,4 @@ class Prismatic(Pair):
         return (Sliding(guide.point, guide.along.c[0], low, high, block.point, block.along.c[0]),)
 
 
-def slide(
-    link: str,
-    *,
-    on: str,
-    through: str,
-    at: str = "",
-    angle: Number = 0.0,
-    toward: str | None = None,
-    offset: Number | None = None,
-    turn: Number | None = None,
-    name: str = "",
-) -> Prismatic:
-    """A prismatic pair: the point `at` of `link` runs along a straight guide on the link `on`.
-
-    `angle` and `turn` in radians, `offset` a length; numbers or arrays. See `Prismatic` for their meaning.
-
-    >>> slide("block", on="bar", at="C", through="F").name
-    'block/bar'
-    """
-    return Prismatic(name or f"{link}/{on}", link, on, at, through, angle, toward, offset, turn)
+slide = word("slide", Prismatic)

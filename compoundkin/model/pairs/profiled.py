@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.curves import Curve
 from compoundkin.base.curves.samples import spans
 from compoundkin.base.series import Number
-from compoundkin.model.pairs.contact import Contact
+from compoundkin.model.pairs.contact import Contact, Freedom
 from compoundkin.model.pairs.contract import Ends, Pair, Poses
 from compoundkin.model.profiles import Profile
 
@@ -21,9 +21,8 @@ CUTS = 1e-7
 
 
 class Profiled(Contact):
-    """A contact with a profile of the link `on`."""
+    """A contact with a profile of the link `on`, which leads a member along it."""
 
-    has_profile: ClassVar[bool] = True
     is_flat: ClassVar[bool]  # whether a flat face touches, which has no pitch curve
 
     profile: Profile
@@ -82,6 +81,18 @@ class Profiled(Contact):
             return spans(curve.samples, curve.low, curve.high, self._above_face)
         return spans(curve.samples, curve.low, curve.high, self._beside_roller) if self.roller else ()
 
+    @abstractmethod
+    def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
+        """The coordinates at which a member of one freedom is in contact in mode -1 and +1, nearly.
+
+        `poses` are those where the coordinate is zero; NaN where there is no contact. The modes are those of the lower
+        pairs that stand for a round disc.
+        """
+
+    @abstractmethod
+    def no_contact_reason(self) -> str:
+        """Why a member has no contact where there are no candidates, in a sentence."""
+
     def smooth_piece(self, ends: Ends, poses: Poses) -> Number:
         """Between which of the places where the profile's derivatives jump, or the contact leaps, it is."""
         return self.curve.smooth_piece(self.parameter(ends, poses), self._leaps)
@@ -110,6 +121,6 @@ class Profiled(Contact):
         return CUTS * curve.size - (self.roller - nearer)
 
 
-def profiled(pair: Pair) -> Profiled | None:
-    """Return a pair as one with a profile, or None."""
+def as_profiled(pair: Pair) -> Profiled | None:
+    """Return a pair as one that leads a member along a profile, or None."""
     return pair if isinstance(pair, Profiled) else None

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
 from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Pair, Poses, table
 from compoundkin.model.pairs.gear import UNCOUNTED
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, direction, times
@@ -32,49 +32,45 @@ class Rack(OnLine):
     its distance but other pairs: a pin and a slide on the frame, a carrier, a yoke; `verify` tells where it is not. A
     cable that a drum winds up and that pulls a block is the same pair. Source: e.g. J. J. Uicker, G. R. Pennock and
     J. E. Shigley, Theory of Machines and Mechanisms, chapter 7 (a rack is a gear of infinite radius).
+
+    >>> rack("bar", "wheel", through="Q", at="C", radius=12).size
+    12
     """
 
-    name: str
-    rack: str
-    pinion: str
-    through: str
-    at: str = ""
-    angle: Number = 0.0
-    toward: str | None = None
-    radius: Number | None = None
-    teeth: Number | None = None
-    module: Number | None = None
-    side: int = 1
-    phase: Number | None = None
+    rack: str = field(metadata=link_key("The link with the rack, or the block that a cable pulls."))
+    pinion: str = field(metadata=link_key("The link with the pinion, or the drum."))
+    _: KW_ONLY
+    through: str = field(metadata=point_key("rack", "A point of the rack on its pitch line."))
+    at: str = field(
+        default="", metadata=point_key("pinion", "The axis of the pinion; may be left out if its link has one point.")
+    )
+    angle: Number = field(
+        default=0.0, metadata=value_key("angle", "Direction of the pitch line from the x axis of the rack.")
+    )
+    toward: str | None = field(
+        default=None, metadata=point_key("rack", "A second point of the rack on the pitch line, instead of an angle.")
+    )
+    radius: Number | None = field(default=None, metadata=value_key("length", "Pitch radius of the pinion."))
+    teeth: Number | None = field(
+        default=None, metadata=value_key("length", "Number of teeth of the pinion, instead of a radius.")
+    )
+    module: Number | None = field(default=None, metadata=value_key("length", "Pitch diameter by number of teeth."))
+    side: int = field(
+        default=1, metadata=value_key("sign", "1 where the pinion is to the left of the pitch line, -1 to the right.")
+    )
+    phase: Number | None = field(
+        default=None, metadata=value_key("length", "Displacement of the axis where the pinion's angle is zero.")
+    )
 
     code: ClassVar[str] = "K"
     title: ClassVar[str] = "rack pair"
     held: ClassVar[int] = 1
     table: ClassVar[str] = "racks"
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the pair is called in reports; RACK/PINION where it is left out."),
-        Key("rack", "name", "The link with the rack, or the block that a cable pulls.", required=True),
-        Key("pinion", "name", "The link with the pinion, or the drum.", required=True),
-        Key("through", "name", "A point of the rack on its pitch line.", required=True),
-        Key("at", "name", "The axis of the pinion; may be left out if its link has one point."),
-        Key("angle", "angle", "Direction of the pitch line from the x axis of the rack.", default=0.0),
-        Key("toward", "name", "A second point of the rack on the pitch line, instead of an angle."),
-        Key("radius", "length", "Pitch radius of the pinion.", default=None),
-        Key("teeth", "length", "Number of teeth of the pinion, instead of a radius.", default=None),
-        Key("module", "length", "Pitch diameter by number of teeth.", default=None),
-        Key("side", "sign", "1 where the pinion is to the left of the pitch line, -1 to the right.", default=1),
-        Key("phase", "length", "Displacement of the axis where the pinion's angle is zero.", default=None),
-    )
 
     @property
     def members(self) -> tuple[str, ...]:
         """The rack and the pinion."""
         return self.rack, self.pinion
-
-    @property
-    def called(self) -> str:
-        """The rack and the pinion."""
-        return f"{self.rack}/{self.pinion}"
 
     @property
     def size(self) -> Number:
@@ -85,7 +81,7 @@ class Rack(OnLine):
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Unknown links and points, a pinion without a size or with two."""
-        yield from self.line_problems(links, where, {"rack": self.rack, "pinion": self.pinion})
+        yield from super().problems(links, where)
         for key in ("radius", "teeth", "module"):
             yield from radius_problems(where, key, getattr(self, key))
         if self.teeth is not None and not np.all(np.asarray(self.teeth) == np.round(self.teeth)):
@@ -98,11 +94,6 @@ class Rack(OnLine):
             if not np.all(np.abs(wanted - self.radius) <= FITS * np.abs(self.radius)):
                 what = "the radius is given, and teeth or module that do not fit it"
                 yield Problem(f"{where}.radius", what, "give the radius, or teeth and module")
-
-    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Rack:
-        """With the only point of the pinion as its axis, where none is named."""
-        points = links.get(self.pinion, ())
-        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """The slip."""
@@ -127,7 +118,7 @@ class Rack(OnLine):
     def is_affine(self, lower: Pair, own: int) -> bool:
         """Where a member only slides, or the pinion only turns about its axis."""
         if not lower.free_is_angle:
-            return lower.free == ("displacement",) and not lower.counts_turns
+            return lower.free == ("displacement",) and lower.is_simple
         return isinstance(lower, Revolute) and own == 1 and lower.at == self.at and self.pinion in lower.members
 
     @property
@@ -138,27 +129,4 @@ class Rack(OnLine):
         return float(2.0 * np.pi * np.ravel(self.size)[0] / UNCOUNTED)
 
 
-def rack(
-    rack: str,
-    pinion: str,
-    *,
-    through: str,
-    at: str = "",
-    angle: Number = 0.0,
-    toward: str | None = None,
-    radius: Number | None = None,
-    teeth: Number | None = None,
-    module: Number | None = None,
-    side: int = 1,
-    phase: Number | None = None,
-    name: str = "",
-) -> Rack:
-    """A rack pair: the link `pinion`, about its point `at`, rolls along the pitch line of the link `rack`.
-
-    `angle` in radians; `radius`, `module` and `phase` lengths; numbers or arrays. See `Rack` for their meaning.
-
-    >>> rack("bar", "wheel", through="Q", at="C", radius=12).size
-    12
-    """
-    sizes = radius, teeth, module
-    return Rack(name or f"{rack}/{pinion}", rack, pinion, through, at, angle, toward, *sizes, side, phase)
+rack = word("rack", Rack)

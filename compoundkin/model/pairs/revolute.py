@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -12,19 +12,20 @@ from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.model.pairs.contract import Ends, Point, Poses, table
 from compoundkin.model.pairs.loop_terms import LoopTerms
+from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.model.pairs.symbols import Mark, Pin
 
 
 @dataclass(frozen=True)
-class Revolute(Pair):
+class Revolute(Drivable):
     """A pin at the letter `at` between the links `first` and `second`.
 
     Held: the distance in x and in y between the two sides of the pin. Free: the angle from first to second.
     """
 
-    name: str
+    name: str = field()
     at: str
     first: str
     second: str

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Poses, table
 from compoundkin.model.pairs.loop_terms import (
     Auxiliary,
@@ -24,11 +24,12 @@ from compoundkin.model.pairs.loop_terms import (
     direction,
     times,
 )
+from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.model.pairs.pitch_line import OnLine, radius_problems
 
 
 @dataclass(frozen=True, eq=False)
-class Rolling(OnLine):
+class Rolling(OnLine, Drivable):
     """The link `link`, a wheel about its point `at`, rolls without slip along a straight line of the link `on`.
 
     The line runs through the point `through` of `on`, in the direction `angle` (radians, from the x axis of `on`) or
@@ -39,35 +40,36 @@ class Rolling(OnLine):
     Held: the distance of the wheel's middle from the line; ``displacement + side * radius * angle - phase``. Free: the
     displacement of the middle along the line. Points of the wheel run on cycloids: e.g. E. A. Lockwood, A Book of
     Curves, chapter 9.
+
+    >>> roll("wheel", on="frame", through="O", at="C", radius=2).name
+    'wheel/frame'
     """
 
-    name: str
-    link: str
-    on: str
-    through: str
-    at: str = ""
-    angle: Number = 0.0
-    toward: str | None = None
-    radius: Number = 1.0
-    side: int = 1
-    phase: Number | None = None
+    link: str = field(metadata=link_key("The link with the wheel."))
+    _: KW_ONLY
+    on: str = field(metadata=link_key("The link with the line."))
+    through: str = field(metadata=point_key("on", "A point of the link `on` on the line."))
+    at: str = field(
+        default="", metadata=point_key("link", "The middle of the wheel; may be left out if its link has one point.")
+    )
+    angle: Number = field(
+        default=0.0, metadata=value_key("angle", "Direction of the line from the x axis of its link.")
+    )
+    toward: str | None = field(
+        default=None, metadata=point_key("on", "A second point of the line, instead of an angle.")
+    )
+    radius: Number = field(metadata=value_key("length", "Radius of the wheel."))
+    side: int = field(
+        default=1, metadata=value_key("sign", "1 where the wheel is to the left of the line, -1 to the right.")
+    )
+    phase: Number | None = field(
+        default=None, metadata=value_key("length", "Displacement where the wheel's angle is zero.")
+    )
 
     code: ClassVar[str] = "L"
     title: ClassVar[str] = "rolling pair"
     held: ClassVar[int] = 2
     table: ClassVar[str] = "rollings"
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
-        Key("link", "name", "The link with the wheel.", required=True),
-        Key("on", "name", "The link with the line.", required=True),
-        Key("through", "name", "A point of the link `on` on the line.", required=True),
-        Key("at", "name", "The middle of the wheel; may be left out if its link has one point."),
-        Key("angle", "angle", "Direction of the line from the x axis of its link.", default=0.0),
-        Key("toward", "name", "A second point of the line, instead of an angle."),
-        Key("radius", "length", "Radius of the wheel.", required=True),
-        Key("side", "sign", "1 where the wheel is to the left of the line, -1 to the right.", default=1),
-        Key("phase", "length", "Displacement where the wheel's angle is zero.", default=None),
-    )
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -81,13 +83,8 @@ class Rolling(OnLine):
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Unknown links and points, a radius that is none."""
-        yield from self.line_problems(links, where, {"link": self.link, "on": self.on})
+        yield from super().problems(links, where)
         yield from radius_problems(where, "radius", self.radius)
-
-    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Rolling:
-        """With the only point of the wheel as its middle, where none is named."""
-        points = links.get(self.link, ())
-        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """The distance from the line but for the radius, and the slip."""
@@ -117,24 +114,4 @@ class Rolling(OnLine):
         return Pose(free * line.along + (line.point + 1j * line.along * across) - u * wheel.point, u, theta)
 
 
-def roll(
-    link: str,
-    *,
-    on: str,
-    through: str,
-    radius: Number,
-    at: str = "",
-    angle: Number = 0.0,
-    toward: str | None = None,
-    side: int = 1,
-    phase: Number | None = None,
-    name: str = "",
-) -> Rolling:
-    """A rolling pair: the wheel `link`, about its point `at`, rolls along a straight line of the link `on`.
-
-    `angle` in radians, `radius` and `phase` lengths; numbers or arrays. See `Rolling` for their meaning.
-
-    >>> roll("wheel", on="frame", through="O", at="C", radius=2).name
-    'wheel/frame'
-    """
-    return Rolling(name or f"{link}/{on}", link, on, through, at, angle, toward, radius, side, phase)
+roll = word("roll", Rolling)

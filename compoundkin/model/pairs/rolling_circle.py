@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -12,10 +12,9 @@ from compoundkin.base.arrays import TURN, whole_turns
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import named_problems
-from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
+from compoundkin.model.pairs.contract import Ends, Point, Poses, table
 from compoundkin.model.pairs.loop_terms import (
     Auxiliary,
     LoopTerms,
@@ -26,12 +25,13 @@ from compoundkin.model.pairs.loop_terms import (
     difference,
     direction,
 )
+from compoundkin.model.pairs.optional_answers import Drivable, TurnCounting
 from compoundkin.model.pairs.pitch_line import radius_problems
 from compoundkin.model.pairs.symbols import Mark, Wheel
 
 
 @dataclass(frozen=True, eq=False)
-class RollingOnCircle(Pair):
+class RollingOnCircle(TurnCounting, Drivable):
     """The link `link`, a wheel about its point `at`, rolls without slip on a circle of the link `on`.
 
     The circle is that of radius `circle` about the point `centre_at` of `on`; the wheel rolls outside it, or `inside`
@@ -41,36 +41,32 @@ class RollingOnCircle(Pair):
 
     Held: the gap, in x and y, between the wheel's middle and where its angle puts it. Free: the direction of the line
     of centres. Points of the wheel run on epi- and hypocycloids: e.g. E. A. Lockwood, A Book of Curves, chapter 17.
+
+    >>> roll_around("planet", on="frame", centre_at="O", at="P", circle=4, radius=2, inside=True).letters
+    ('P', 'O')
     """
 
-    name: str
-    link: str
-    on: str
-    centre_at: str
-    at: str = ""
-    circle: Number = 2.0
-    radius: Number = 1.0
-    inside: bool = False
-    phase: Number | None = None
+    link: str = field(metadata=link_key("The link with the wheel."))
+    _: KW_ONLY
+    on: str = field(metadata=link_key("The link with the circle."))
+    centre_at: str = field(metadata=point_key("on", "The point of the link `on` about which the circle is."))
+    at: str = field(
+        default="", metadata=point_key("link", "The middle of the wheel; may be left out if its link has one point.")
+    )
+    circle: Number = field(metadata=value_key("length", "Radius of the circle on which the wheel rolls."))
+    radius: Number = field(metadata=value_key("length", "Radius of the wheel."))
+    inside: bool = field(default=False, metadata=value_key("flag", "Whether the wheel rolls inside the circle."))
+    phase: Number | None = field(
+        default=None,
+        metadata=value_key("angle", "Angle of the wheel where the direction of the line of centres is zero."),
+    )
 
     code: ClassVar[str] = "O"
     title: ClassVar[str] = "circular rolling pair"
     held: ClassVar[int] = 2
     free: ClassVar[tuple[str, ...]] = ("direction",)
     free_is_angle: ClassVar[bool] = True
-    counts_turns: ClassVar[bool] = True
     table: ClassVar[str] = "circular_rollings"
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
-        Key("link", "name", "The link with the wheel.", required=True),
-        Key("on", "name", "The link with the circle.", required=True),
-        Key("centre_at", "name", "The point of the link `on` about which the circle is.", required=True),
-        Key("at", "name", "The middle of the wheel; may be left out if its link has one point."),
-        Key("circle", "length", "Radius of the circle on which the wheel rolls.", required=True),
-        Key("radius", "length", "Radius of the wheel.", required=True),
-        Key("inside", "flag", "Whether the wheel rolls inside the circle.", default=False),
-        Key("phase", "angle", "Angle of the wheel where the direction of the line of centres is zero.", default=None),
-    )
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -84,18 +80,12 @@ class RollingOnCircle(Pair):
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Unknown links and points, radii that are none, a wheel that is not smaller than the ring around it."""
-        points = {"at": (self.link, self.at), "centre_at": (self.on, self.centre_at)}
-        yield from named_problems(links, where, {"link": self.link, "on": self.on}, points)
+        yield from super().problems(links, where)
         for key in ("circle", "radius"):
             yield from radius_problems(where, key, getattr(self, key))
         if self.inside and not np.all(np.asarray(self.radius) < np.asarray(self.circle)):
             what = "a wheel inside a circle is not smaller than it"
             yield Problem(f"{where}.radius", what, "make it smaller, or leave `inside` out")
-
-    def completed(self, links: Mapping[str, tuple[str, ...]]) -> RollingOnCircle:
-        """With the only point of the wheel as its middle, where none is named."""
-        points = links.get(self.link, ())
-        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
 
     @property
     def _turns(self) -> Number:
@@ -203,23 +193,4 @@ class RollingOnCircle(Pair):
         return circle, Wheel(1, ends[1].point, abs(radius))
 
 
-def roll_around(
-    link: str,
-    *,
-    on: str,
-    centre_at: str,
-    circle: Number,
-    radius: Number,
-    at: str = "",
-    inside: bool = False,
-    phase: Number | None = None,
-    name: str = "",
-) -> RollingOnCircle:
-    """A circular rolling pair: the wheel `link` rolls on the circle of radius `circle` about a point of `on`.
-
-    `inside=True` where the circle is a ring around the wheel; `phase` in radians. See `RollingOnCircle`.
-
-    >>> roll_around("planet", on="frame", centre_at="O", at="P", circle=4, radius=2, inside=True).letters
-    ('P', 'O')
-    """
-    return RollingOnCircle(name or f"{link}/{on}", link, on, centre_at, at, circle, radius, inside, phase)
+roll_around = word("roll_around", RollingOnCircle)

@@ -1,20 +1,24 @@
-"""The pin in a slot: a point of one link runs along a straight slot in another, free to turn in it."""
+"""The pin in a slot: a point of one link runs along a straight slot in another, free to turn in it.
+
+It is also what is left of a slide, or of a pin, where part of that is redundant.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import KW_ONLY, dataclass, field
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import Contact, Touch, named_problems, row
-from compoundkin.model.pairs.contract import Ends, Equivalent, Osculation, Poses
+from compoundkin.model.pairs.contact import Contact, Touch, row
+from compoundkin.model.pairs.contract import Ends, Pair, Poses
+from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Groove, Mark, Stud, reach
@@ -30,32 +34,33 @@ class Slot(Contact):
 
     Held: the distance of the pin from the middle of the slot. Free: the displacement from `through` along the slot, and
     the angle.
+
+    >>> slot("crank", on="arm", at="B", through="C").name
+    'crank/arm'
     """
 
-    name: str
-    link: str
-    on: str
-    at: str
-    through: str
-    angle: Number = 0.0
-    toward: str | None = None
-    offset: Number = 0.0
+    link: str = field(metadata=link_key("The link with the pin."))
+    _: KW_ONLY
+    on: str = field(metadata=link_key("The link with the slot."))
+    at: str = field(
+        default="", metadata=point_key("link", "The pin's point; may be left out if its link has one point.")
+    )
+    through: str = field(metadata=point_key("on", "A point of the slotted link in the slot."))
+    angle: Number = field(
+        default=0.0, metadata=value_key("angle", "Direction of the slot from the x axis of its link.")
+    )
+    toward: str | None = field(
+        default=None, metadata=point_key("on", "A second point of the slotted link in the slot, instead of an angle.")
+    )
+    offset: Number = field(
+        default=0.0, metadata=value_key("length", "Distance by which the slot lies to the left of `through`.")
+    )
 
     code: ClassVar[str] = "S"
     title: ClassVar[str] = "pin-in-slot pair"
     free: ClassVar[tuple[str, ...]] = ("displacement", "angle")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "slots"
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the pair is called in reports; LINK/ON where it is left out."),
-        Key("link", "name", "The link with the pin.", required=True),
-        Key("on", "name", "The link with the slot.", required=True),
-        Key("at", "name", "The pin's point; may be left out if its link has one point."),
-        Key("through", "name", "A point of the slotted link in the slot.", required=True),
-        Key("angle", "angle", "Direction of the slot from the x axis of its link.", default=0.0),
-        Key("toward", "name", "A second point of the slotted link in the slot, instead of an angle."),
-        Key("offset", "length", "Distance by which the slot lies to the left of `through`.", default=0.0),
-    )
 
     @property
     def letters(self) -> tuple[str, ...]:
@@ -64,10 +69,7 @@ class Slot(Contact):
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Unknown links and points, a slot without direction."""
-        points = {"at": (self.link, self.at), "through": (self.on, self.through)}
-        if self.toward is not None:
-            points["toward"] = (self.on, self.toward)
-        yield from named_problems(links, where, {"link": self.link, "on": self.on}, points)
+        yield from super().problems(links, where)
         if self.toward == self.through:
             yield Problem(f"{where}.toward", f"a slot from {self.through!r} to itself has no direction")
 
@@ -77,11 +79,6 @@ class Slot(Contact):
         if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
             what = f"{self.through!r} and {self.toward!r} are at one place, so that the slot has no direction"
             yield Problem(f"{where}.toward", what, "name another point or give an angle")
-
-    def completed(self, links: Mapping[str, tuple[str, ...]]) -> Slot:
-        """With the only point of its link as the pin, where none is named."""
-        points = links.get(self.link, ())
-        return replace(self, at=points[0]) if not self.at and len(points) == 1 else self
 
     def ends(self, geometry: Geometry) -> Ends:
         """A point and the direction of the slot; the pin."""
@@ -111,7 +108,7 @@ class Slot(Contact):
         """A block in the slot, pinned to the other link."""
         block = f"{self.name} (block)"
         pairs = (
-            Prismatic(f"{self.name} (slide)", block, self.on, self.at, self.through),
+            Prismatic(block, on=self.on, at=self.at, through=self.through, name=f"{self.name} (slide)"),
             Revolute(f"{self.name} (pin)", self.at, block, self.link),
         )
         return Equivalent(block, pairs, {pairs[0].name: (ends[0], End(0j, 1 + 0j)), pairs[1].name: (End(0j), ends[1])})
@@ -137,22 +134,48 @@ class Slot(Contact):
         return Groove(0, ends[0].point + ends[0].along.c[0] * travel), Stud(1, ends[1].point)
 
 
-def slot(
-    link: str,
-    *,
-    on: str,
-    through: str,
-    at: str = "",
-    angle: Number = 0.0,
-    toward: str | None = None,
-    offset: Number = 0.0,
-    name: str = "",
-) -> Slot:
-    """A pin in a slot: the point `at` of `link` runs along a straight slot in the link `on`.
+slot = word("slot", Slot)
 
-    `angle` in radians, `offset` a length; numbers or arrays. See `Slot` for their meaning.
 
-    >>> slot("crank", on="arm", at="B", through="C").name
-    'crank/arm'
+class Loosened(NamedTuple):
+    """A pair with some held coordinates left out: their numbers, what they are in words, and what is left."""
+
+    coordinates: tuple[int, ...]
+    freed: str
+    kept: Pair | None
+
+
+@dataclass(frozen=True, eq=False)
+class TurningBlock(Slot):
+    """A slide whose block may turn: its point still runs along the guide."""
+
+    slide: Prismatic | None = field(default=None, kw_only=True)
+
+    def ends(self, geometry: Geometry) -> Ends:
+        """The guide as the slide has it, offsets read off a drawing included; the point that slides."""
+        assert self.slide is not None
+        guide, block = self.slide.ends(geometry)
+        return guide, End(block.point)
+
+
+def loosened(pair: Pair) -> Iterator[Loosened]:
+    """The ways to leave out part of a written pair, the least first.
+
+    >>> from compoundkin.model.pairs import slide
+    >>> [(way.coordinates, way.freed) for way in loosened(slide("w", on="v", at="A", through="B"))]
+    [((1,), 'in turning'), ((0, 1), 'as a whole')]
     """
-    return Slot(name or f"{link}/{on}", link, on, at, through, angle, toward, offset)
+    if isinstance(pair, Prismatic):
+        words = {name: getattr(pair, name) for name in ("link", "on", "at", "through", "angle", "toward")}
+        yield Loosened((1,), "in turning", TurningBlock(**words, name=f"{pair.name} (turning)", slide=pair))
+    yield Loosened(tuple(range(pair.held)), "as a whole", None)
+
+
+def pin_in_slot(letter: str, pinned: str, slotted: str, through: str) -> Pair:
+    """A pin that may move along the line from another point of one of its links.
+
+    >>> pin_in_slot("E", "coupler", "crank", "D").letters
+    ('E', 'D', 'E')
+    """
+    name = f"{letter}({pinned} in {slotted})"
+    return Slot(pinned, on=slotted, at=letter, through=through, toward=letter, name=name)

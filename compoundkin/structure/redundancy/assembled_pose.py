@@ -14,6 +14,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import constant
 from compoundkin.model.elements import FRAME
 from compoundkin.model.geometry import fitted_pose
+from compoundkin.model.pairs.optional_answers import as_drivable
 from compoundkin.structure.redundancy.constraint_equations import STRICT, Array, ConstraintEquations
 
 # Gauss and Newton's steps: at a pose where the equations are singular each halves the error only.
@@ -152,7 +153,8 @@ def _shown(equations: ConstraintEquations) -> dict[str, Pose]:
 def _guided(equations: ConstraintEquations, shown: Mapping[str, Pose]) -> dict[str, float]:
     """Return the angles of links that are not shown, where slides keep them from turning on links that are."""
     known = {**shown, FRAME: FIXED}
-    slides = [pair for pair in equations.pairs if pair.is_simple and not pair.free_is_angle]
+    simple = (as_drivable(pair) for pair in equations.pairs if pair.is_simple and not pair.free_is_angle)
+    slides = [pair for pair in simple if pair]
     found: dict[str, float] = {}
     while True:
         open_to = [pair for pair in slides if sum(name in known for name in pair.members) == 1]

@@ -16,6 +16,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.structure.composites import Pins, driven_pair
 from compoundkin.structure.parts import LINK_FREEDOMS
 
@@ -76,7 +77,7 @@ class ConstraintEquations:
         return tuple(pins.pair(letter, names[0], name) for letter, names in named for name in names[1:])
 
     @cached_property
-    def driven(self) -> tuple[Pair, ...]:
+    def driven(self) -> tuple[Drivable, ...]:
         """The pair of every driver."""
         pins = Pins(self.mechanism)
         return tuple(driven_pair(pins, drive) for drive in self.mechanism.drives)

@@ -16,7 +16,7 @@ import numpy as np
 
 from compoundkin.base.poses import Pose
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs.loosened import loosened, pin_in_slot
+from compoundkin.model.pairs.slot import loosened, pin_in_slot
 from compoundkin.structure.composites import GROUND, Composites
 from compoundkin.structure.parts import Dropped
 from compoundkin.structure.redundancy.constraint_equations import Array, ConstraintEquations

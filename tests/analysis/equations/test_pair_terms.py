@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -23,9 +25,10 @@ PAGE = (Path(__file__).parents[3] / "docs" / "adding.md").read_text(encoding="ut
 @pytest.fixture(params=["with its lower equivalent", "without"])
 def oldham(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Any:
     """The word of the Oldham pair of the page on adding kinds, with and without its optional `equivalent`."""
-    words: dict[str, Any] = {"__name__": "oldham"}
-    code = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)[0].replace("from __future__ import annotations\n", "")
-    monkeypatch.setitem(__import__("sys").modules, "oldham", type(re)("oldham"))
+    module = ModuleType("oldham")
+    words = vars(module)
+    code = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)[0]
+    monkeypatch.setitem(sys.modules, "oldham", module)
     exec(compile(code, "oldham.py", "exec"), words)
     if request.param == "without":
         monkeypatch.delattr(words["Oldham"], "equivalent")

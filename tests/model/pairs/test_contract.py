@@ -14,6 +14,7 @@ from compoundkin.base.series import Series, constant
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs import KINDS, WRITTEN, Pair
 from compoundkin.model.pairs.contract import Line
+from compoundkin.model.pairs.optional_answers import as_drivable, as_turn_counting
 from tests.support import ends_at, largest, random_planar, random_pose, random_real, random_unit, sample
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -63,7 +64,7 @@ def test_says_what_it_is(kind: type[Pair]) -> None:
     assert 0 < kind.held < 3
     assert kind.held + len(kind.free) <= 3
     assert len(pair.members) in (2, 3)
-    assert pair.is_drivable == (kind.held == 2)
+    assert (as_drivable(pair) is not None) == (kind.held == 2)
     assert pair.letters
     assert kind.title.endswith("pair")
     assert len({k.code for k in KINDS}) == len(KINDS)
@@ -93,6 +94,35 @@ def test_jacobian_against_central_differences(kind: type[Pair], seed: int) -> No
         turn = 2 * np.pi if kind.free_is_angle else np.inf
         near[-1], far[-1] = (np.remainder(v[-1] + np.pi, turn) - np.pi if turn < np.inf else v[-1] for v in (near, far))
         assert np.allclose(matrix[:, column], (8 * near - far) / 12e-3, atol=1e-8)
+
+
+@every_kind
+@given(seed=SEEDS)
+def test_jacobian_is_that_of_the_series(kind: type[Pair], seed: int) -> None:
+    """What a kind says for speed is what `Pair.jacobian` finds without it; a sharp hollow loses a digit or two."""
+    rng = np.random.default_rng(seed)
+    pair = sample(kind)
+    poses = random_poses(pair, rng, 2, (3,))
+    ends = free_ends(pair, rng)
+    assume_no_centre_of_curvature(pair, ends, poses)
+    assert np.allclose(pair.jacobian(ends, poses), Pair.jacobian(pair, ends, poses), atol=1e-9)
+
+
+@every_kind
+@given(seed=SEEDS)
+def test_centre_is_that_of_the_jacobian(kind: type[Pair], seed: int) -> None:
+    """What a kind says is what `Pair.centre` finds without it; a point may be known where that finds a line only."""
+    rng = np.random.default_rng(seed)
+    pair = sample(kind)
+    ends = pair.generic(rng)
+    poses = (FIXED,) * len(ends)
+    said, found = np.array(pair.centre(ends, poses)), np.array(Pair.centre(pair, ends, poses))
+    if isinstance(pair.centre(ends, poses), Line):
+        assert abs(abs(said @ found) / np.linalg.norm(said) / np.linalg.norm(found) - 1.0) < 1e-12
+    elif isinstance(Pair.centre(pair, ends, poses), Line):
+        assert abs(said @ found) < 1e-9
+    else:
+        assert np.allclose(said, found, atol=1e-9)
 
 
 @every_kind
@@ -238,7 +268,7 @@ def test_the_links_own_frames_do_not_matter(kind: type[Pair], seed: int) -> None
     poses = random_poses(pair, rng, 2, ())
     assume_no_centre_of_curvature(pair, ends, poses)
     shift = random_poses(pair, rng, 0, ())
-    if kind.free_is_angle or kind.counts_turns:  # an angle between links depends on their axes: shift all alike
+    if kind.free_is_angle or as_turn_counting(pair):  # an angle between links depends on their axes: shift all alike
         shift = tuple(Pose(p.z, shift[1].u, shift[1].theta) for p in shift)
     other_poses = tuple(p.compose(s) for p, s in zip(poses, shift, strict=True))
     other_ends = tuple(s.inverse().carry(e) for s, e in zip(shift, ends, strict=True))
@@ -352,7 +382,7 @@ def test_series_ends_belong_to_bodies_that_change() -> None:
     for kind in KINDS:
         pair = sample(kind)
         local = random_poses(pair, rng, 2, ())
-        if kind.counts_turns:  # an angle is that of the link itself
+        if as_turn_counting(pair):  # an angle is that of the link itself
             local = tuple(Pose(p.z, FIXED.u, FIXED.theta) for p in local)
         ends = free_ends(pair, rng)
         poses = random_poses(pair, rng, 2, ())
