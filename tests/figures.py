@@ -13,11 +13,11 @@ from typing import Any
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.sketch.label_places import placed
-from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.shapes import Polygon
 from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_labels import label_shapes, letters
-from compoundkin.view.sketch.sketch_layers import ghost, layered, window_on
+from compoundkin.view.sketch.sketches import ghost, layered, window_on
+from compoundkin.view.sketch.slide_shapes import Painter
 
 FOLDER = Path(__file__).parents[1] / "docs" / "figures"
 FIRST = Path(__file__).parents[1] / "docs" / "index.md"

@@ -310,18 +310,12 @@ STILL_TRACKING: set[str] = set()
 STILL_LONG_FUNCTIONS = {
     "kinematics/solution.py: solve",
     "kinematics/tracking.py: __init__",
-    "view/plot/centrode_plot.py: centrodes",
 }
 STILL_LONG = {
     "analysis/equations/loop_equations.py",
-    "cli/typed_values.py",
     "model/pairs/cam.py",
     "model/pairs/face.py",
     "model/pairs/geared.py",
     "model/pairs/loop_terms.py",
-    "view/plot/branch_curves.py",
-    "view/plot/branch_lines.py",
-    "view/report/configurations_section.py",
-    "view/sketch/scene.py",
 }
 STILL_PRIVATE: set[str] = set()

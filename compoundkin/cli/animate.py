@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.base.suffixes import alternatives
-from compoundkin.cli.drive_options import DESIGN, drive_options, solved_at
+from compoundkin.cli.drive_options import ARROWS, DESIGN, LABELS, PATHS, drive_options, solved_at
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.progress import counting
 from compoundkin.cli.shell import put, say
-from compoundkin.cli.sketch_options import ARROWS, LABELS, PATHS
 from compoundkin.cli.solve import explained
 
 if TYPE_CHECKING:
@@ -79,7 +78,7 @@ def command(file: str, path: str | None, **asked: Any) -> int:
 def _driven(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
     """The values of the drivers that are asked for, else the mechanism's own range, finely enough to be shown."""
     from compoundkin.cli import typed_values
-    from compoundkin.view.animation.motion_animation import finer_values
+    from compoundkin.view.animation.animation import finer_values
     from compoundkin.view.sketch.shown_pose import solved_over
 
     if any(asked[key] not in (None, ()) for key in DRIVEN_BY):

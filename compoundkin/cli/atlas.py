@@ -30,7 +30,7 @@ def command(
     Each has its number, name, links by their numbers of pairs, symmetries, inversions, graph6 and pairs.
     """
     from compoundkin.cli.progress import working
-    from compoundkin.view.report.atlas_section import atlas_report
+    from compoundkin.view.report.atlas_sections import atlas_report
 
     with working("listing chains"):
         made = atlas_report(links, mobility, inversions, trusses, groups)

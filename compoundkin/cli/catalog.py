@@ -48,7 +48,7 @@ def show(name: str) -> int:
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 def copy(name: str, destination: str | None, force: bool) -> int:
     """Copy the file of a mechanism to DESTINATION (a file or a folder; here if left out), to change it."""
-    from compoundkin.cli.new_files import write_new
+    from compoundkin.cli.mechanism_argument import write_new
     from compoundkin.files.shipped_mechanisms import path
 
     source = path(name)

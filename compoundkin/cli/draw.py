@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.base.suffixes import alternatives, form_of
-from compoundkin.cli.drive_options import pose_options, solved_at
+from compoundkin.cli.drive_options import ARROWS, LABELS, PATHS, VECTORS, pose_options, solved_at
 from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
 from compoundkin.cli.shell import put, say
-from compoundkin.cli.sketch_options import ARROWS, LABELS, PATHS, VECTORS
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion

@@ -1,4 +1,4 @@
-"""The options that drive a mechanism, and the motion they ask for."""
+"""The options that drive a mechanism and those of its sketch, and the motion they ask for."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from compoundkin.cli.shell import say
+from compoundkin.model.attributes import ACCELERATION, VELOCITY
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
@@ -45,6 +46,9 @@ OPTIONS: tuple[Any, ...] = (
     click.option("--output", "outputs", multiple=True, metavar="QUANTITY", callback=lambda _c, _p, given: names(given),
                  help="Such as G.velocity, G.speed, bar.angle, slot.rate; repeat it, or write commas."),
 )  # fmt: skip
+VECTORS = (VELOCITY, ACCELERATION)
+ARROWS = click.option("--vectors", multiple=True, type=click.Choice(VECTORS), help="Draw the vectors of all points.")
+LABELS = click.option("--labels/--no-labels", default=True, help="Letters at points and numbers on links.")
 
 
 def drive_options(command: F) -> F:
@@ -89,7 +93,7 @@ def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[st
     from compoundkin.model.attributes import RATES
 
     rates = {what: typed_values.of_rates(structure, f"--{what}", asked[f"{what}s"]) for what in RATES[:2]}
-    modes = typed_values.of_modes(structure, asked["modes"])
+    modes = _modes(structure, asked["modes"])
     time = typed_values.of_times(asked.get("time"))
     with working("solving"), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UnassembledPoses)
@@ -97,6 +101,24 @@ def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[st
     for warning in caught:
         _pass_on(warning, motion)
     return motion
+
+
+def _modes(structure: Structure, given: Sequence[str]) -> dict[str, int]:
+    """Assembly modes by link."""
+    from compoundkin.base.errors import InvalidInput, Problem, nearest
+
+    signs = {"+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}
+    found = {}
+    for text in given:
+        link, _, sign = text.rpartition("=")
+        where, name = f"--mode {text}", link or text
+        if name not in structure.mechanism.links:
+            remedy = nearest(name, list(structure.mechanism.links))
+            raise InvalidInput(Problem(where, f"there is no link {name!r}", remedy))
+        if sign not in signs:
+            raise InvalidInput(Problem(where, f"{sign!r} is not an assembly mode", f"write {name}=+1 or {name}=-1"))
+        found[link] = signs[sign]
+    return found
 
 
 def _order(structure: Structure, asked: Mapping[str, Any]) -> int:
@@ -123,3 +145,7 @@ def _pass_on(warning: warnings.WarningMessage, motion: Motion) -> None:
         say(f"Warning: {missing:,} of {motion.failed.size:,} poses cannot be assembled.")
     else:
         warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+
+
+PATHS = click.option("--path", "paths", multiple=True, metavar="POINT", callback=lambda _c, _p, given: names(given),
+                     help="Draw the path of a point: its coupler curve. Repeat it, or write commas.")  # fmt: skip

@@ -1,4 +1,4 @@
-"""The argument that every verb starts from: a mechanism file, or a name of the catalog."""
+"""The argument that every verb starts from, a mechanism file or a name of the catalog; files that replace no others."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from click.shell_completion import CompletionItem
+
+from compoundkin.base.errors import InvalidInput, Problem
 
 if TYPE_CHECKING:
     from compoundkin.model.mechanism import Mechanism
@@ -42,3 +44,12 @@ def loaded(file: str) -> Mechanism:
         raise InvalidInput(Problem(file, "this is a folder", "name a mechanism file in it"))
     # what is there but is no regular file, such as a pipe, is for `load` to judge
     return load(file if Path(file).exists() else resolve(file))
+
+
+def write_new(path: Path, content: bytes, force: bool) -> None:
+    """Write a file; raises InvalidInput where there is one already, unless forced, or it cannot be written."""
+    from compoundkin.files.atomic import write_atomically
+
+    if path.exists() and not force:
+        raise InvalidInput(Problem(str(path), "the file is there already", "choose another name, or give --force"))
+    write_atomically(path, lambda file: file.write(content))

@@ -79,7 +79,7 @@ def command(path: str, force: bool) -> int:
     """Write a commented mechanism file (a four-bar linkage) to PATH, to be changed into your own."""
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.base.suffixes import suffix_for, suffix_of
-    from compoundkin.cli.new_files import write_new
+    from compoundkin.cli.mechanism_argument import write_new
 
     target = Path(path)
     target = target / "mechanism.toml" if target.is_dir() else target

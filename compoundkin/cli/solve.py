@@ -55,7 +55,7 @@ def command(file: str, path: str | None, **asked: Any) -> int:
 def explained(motion: Motion) -> int:
     """Say which poses cannot be assembled, and why; the exit code for that."""
     from compoundkin.kinematics.gaps import gaps
-    from compoundkin.view.report.checks_section import MOST_GAPS, gap_sentence
+    from compoundkin.view.report.motion_report import MOST_GAPS, gap_sentence
     from compoundkin.view.report.shown_poses import Sample
 
     found = gaps(motion)

@@ -37,11 +37,11 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
         structure = solvable(loaded(file))
         made = report(structure)
     if equations:
-        from compoundkin.view.report.equations_section import equations_section
+        from compoundkin.view.report.loop_sections import equations_section
 
         made = replace(made, sections=(*made.sections, equations_section(structure)))
     if alternatives:
-        from compoundkin.view.report.alternatives_section import alternatives_section
+        from compoundkin.view.report.atlas_sections import alternatives_section
 
         made = replace(made, sections=(*made.sections, alternatives_section(structure)))
     put_report(made, form, path)

@@ -15,7 +15,7 @@ from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.elements import Drive
 from compoundkin.structure import Structure
-from compoundkin.view.report.links_and_pairs import driven_pairs
+from compoundkin.view.report.structure_sections import driven_pairs
 
 HOW = "write 35, 0,35,60 or 0:360:5 (from:to:step)"
 TIMES = "write seconds: 0.5, 0,0.5,1 or 0:2:0.01 (from:to:step)"
@@ -143,21 +143,6 @@ def _rate(text: str, where: str, is_angle: bool) -> float:
     return number(text, where)
 
 
-def of_modes(structure: Structure, given: Sequence[str]) -> dict[str, int]:
-    """Assembly modes by link."""
-    signs = {"+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}
-    found = {}
-    for text in given:
-        link, _, sign = text.rpartition("=")
-        where, name = f"--mode {text}", link or text
-        if name not in structure.mechanism.links:
-            raise _wrong(where, f"there is no link {name!r}", nearest(name, list(structure.mechanism.links)))
-        if sign not in signs:
-            raise _wrong(where, f"{sign!r} is not an assembly mode", f"write {name}=+1 or {name}=-1")
-        found[link] = signs[sign]
-    return found
-
-
 def _named(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Pairs of a driver and what is given for it; the only driver need not be named."""
     drivers = [drive.name for drive in structure.mechanism.drives]
@@ -188,8 +173,7 @@ def _spanned(structure: Structure, name: str, span: Mapping[str, Any]) -> Number
     if own is None and not {"start", "stop", "step"} <= set(span):
         raise _wrong("--from, --to, --step", f"the driver {name!r} has no range of its own", "give all three")
     start, stop, step = own if own is not None else (0.0, 0.0, 0.0)
-    start, stop = span.get("start", start), span.get("stop", stop)
-    step = span.get("step", abs(step))
+    start, stop, step = span.get("start", start), span.get("stop", stop), span.get("step", abs(step))
     # "--from 90 --to 0 --step 5" can only mean to go back
     return stepped(start, stop, step if stop >= start or step < 0 else -step, "--from, --to, --step")
 

@@ -18,17 +18,17 @@ from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose, roman
 from compoundkin.structure.redundancy import MobilityAnalysis
+from compoundkin.view.page.html_blocks import plain_block, plain_sections, plain_table
 from compoundkin.view.page.markup import safe
-from compoundkin.view.page.plain_blocks import block_html, sections_html, table_html
 from compoundkin.view.page.player import framed
-from compoundkin.view.report.cams_section import cam_blocks
 from compoundkin.view.report.centres_section import centre_blocks
 from compoundkin.view.report.configurations_section import circuits_report, configurations_section
-from compoundkin.view.report.links_and_pairs import links_section
-from compoundkin.view.report.mobility_section import analysis_blocks
+from compoundkin.view.report.mobility_sections import analysis_blocks
+from compoundkin.view.report.outputs_section import cam_blocks
 from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, TableBlock
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.structure_sections import links_section
 from compoundkin.view.report.wording import counted, listed
 from compoundkin.view.sketch import draw
 
@@ -104,7 +104,7 @@ def _(what: Mechanism) -> Iterator[str]:
         yield _figure(picture, caption)
     else:
         yield f"<p>{caption}</p>"
-        yield from map(block_html, links_section(structure).blocks)
+        yield from map(plain_block, links_section(structure).blocks)
 
 
 @_parts.register
@@ -113,11 +113,11 @@ def _(what: Structure) -> Iterator[str]:
     caption = f"<strong>{safe(what.mechanism.title)}</strong>: {safe(said)}"
     picture = what._repr_svg_()
     yield _figure(picture, caption) if picture else f"<p>{caption}</p>"
-    yield from (block_html(Alert(f"{fault.text[:1].upper()}{fault.text[1:]}.", fault.remedy)) for fault in what.faults)
+    yield from (plain_block(Alert(f"{fault.text[:1].upper()}{fault.text[1:]}.", fault.remedy)) for fault in what.faults)
     dropped = what.relaxation.dropped if what.relaxation else ()
     told = [*(f"Passive: {one}." for one in what.passive), *(f"Left out: {one}." for one in dropped)]
-    yield from (block_html(Paragraph(text)) for text in told)
-    yield table_html(_groups(what), "Groups in solving order")
+    yield from (plain_block(Paragraph(text)) for text in told)
+    yield plain_table(_groups(what), "Groups in solving order")
 
 
 def _groups(structure: Structure) -> TableBlock:
@@ -142,7 +142,7 @@ def _(what: Motion) -> Iterator[str]:
 @_parts.register
 def _(what: Report) -> Iterator[str]:
     yield f"<h3>{safe(what.title)}</h3>"
-    yield from sections_html(what.sections)
+    yield from plain_sections(what.sections)
 
 
 @_parts.register
@@ -153,7 +153,7 @@ def _(what: Check) -> Iterator[str]:
     failed = [finding.name for finding in what.findings if not finding.passed]
     verdict = f"failed: {listed(failed)}" if failed else "all passed" if what.passed else "nothing to check"
     singular = f", {what.singular} of them without rates" if what.singular else ""
-    yield table_html(TableBlock(columns, rows), f"Checks of {counted(what.poses, 'pose')}{singular}: {verdict}")
+    yield plain_table(TableBlock(columns, rows), f"Checks of {counted(what.poses, 'pose')}{singular}: {verdict}")
 
 
 def _where(name: str, pose: tuple[int, ...]) -> str:
@@ -162,12 +162,12 @@ def _where(name: str, pose: tuple[int, ...]) -> str:
 
 @_parts.register
 def _(what: Circuits) -> Iterator[str]:
-    yield from sections_html(circuits_report(what).sections)
+    yield from plain_sections(circuits_report(what).sections)
 
 
 @_parts.register
 def _(what: Configurations) -> Iterator[str]:
-    yield from sections_html([configurations_section(what)])
+    yield from plain_sections([configurations_section(what)])
 
 
 @_parts.register
@@ -180,22 +180,22 @@ def _(what: Configuration) -> Iterator[str]:
         yield f"<p>{caption}</p>"
     columns = Column("link"), Column("angle", "deg", "fixed", floor=1e-9)
     rows = tuple((name, float(degrees(angle))) for name, angle in what.angles.items())
-    yield table_html(TableBlock(columns, rows), "Angles of the links")
+    yield plain_table(TableBlock(columns, rows), "Angles of the links")
 
 
 @_parts.register
 def _(what: Centres) -> Iterator[str]:
-    yield from map(block_html, centre_blocks(what))
+    yield from map(plain_block, centre_blocks(what))
 
 
 @_parts.register
 def _(what: MobilityAnalysis) -> Iterator[str]:
-    yield from map(block_html, analysis_blocks(what))
+    yield from map(plain_block, analysis_blocks(what))
 
 
 @_parts.register
 def _(what: CamAnalysis) -> Iterator[str]:
-    yield from map(block_html, cam_blocks(Sample(what.motion), what))
+    yield from map(plain_block, cam_blocks(Sample(what.motion), what))
 
 
 def _figure(svg: str, caption: str) -> str:

@@ -15,7 +15,7 @@ from compoundkin.synthesis.alternatives import alternatives
 from compoundkin.synthesis.chains import chains, mechanism_from, structure_name
 from compoundkin.synthesis.chains.structure_names import group_count
 from compoundkin.synthesis.inversion import with_driver, with_frame
-from compoundkin.view.report.alternatives_section import alternatives_section
+from compoundkin.view.report.atlas_sections import alternatives_section
 from tests import catalog
 
 

@@ -14,7 +14,7 @@ import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view import notebook
 from compoundkin.view.notebook import MOST_LINKS, html_of, unguarded
-from compoundkin.view.page.plain_blocks import MOST_ROWS
+from compoundkin.view.page.html_blocks import MOST_ROWS
 
 VOID = {"br"}
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from compoundkin.view.animation.animation import Animation
-from compoundkin.view.animation.motion_animation import animate
+from compoundkin.view.animation.animation import Animation, animate
 
 __all__ = ["Animation", "animate"]

@@ -11,14 +11,13 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.model.attributes import after_number
 from compoundkin.view.animation.timeline import times_of
-from compoundkin.view.sketch.arrows import VectorScale, scale_shapes
 from compoundkin.view.sketch.moving_sketch import MovingSketch
-from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, Text
+from compoundkin.view.sketch.picture import Window
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, Text, sheet
 from compoundkin.view.sketch.shown_pose import pose_notes
 from compoundkin.view.sketch.sketch_labels import BELOW, below, lines_of_text
 from compoundkin.view.sketch.sketch_style import LINE
-from compoundkin.view.sketch.strokes import sheet
-from compoundkin.view.sketch.window import Window
+from compoundkin.view.sketch.vectors import VectorScale, scale_shapes
 
 LEFT = 16.0
 # A gauge is so long: this part of the picture's width, but no longer than this.

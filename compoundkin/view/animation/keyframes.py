@@ -1,15 +1,17 @@
-"""Keyframes: values over time as straight lines between few of them."""
+"""Keyframes: values over time as straight lines between few of them, and as attributes of SVG."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
+from compoundkin.base.arrays import whole_turns
 from compoundkin.base.series import Number
 from compoundkin.view.animation.timeline import Timeline
-from compoundkin.view.sketch.sketch_layers import BETWEEN, MOST_PLACES, smooth
+from compoundkin.view.sketch.picture import BETWEEN, MOST_PLACES, smooth
 
 # What is between keyframes may be off by this much, picture units: with two of them and rounding less than 0.2.
 DEVIATION = 0.09
@@ -18,9 +20,10 @@ EVEN = tuple(n for n in range(2, 721) if 720 % n == 0 or (n > 90 and n % 12 == 0
 CHEAPER = 1.6
 # Times that differ by less are one.
 SAME_TIME = 1e-6
-# Poses are shown one by one where a smooth line through most of them is off by more than this, picture units.
-FAR_APART = 0.5
-MOST_OF_THEM = 0.8
+# Digits after the point: of times in parts of the whole, of places, of degrees.
+OF_TIMES, OF_PLACES, OF_DEGREES = 5, 2, 2
+# What is not on the picture waits here.
+AWAY = -1000.0 - 1000.0j
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,24 +89,6 @@ def _parted(leg: slice, seen: Number) -> list[slice]:
     parts = pairwise([leg.start, *(int(cut) for cut in cuts), leg.stop])
     # what is not shown lasts from the last pose that is to the next one
     return [slice(a, b) if seen[a] else slice(max(a - 1, leg.start), min(b + 1, leg.stop)) for a, b in parts]
-
-
-def are_far_apart(timeline: Timeline, values: Number) -> bool:
-    """Whether a smooth line through values at the poses of a timeline, (poses, columns), is much off between them."""
-    return any(_off(values[leg]) > FAR_APART for leg in timeline.slices if leg.stop - leg.start > 1)
-
-
-def _off(values: Number) -> float:
-    """By how much a smooth line through values is off between them, but where that is worst.
-
-    Each value is compared with the line through every second one of its neighbours, which is sixteen times as far off
-    as that through all. At a limit position any line is off.
-    """
-    if len(values) < 7:
-        return float(np.max(np.abs(np.diff(values, axis=0)), initial=0.0))
-    a, b, middle, c, d = values[:-6], values[2:-4], values[3:-3], values[4:-2], values[6:]
-    off = np.abs(middle - (9.0 * (b + c) - a - d) / 16.0) / 16.0
-    return float(np.quantile(np.max(off, axis=1), MOST_OF_THEM))
 
 
 def _smoothed(times: Number, values: Number) -> tuple[Number, Number]:
@@ -181,3 +166,52 @@ def short(value: float, digits: int) -> str:
     if text in ("-0", "0", ""):
         return "0"
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+
+
+@dataclass(frozen=True, eq=False)
+class Writer:
+    """Writes keyframes of a timeline; `one_by_one` where poses are shown so."""
+
+    timeline: Timeline
+    one_by_one: bool
+
+    def keys(self, values: Number, deviation: float = DEVIATION, shown: Number | None = None) -> Keys:
+        """The keyframes of values at the poses of the timeline."""
+        return keys_of(self.timeline, values, deviation, self.one_by_one, shown, AWAY)
+
+    def timing(self, keys: Keys, written: Callable[[Number], str]) -> str:
+        """The attributes that say which values there are when."""
+        words = [f'dur="{short(self.timeline.seconds, 3)}s" repeatCount="indefinite"']
+        words += ['calcMode="discrete"'] if keys.is_steady else []
+        words += [] if keys.is_even else [f'keyTimes="{";".join(short(float(t), OF_TIMES) for t in keys.times)}"']
+        return " ".join([*words, f'values="{";".join(map(written, keys.values))}"'])
+
+    def moving(self, kind: str, keys: Keys, written: Callable[[Number], str], inside: list[str]) -> list[str]:
+        """Elements in a group that is moved ("translate") or turned ("rotate") by keyframes."""
+        first = written(keys.values[0])
+        if len(keys.times) == 1:
+            return [f'<g transform="{kind}({first})">', *inside, "</g>"] if first.strip("0 ") else inside
+        how = f'<animateTransform attributeName="transform" type="{kind}" {self.timing(keys, written)}/>'
+        return [f'<g transform="{kind}({first})">', how, *inside, "</g>"]
+
+    def translated(self, places: Number, inside: list[str], shown: Number | None = None) -> list[str]:
+        """Elements moved along places at the poses of the timeline."""
+        return self.moving("translate", self.keys(places, shown=shown), place, inside)
+
+    def turned(self, angles: Number, deviation: float, inside: list[str]) -> list[str]:
+        """Elements turned by angles over the assembled poses, radians, clockwise on the picture."""
+        return self.moving("rotate", self.turns(angles, deviation), _degrees, inside)
+
+    def turns(self, angles: Number, deviation: float) -> Keys:
+        """The keyframes of those angles, in degrees."""
+        shown = np.rad2deg(self.timeline.turning(angles))
+        return self.keys(shown - whole_turns(shown[0], 360.0), np.rad2deg(deviation))
+
+
+def place(value: Number) -> str:
+    """A place as the specification of SVG has it."""
+    return f"{short(float(value[0].real), OF_PLACES)} {short(float(value[0].imag), OF_PLACES)}"
+
+
+def _degrees(value: Number) -> str:
+    return short(float(value[0].real), OF_DEGREES)

@@ -9,14 +9,13 @@ import numpy as np
 
 from compoundkin.analysis.centres import instant_centres
 from compoundkin.base.series import Number
-from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, VectorScale, vector_shapes
+from compoundkin.view.sketch.centre_pictures import DOT, TOGETHER, centre_name
 from compoundkin.view.sketch.label_places import Label, around, placed, text_half
 from compoundkin.view.sketch.moving_sketch import MovingSketch
-from compoundkin.view.sketch.shapes import CircleShape, Shape, Text, leaves
-from compoundkin.view.sketch.shifted_shapes import moved
-from compoundkin.view.sketch.sketch_centres import DOT, TOGETHER, centre_name
+from compoundkin.view.sketch.picture import MARGIN, Window
+from compoundkin.view.sketch.shapes import CircleShape, Shape, Text, leaves, moved
 from compoundkin.view.sketch.sketch_style import LETTER, SMALL
-from compoundkin.view.sketch.window import MARGIN, Window
+from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, VectorScale, vector_shapes
 
 # So near to the edge of a picture a centre is left out.
 EDGE = 2.0

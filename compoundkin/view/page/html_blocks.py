@@ -1,21 +1,107 @@
-"""The blocks and sections of a report as HTML."""
+"""The blocks and sections of a report as HTML: for pages, and plain with styles inline for notebooks."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import singledispatchmethod
+from functools import singledispatch, singledispatchmethod
 
-from compoundkin.view.page.html_tables import ShownTable, table_html
-from compoundkin.view.page.link_names import Names
+from compoundkin.view.page.html_tables import Names, ShownTable, table_html
 from compoundkin.view.page.markup import element, hidden, lines, safe
 from compoundkin.view.page.mathml import Unread, mathml
-from compoundkin.view.report.report_data import Alert, Block, FormulaBlock, Paragraph, Section, StepBlock, TableBlock
+from compoundkin.view.report.report_data import (
+    Alert,
+    Block,
+    Column,
+    FormulaBlock,
+    Paragraph,
+    Section,
+    StepBlock,
+    TableBlock,
+)
+from compoundkin.view.report.wording import counted, written
 from compoundkin.view.sketch.svg import link_names
 
+# A notebook shows so many rows of a table; reports and the objects themselves have all.
+MOST_ROWS = 40
+# Inline, for notebooks give tables styles of their own: numbers would not line up, texts be aligned right. Colours are
+# the page's, so that they fit light and dark ones.
+CELL = "vertical-align:top;padding:.3em .6em"
+LEFT, RIGHT = f"text-align:left;{CELL}", f"text-align:right;{CELL}"
+CAPTION = "text-align:left;caption-side:top;font-weight:bold;padding:.5em 0"
 # The section that stands in the head of the page, and the one whose steps are the groups.
 ABOUT, GROUPS = "about", "groups"
+
+
+def plain_sections(sections: Iterable[Section]) -> Iterator[str]:
+    """Sections with their headings, block by block."""
+    for section in sections:
+        if section.title:
+            yield element("h4", safe(section.title))
+        yield from map(plain_block, section.blocks)
+
+
+def plain_table(table: TableBlock, caption: str = "") -> str:
+    """A table whose first column names its rows; in a box of its own that scrolls where it is wider than the page."""
+    rows = table.shown_rows
+    cells = [written(column, [row[k] for row in rows[:MOST_ROWS]]) for k, column in enumerate(table.columns)]
+    sides = [RIGHT if column.is_number else LEFT for column in table.columns]
+    heads = (element("th", _heading(c), scope="col", style=s) for c, s in zip(table.columns, sides, strict=True))
+    found = [element("tr", "".join(_cells(row, sides))) for row in zip(*cells, strict=True)]
+    more = len(table.rows) - min(len(rows), MOST_ROWS)
+    if more > 0:
+        text = f"... and {counted(more, 'more row')}"
+        found.append(element("tr", element("td", text, colspan=str(len(sides)), style=LEFT)))
+    parts = [
+        element("caption", safe(caption), style=CAPTION) if caption else "",
+        element("thead", element("tr", "".join(heads))),
+        element("tbody", f"\n{lines(found)}\n"),
+    ]
+    return element("div", element("table", f"\n{lines(parts)}\n"), style="overflow-x:auto")
+
+
+def _heading(column: Column) -> str:
+    return safe(f"{column.name} [{column.unit}]" if column.unit else column.name)
+
+
+def _cells(row: Iterable[str], sides: Iterable[str]) -> Iterator[str]:
+    for k, (text, side) in enumerate(zip(row, sides, strict=True)):
+        inside = safe(text).replace("\n", "<br>")
+        yield element("td", inside, style=side) if k else element("th", inside, scope="row", style=side)
+
+
+@singledispatch
+def plain_block(block: Block) -> str:
+    """Any block of a report."""
+    raise TypeError(f"{type(block).__name__} is not a part of a report")
+
+
+@plain_block.register
+def _(block: Paragraph) -> str:
+    return element("p", safe(block.text))
+
+
+@plain_block.register
+def _(block: FormulaBlock) -> str:
+    return element("pre", safe(block.text))
+
+
+@plain_block.register
+def _(block: Alert) -> str:
+    remedy = f" Remedy: {safe(block.remedy)}." if block.remedy else ""
+    return element("p", element("strong", safe(block.text)) + remedy, role="note")
+
+
+@plain_block.register
+def _(block: StepBlock) -> str:
+    facts = "".join(element("dt", safe(term)) + element("dd", safe(text)) for term, text in block.facts)
+    return element("h5", safe(block.title)) + element("dl", facts)
+
+
+@plain_block.register
+def _(block: TableBlock) -> str:
+    return plain_table(block)
 
 
 @dataclass(frozen=True)

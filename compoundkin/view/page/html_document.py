@@ -1,16 +1,31 @@
-"""The whole document: head, the moving sketch, sections, scripts."""
+"""The whole document: assets, colours, head, the moving sketch, sections, scripts."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
-from compoundkin.view.page.asset_files import asset, vendored
 from compoundkin.view.page.markup import element, hidden, lines, safe
-from compoundkin.view.page.page_palette import palette
 from compoundkin.view.report.report_data import Outcome
+from compoundkin.view.sketch import sketch_style
 from compoundkin.view.sketch.sketch_style import page_css
 
+ASSETS = Path(__file__).parent / "assets"
+# Those that pictures do not have. Words in `good`, `bad` and `link` keep a contrast of 4.5 : 1 with every ground they
+# stand on (WCAG 2.2, 1.4.3).
+OWN: dict[str, tuple[str, str]] = {
+    "ground": ("#f5f6f8", "#0d0f13"),
+    "soft": ("#eef1f4", "#1d2129"),
+    "rule": ("#d9dde3", "#2e343d"),
+    "quiet": ("#545d69", "#a3adba"),
+    "link": ("#00579a", "#7cc0f7"),
+    "lit": ("#fff0bd", "#3d3512"),
+    "good": ("#006b4f", "#52d1a8"),
+    "bad": ("#b3261e", "#ff8a80"),
+    "bad-ground": ("#fdf0ee", "#2e1817"),
+}
 # The page asks for nothing from anywhere, whatever gets into it. Source: W3C, Content Security Policy Level 3.
 POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; "
@@ -23,6 +38,45 @@ ICON = (
 )
 SCRIPTS = ("tables.js", "light.js")
 THEMES = {"auto": "Auto", "light": "Light", "dark": "Dark"}
+
+
+@cache
+def asset(name: str) -> str:
+    """The text of a file.
+
+    >>> "sortable" in asset("vendor/sortable.min.js")
+    True
+    """
+    return (ASSETS / name).read_text(encoding="utf-8").strip()
+
+
+def vendored(name: str, licence: str, gives: str = "") -> str:
+    """A library as part of a page: with its licence, and in a function, so that its names stay its own.
+
+    What it `gives` is then `compoundkin.uPlot`, or whatever its name is.
+
+    >>> vendored("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot").splitlines()[-2:]
+    ['(window.compoundkin ??= {}).uPlot = uPlot;', '})();']
+    """
+    given = f"\n(window.compoundkin ??= {{}}).{gives} = {gives};" if gives else ""
+    return f"/*\n{asset(f'vendor/{licence}')}\n*/\n(() => {{\n{asset(f'vendor/{name}')}{given}\n}})();"
+
+
+def palette() -> str:
+    """The style rules that name all colours; paper that is printed on is light."""
+    colours = {"paper": sketch_style.PAPER, "ink": sketch_style.INK, **OWN}
+    colours |= {f"g{k}": pair for k, pair in enumerate(sketch_style.COLOURS)}
+    light, dark = ("".join(f"--{name}:{pair[k]};" for name, pair in colours.items()) for k in (0, 1))
+    swatches = "\n".join(f".g{k}{{background:var(--g{k})}}" for k in range(len(sketch_style.COLOURS)))
+    return "\n".join(
+        (
+            f":root{{color-scheme:light;{light}}}",
+            f"@media screen{{:root[data-theme=dark]{{color-scheme:dark;{dark}}}}}",
+            "@media screen and (prefers-color-scheme:dark)"
+            f"{{:root:not([data-theme=light]){{color-scheme:dark;{dark}}}}}",
+            swatches,
+        )
+    )
 
 
 @dataclass(frozen=True)

@@ -14,11 +14,11 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import ANGULAR_ACCELERATION, ANGULAR_VELOCITY, unit_of
-from compoundkin.view.page.packed_numbers import brief, exact
+from compoundkin.view.page.markup import brief, exact
 from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, SHORTEST
+from compoundkin.view.sketch.centre_pictures import centre_name
 from compoundkin.view.sketch.moving_sketch import MovingSketch, moving_sketch
-from compoundkin.view.sketch.sketch_centres import centre_name
+from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, SHORTEST
 
 # A page holds so many poses at most, fewer where there are many links: its data shall stay well below a megabyte.
 MOST_POSES, FEWEST_POSES = 721, 121

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from compoundkin.kinematics import Motion
-from compoundkin.view.page.asset_files import asset
-from compoundkin.view.page.html_document import POLICY
+from compoundkin.view.page.html_document import POLICY, asset, palette
 from compoundkin.view.page.markup import data_script, element, lines, safe
 from compoundkin.view.page.moving_data import MotionData
-from compoundkin.view.page.page_palette import palette
 from compoundkin.view.page.viewer import player_html
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.sketch_style import page_css

@@ -1,29 +1,127 @@
-"""A report with its pictures as one HTML file."""
+"""A report with its pictures as one HTML file: the mechanism taken apart, its graph, the outputs at all poses."""
 
 from __future__ import annotations
 
 import os
 import tempfile
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, TypeAlias
 
+from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.suffixes import Kind, suffix_for
 from compoundkin.base.version import VERSION
 from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
-from compoundkin.view.page.all_poses import OUTPUTS, all_poses
-from compoundkin.view.page.asset_files import asset, vendored
-from compoundkin.view.page.figures import figures, sketch
 from compoundkin.view.page.html_blocks import ABOUT, Blocks
-from compoundkin.view.page.html_document import Document
-from compoundkin.view.page.link_names import names_of
-from compoundkin.view.page.markup import data_script
+from compoundkin.view.page.html_document import Document, asset, vendored
+from compoundkin.view.page.html_tables import names_of
+from compoundkin.view.page.markup import data_script, element, safe
 from compoundkin.view.page.viewer import Viewer, viewer_of
-from compoundkin.view.report.report_data import Outcome, Section
+from compoundkin.view.report.outputs_section import chosen_outputs, outputs_section
+from compoundkin.view.report.report_data import Outcome, Section, TableBlock
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.sketch import Picture, draw
+
+# Of more links than this no picture is legible, and drawing takes long.
+MOST_LINKS = 100
+
+Subject: TypeAlias = Structure | Motion
+
+# Which view of the structure stands at the head of which section, and what is said below it.
+VIEWS = {
+    "chain": ("graph", "The kinematic graph: links are its nodes, pairs the lines between them."),
+    "groups": (
+        "groups",
+        "The mechanism taken apart, in solving order. Dashed circles are the pairs by which a group is attached.",
+    ),
+    "derivation": ("circle", "The circle diagram: a line for each instant centre, numbered in the order of the steps."),
+}
+OUTPUTS = "outputs"
+# More cells than these make a page slow and large: the table then has the poses of the report.
+MOST_CELLS = 12_000
+
+
+def figures(sections: Sequence[Section], subject: Subject | None) -> dict[str, str]:
+    """The figures at the heads of the sections of a report, by the sections' keys."""
+    return dict(_figures(sections, subject)) if subject is not None and _drawn(subject) else {}
+
+
+def sketch(subject: Subject) -> str:
+    """The kinematic sketch of one pose as a figure; "" where there is none."""
+    if not _drawn(subject):
+        return ""
+    try:
+        picture = draw(subject)
+    except CompoundkinError:
+        return ""
+    return element(
+        "figure", f"{element('div', picture.inline, class_='picture')}\n<figcaption>The kinematic sketch.</figcaption>"
+    )
+
+
+def figure(picture: Picture, caption: str) -> str:
+    """A picture with what is said below it, in a box that scrolls where it would become too small."""
+    told = {"role": "region", "aria_label": f"Picture: {caption}", "tabindex": "0"}
+    box = element("div", picture.inline, class_="picture", style=f"--wide:{picture.width:.0f}px", **told)
+    return element("figure", f"{box}\n<figcaption>{safe(caption)}</figcaption>")
+
+
+def _figures(sections: Sequence[Section], subject: Subject) -> Iterator[tuple[str, str]]:
+    for section in sections:
+        if section.key in VIEWS:
+            view, caption = VIEWS[section.key]
+            try:
+                yield section.key, figure(draw(subject, kind=view), caption)
+            except CompoundkinError:
+                # what has faults cannot be taken apart; the report says why
+                continue
+
+
+def _drawn(subject: Subject) -> bool:
+    return len(subject.mechanism.links) <= MOST_LINKS
+
+
+@dataclass(frozen=True, eq=False)
+class Whole(Sample):
+    """A sample that shows every pose."""
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        """All poses."""
+        return tuple(range(self.poses))
+
+
+def all_poses(
+    sections: Sequence[Section], motion: Motion, outputs: Sequence[str], design: int
+) -> tuple[Sequence[Section], tuple[int, ...]]:
+    """The sections with the outputs at every pose, those of the report shown first; and the poses of the table's rows.
+
+    `outputs` are those that the report was made with.
+    """
+    section = next((one for one in sections if one.key == OUTPUTS), None)
+    table = _table(section)
+    if section is None or table is None:
+        return sections, ()
+    sample = Sample(motion, design)
+    if len(sample.rows) == sample.poses or sample.poses * len(table.columns) > MOST_CELLS:
+        return sections, sample.rows
+    whole = _table(outputs_section(Whole(motion, design), chosen_outputs(motion, outputs)))
+    if whole is None or [c.name for c in whole.columns] != [c.name for c in table.columns]:
+        # the report is about other outputs
+        return sections, sample.rows
+    full = replace(whole, shown=sample.rows)
+    changed = replace(section, blocks=tuple(full if block is table else block for block in section.blocks))
+    return tuple(changed if one is section else one for one in sections), tuple(range(sample.poses))
+
+
+def _table(section: Section | None) -> TableBlock | None:
+    """The first table of a section."""
+    blocks = section.blocks if section else ()
+    return next((block for block in blocks if isinstance(block, TableBlock)), None)
 
 
 @dataclass(frozen=True)

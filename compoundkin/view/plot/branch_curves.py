@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import turns_above
 from compoundkin.base.series import Number
 from compoundkin.configurations.circuit import Branch, Circuit
 from compoundkin.configurations.circuit_search import Circuits
@@ -27,7 +27,6 @@ from compoundkin.view.plot.branch_lines import (
     seam,
     shown,
     start_position,
-    turns,
     wrapped,
 )
 from compoundkin.view.plot.plotted_rows import TURN, Plotted
@@ -39,12 +38,8 @@ DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1, 1.2)
 OWN, OTHER, ALONE = 2.8, 1.3, 1.6
 # More circuits than there are colours are grey, but for the one on which solving begins.
 FAINT = "#a8a8a8"
-# A legend of more entries than this is one of circuits, and then of that one circuit only.
-MOST_ENTRIES = 12
 # A place nearer to the end of a turn than this (degrees) is there.
 AT_END = 1e-6
-# Characters in a line of the legend below.
-WIDEST = 50
 # More limit positions than this in a panel, and the names beside them would be a crowd.
 MOST_NAMED = 8
 # Free space beside curves, and above and below them for names; parts of their range.
@@ -149,8 +144,8 @@ class BranchDrawing:
 
     def _at(self, x: Number, y: Number, low: float | None) -> tuple[Number, Number]:
         """A place as it is shown."""
-        x = x if self.low is None else x - turns(x, self.low)
-        return x, (y if low is None else y - turns(y, low))
+        x = x if self.low is None else x - turns_above(x, self.low, TURN)
+        return x, (y if low is None else y - turns_above(y, low, TURN))
 
     def _marks(self, axes: Any, curve: BranchCurve, low: float | None, colour: str) -> None:
         dot = {"linestyle": "none", "marker": "o", "markersize": DOT, "color": colour}
@@ -179,56 +174,14 @@ class BranchDrawing:
 
     def _frame(self, axes: Any, curves: Sequence[BranchCurve], low: float | None, quantity: Plotted) -> None:
         """The ranges of both axes: a whole turn where a curve is cut at its ends."""
-        if self.low is not None and any(np.ptp(turns(curve.x, self.low)) for curve in curves):
+        if self.low is not None and any(np.ptp(turns_above(curve.x, self.low, TURN)) for curve in curves):
             axes.set_xlim(self.low, self.low + TURN)
         else:
             axes.margins(x=BESIDE if self.are_named else MARGIN)
         still = canvas.steady(np.concatenate([curve.y for curve in curves]), quantity.scale)
-        if low is not None and any(np.ptp(turns(curve.y, low)) for curve in curves):
+        if low is not None and any(np.ptp(turns_above(curve.y, low, TURN)) for curve in curves):
             axes.set_ylim(low, low + TURN)
         elif still is not None:
             axes.set_ylim(*still)
         else:
             axes.margins(y=ROOM)
-
-    def legends(self, figure: Any) -> None:
-        """Which line is which branch, and what the marks mean."""
-        from matplotlib.lines import Line2D
-
-        handles = [Line2D([], [], **look, label=text) for text, look in self._entries()]
-        if len(handles) > 1:
-            figure.legend(handles=handles, loc="outside right upper")
-        marks = [Line2D([], [], label=textwrap.fill(text, WIDEST), **look) for text, look in self._meanings()]
-        if marks:
-            figure.legend(handles=marks, loc="outside lower right", ncols=len(marks))
-
-    def _entries(self) -> list[tuple[str, dict[str, Any]]]:
-        """The branches; of many of them the circuits, of many circuits that on which solving begins."""
-        shown = self.found.circuits
-        if len(self.found.branches) <= MOST_ENTRIES:
-            return [(_called(c, (b,)), self.look(c, b)) for c in shown for b in c.branches]
-        if not self.is_crowd:
-            return [(_called(c, c.branches), self.look(c, c.branches[0])) for c in shown]
-        own = [c for c in shown if c.number == self.own]
-        entries = [(_called(c, c.branches), self.look(c, c.branches[0])) for c in own]
-        others = next(c for c in shown if c.number != self.own)
-        text = f"{len(shown) - len(own)} other circuits" if own else f"{len(shown)} circuits"
-        return [*entries, (text, self.look(others, others.branches[0]))]
-
-    def _meanings(self) -> list[tuple[str, dict[str, Any]]]:
-        found: list[tuple[str, dict[str, Any]]] = []
-        if self.responsible:
-            of = "" if self.are_named else f" of {', '.join(self.responsible)}"
-            look = {"linestyle": "none", "marker": "o", "markersize": DOT, "color": plot_style.GREY}
-            found.append((f"limit position{of}", look))
-        if any(circuit.changes for circuit in self.found.circuits):
-            found.append(("change point", {**canvas.RING, "color": plot_style.INK}))
-        if self.found.start is not None:
-            found.append(("where solving begins", {**START, "color": plot_style.INK}))
-        return found
-
-
-def _called(circuit: Circuit, branches: Sequence[Branch]) -> str:
-    """What some branches of a circuit are called."""
-    first, last = branches[0].number, branches[-1].number
-    return f"circuit {circuit.number}, " + (f"branch {first}" if first == last else f"branches {first} to {last}")

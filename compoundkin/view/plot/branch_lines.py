@@ -188,17 +188,12 @@ def seam(curves: Sequence[Number], candidates: Sequence[float]) -> float:
     """
 
     def room(low: float) -> tuple[int, float]:
-        inside = np.concatenate([curve - turns(curve, low) for curve in curves])
+        inside = np.concatenate([curve - turns_above(curve, low, TURN) for curve in curves])
         span = np.ptp(inside[np.isfinite(inside)]) if np.isfinite(inside).any() else 0.0
         # in steps of degrees, so that rounding does not decide
-        return sum(len(_cuts(turns(curve, low))) for curve in curves), round(float(span))
+        return sum(len(_cuts(turns_above(curve, low, TURN))) for curve in curves), round(float(span))
 
     return min(candidates, key=room)
-
-
-def turns(angles: Number, low: float) -> Number:
-    """The whole turns, in degrees, by which angles lie above the turn that begins at `low`."""
-    return turns_above(angles, low, TURN)
 
 
 def wrapped(first: Number, second: Number, low: float) -> tuple[Number, Number]:
@@ -207,7 +202,7 @@ def wrapped(first: Number, second: Number, low: float) -> tuple[Number, Number]:
     >>> [part.tolist() for part in wrapped(np.array([350.0, 370.0]), np.array([0.0, 1.0]), 0.0)]
     [[350.0, 360.0, nan, 0.0, 10.0], [0.0, 0.5, nan, 0.5, 1.0]]
     """
-    away = turns(first, low)
+    away = turns_above(first, low, TURN)
     k = _cuts(away)
     border = low + np.maximum(away[k], away[k + 1])
     share = (border - first[k]) / (first[k + 1] - first[k])

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.view.plot.extremes import CONSTANT
-from compoundkin.view.plot.plot_picture import Plot
-from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, colours
+from compoundkin.view.plot.marked_places import CONSTANT
+from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, Plot, colours
 from compoundkin.view.plot.plotted_rows import Plotted
 from compoundkin.view.plot.point_labels import PointLabel, place
 

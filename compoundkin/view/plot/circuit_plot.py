@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.configurations.circuit import Branch, Circuit
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.circuit_search import circuits as all_circuits
 from compoundkin.kinematics.quantities import degrees
@@ -14,13 +16,17 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Group, Structure
 from compoundkin.view.plot import canvas, plot_style
-from compoundkin.view.plot.branch_curves import BranchDrawing
+from compoundkin.view.plot.branch_curves import DOT, START, BranchDrawing
 from compoundkin.view.plot.branch_lines import Positions, all_positions, shown
-from compoundkin.view.plot.plot_picture import Plot
+from compoundkin.view.plot.plot_style import Plot
 from compoundkin.view.plot.point_labels import PointLabel, number
 
 # So many groups have a panel where no quantity is named.
 MOST_PANELS = 3
+# A legend of more entries than this is one of circuits, and then of that one circuit only.
+MOST_ENTRIES = 12
+# Characters in a line of the legend below.
+WIDEST = 50
 # Inches: room for the names of branches beside the panels.
 WIDTH, FIRST, EACH = 8.4, 1.4, 2.8
 
@@ -69,7 +75,7 @@ def circuits(
         for one, quantity in zip(axes, quantities, strict=True):
             drawn.panel(one, quantity, labels)
             canvas.axis_labels(one, drawn.across if one is axes[-1] else None, quantity, canvas.PANEL)
-        drawn.legends(figure)
+        _legends(drawn, figure)
         return canvas.finished(figure, labels)
 
 
@@ -119,3 +125,48 @@ def _of_group(group: Group) -> str:
             link = next(name for name in pair.members if name != FRAME)
             return f"{link}.{ANGLE}" if pair.free_is_angle else f"{pair.name}.{DISPLACEMENT}"
     return f"{group.links[0]}.{ANGLE}"
+
+
+def _legends(drawn: BranchDrawing, figure: Any) -> None:
+    """Which line is which branch, and what the marks mean."""
+    from matplotlib.lines import Line2D
+
+    handles = [Line2D([], [], **look, label=text) for text, look in _entries(drawn)]
+    if len(handles) > 1:
+        figure.legend(handles=handles, loc="outside right upper")
+    marks = [Line2D([], [], label=textwrap.fill(text, WIDEST), **look) for text, look in _meanings(drawn)]
+    if marks:
+        figure.legend(handles=marks, loc="outside lower right", ncols=len(marks))
+
+
+def _entries(drawn: BranchDrawing) -> list[tuple[str, dict[str, Any]]]:
+    """The branches; of many of them the circuits, of many circuits that on which solving begins."""
+    shown = drawn.found.circuits
+    if len(drawn.found.branches) <= MOST_ENTRIES:
+        return [(_called(c, (b,)), drawn.look(c, b)) for c in shown for b in c.branches]
+    if not drawn.is_crowd:
+        return [(_called(c, c.branches), drawn.look(c, c.branches[0])) for c in shown]
+    own = [c for c in shown if c.number == drawn.own]
+    entries = [(_called(c, c.branches), drawn.look(c, c.branches[0])) for c in own]
+    others = next(c for c in shown if c.number != drawn.own)
+    text = f"{len(shown) - len(own)} other circuits" if own else f"{len(shown)} circuits"
+    return [*entries, (text, drawn.look(others, others.branches[0]))]
+
+
+def _meanings(drawn: BranchDrawing) -> list[tuple[str, dict[str, Any]]]:
+    found: list[tuple[str, dict[str, Any]]] = []
+    if drawn.responsible:
+        of = "" if drawn.are_named else f" of {', '.join(drawn.responsible)}"
+        look = {"linestyle": "none", "marker": "o", "markersize": DOT, "color": plot_style.GREY}
+        found.append((f"limit position{of}", look))
+    if any(circuit.changes for circuit in drawn.found.circuits):
+        found.append(("change point", {**canvas.RING, "color": plot_style.INK}))
+    if drawn.found.start is not None:
+        found.append(("where solving begins", {**START, "color": plot_style.INK}))
+    return found
+
+
+def _called(circuit: Circuit, branches: Sequence[Branch]) -> str:
+    """What some branches of a circuit are called."""
+    first, last = branches[0].number, branches[-1].number
+    return f"circuit {circuit.number}, " + (f"branch {first}" if first == last else f"branches {first} to {last}")

@@ -12,7 +12,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.view.plot import canvas, plot_style
-from compoundkin.view.plot.events import Events, events
+from compoundkin.view.plot.marked_places import Events, events
 from compoundkin.view.plot.plotted_rows import Plotted, along
 from compoundkin.view.plot.point_labels import PointLabel, number
 

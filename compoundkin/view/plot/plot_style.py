@@ -1,13 +1,17 @@
-"""The one style of all plots, in force only while one is drawn or written."""
+"""`Plot`, a drawn plot, and the one style of all plots, in force only while one is drawn or written."""
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.suffixes import Kind
+from compoundkin.files.saved_files import Savable
 
 INK, GREY, SHADE = "#222222", "#767676", "#dcdcdc"
 # Told apart with every kind of colour blindness: M. Okabe, K. Ito, Color Universal Design (2008); the yellow is left
@@ -52,6 +56,14 @@ STYLE: Mapping[str, Any] = MappingProxyType(
         "pdf.fonttype": 42,
     }
 )
+# No dates and no versions: the same plot is the same file.
+METADATA: Mapping[str, Mapping[str, str | None]] = MappingProxyType(
+    {
+        "png": {"Software": "compoundkin"},
+        "svg": {"Date": None, "Creator": "compoundkin"},
+        "pdf": {"CreationDate": None, "Creator": "compoundkin", "Producer": "compoundkin"},
+    }
+)
 
 
 def require_matplotlib() -> None:
@@ -83,3 +95,36 @@ def colours(count: int, designs: int) -> tuple[Any, ...]:
     from matplotlib import colormaps
 
     return tuple(colormaps[FAMILY](LIGHTEST * k / (designs - 1)) for k in range(designs))
+
+
+@dataclass(frozen=True, eq=False)
+class Plot(Savable):
+    """A plot: `figure` is Matplotlib's, to be changed at will before it is saved.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> from compoundkin.view.plot import plot
+    >>> plot(solve(load_named("six-bar")), "bar.angle").content("svg")[:5]
+    b'<?xml'
+    """
+
+    saved_as: ClassVar[Kind] = "plot"
+
+    figure: Any
+
+    def content(self, form: str) -> bytes:
+        """The bytes of a file in the form "png", "svg" or "pdf"; the same every time."""
+        written = io.BytesIO()
+        with styled():
+            self.figure.savefig(written, format=form, metadata=dict(METADATA[form]))
+        return written.getvalue()
+
+    def _repr_png_(self) -> bytes:
+        return self.content("png")
+
+    def _repr_svg_(self) -> str:
+        return self.content("svg").decode("utf-8")
+
+    def __repr__(self) -> str:
+        names = [axes.get_ylabel() or axes.get_xlabel() for axes in self.figure.axes]
+        return f"Plot({', '.join(map(repr, filter(None, names)))})"

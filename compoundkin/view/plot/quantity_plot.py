@@ -12,9 +12,9 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.view.plot import canvas, plot_style
-from compoundkin.view.plot.events import Events, at, events
-from compoundkin.view.plot.extremes import extremes as found_extremes
-from compoundkin.view.plot.plot_picture import Plot
+from compoundkin.view.plot.marked_places import Events, at, events
+from compoundkin.view.plot.marked_places import extremes as found_extremes
+from compoundkin.view.plot.plot_style import Plot
 from compoundkin.view.plot.plotted_rows import Plotted, all_of, along
 from compoundkin.view.plot.point_labels import PointLabel, number
 

@@ -16,10 +16,9 @@ from compoundkin.analysis.centres.derivation import derive
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.attributes import unit_of
 from compoundkin.structure import Structure
-from compoundkin.view.report.digits import number
 from compoundkin.view.report.report_data import Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import ROUNDING, Sample
-from compoundkin.view.report.wording import counted, listed
+from compoundkin.view.report.wording import counted, listed, number
 
 # A direction this close to 0 or 180 degrees is rounding.
 NEARLY = 1e-9

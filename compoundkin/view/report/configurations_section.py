@@ -16,10 +16,9 @@ from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.kinematics.solution import first_configuration
 from compoundkin.structure import Group, Structure
-from compoundkin.view.report.digits import number
 from compoundkin.view.report.report_data import NOT_SOLVED, Alert, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
-from compoundkin.view.report.wording import counted, listed
+from compoundkin.view.report.wording import counted, listed, number
 
 # A reader needs no more rows than this of a table; the JSON report has all.
 MOST_ROWS = 40
@@ -28,6 +27,7 @@ MOST_MODES = 64
 TRIAD_MODES, TRIAD_BODIES = 6, 4
 # Angles below this (degrees) are rounding.
 FLOOR = 1e-9
+CHANGES = "Where two modes of a group meet and the motion goes on: it may change from one circuit to the other."
 MISSING = "The numbers of configurations and of branches do not agree everywhere, so that a circuit may be missing."
 
 
@@ -184,13 +184,8 @@ class _Page:
     def limits(self) -> Iterator[Section]:
         """The limit positions, each with the group responsible."""
         if self.found.limits:
-            columns = (
-                self.value,
-                Column("which is"),
-                Column("circuit", style="each"),
-                Column("branches"),
-                Column("group"),
-            )
+            circuit = Column("circuit", style="each")
+            columns = self.value, Column("which is"), circuit, Column("branches"), Column("group")
             rows = tuple(
                 (self._in_unit(one.value), "greatest" if one.greatest else "least", one.circuit,
                  f"{one.branches[0]} and {one.branches[1]}", self._group(one))
@@ -205,10 +200,7 @@ class _Page:
         if found:
             columns = (self.value, Column("circuit", style="each"), Column("branch", style="each"), Column("links"))
             rows = tuple((self._in_unit(c.value), c.circuit, c.branch, ", ".join(c.links)) for c in found)
-            text = (
-                "Where two modes of a group meet and the motion goes on: it may change from one circuit to the other."
-            )
-            yield Section("changes", "Change points", (Paragraph(text), _table(columns, rows)))
+            yield Section("changes", "Change points", (Paragraph(CHANGES), _table(columns, rows)))
 
     def toggles(self) -> Iterator[Section]:
         """The toggle positions."""

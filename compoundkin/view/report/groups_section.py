@@ -1,16 +1,28 @@
-"""The groups in solving order: what each uses and yields, and which way it is assembled."""
+"""The drivers, and the groups in solving order: what each uses and yields, and which way it is assembled."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
+from math import degrees
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.groups import DYADS
+from compoundkin.model.attributes import (
+    DEGREES,
+    RATES,
+    coordinate_dimension,
+    unit_of,
+)
+from compoundkin.model.elements import Drive
 from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
-from compoundkin.view.report.report_data import Block, Paragraph, Section, StepBlock
-from compoundkin.view.report.wording import counted, listed
+from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, StepBlock, TableBlock
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.structure_sections import driven_pairs
+from compoundkin.view.report.wording import Wording, counted, listed
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
@@ -26,6 +38,63 @@ CHOSEN_BY = {
     "number": "chosen by number",
     "configuration": "that of the configuration given",
 }
+
+
+def drivers_section(structure: Structure, sample: Sample | None) -> Section:
+    """Each driver with its range, its number of poses and its rates; angles and lengths in tables of their own."""
+    steps = driven_pairs(structure)
+    kinds: dict[bool, list[tuple[Cell, ...]]] = {}
+    for drive in structure.mechanism.drives:
+        step = steps.get(drive.name)
+        is_angle = step is None or step.pair.free_is_angle
+        what = f"{drive.link} on {drive.on}" + (f", {step.pair.name}" if step else "")
+        kinds.setdefault(is_angle, []).append((drive.name, what, *_span(drive, sample, is_angle)))
+    tables = tuple(_driver_table(structure, is_angle, rows) for is_angle, rows in kinds.items())
+    return Section("drivers", "Drivers", (*tables, *_laws(structure)) or (Paragraph("There is no driver."),))
+
+
+def _laws(structure: Structure) -> Iterator[Paragraph]:
+    """How each driver with a law moves."""
+    steps, unit = driven_pairs(structure), unit_of(structure.mechanism.unit, "length")
+    for drive in structure.mechanism.drives:
+        if drive.law is not None:
+            is_angle = drive.name not in steps or steps[drive.name].pair.free_is_angle
+            yield Paragraph(f"{drive.name} moves {Wording(is_angle, unit).law(drive.law)}.")
+
+
+def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, ...]]) -> TableBlock:
+    length, dimension = structure.mechanism.unit, coordinate_dimension(is_angle)
+    unit = DEGREES if is_angle else unit_of(length, dimension)
+    rates = (Column(RATES[k - 1], unit_of(length, dimension, k), "each") for k in (1, 2))
+    span = Column("from", unit, "each"), Column("to", unit, "each"), Column("poses", style="each")
+    return TableBlock((Column("driver"), Column("drives"), *span, *rates), tuple(rows))
+
+
+def _span(drive: Drive, sample: Sample | None, is_angle: bool) -> tuple[Cell, ...]:
+    """From, to, poses, speed, acceleration."""
+    values, speed, acceleration = _given(drive, sample)
+    if sample is None and drive.law is not None:
+        return None, None, None, None, None
+    if values is None and not is_angle:
+        return None, None, None, speed, acceleration
+    values = FULL_TURN if values is None else values
+    ends = float(values[0]), float(values[-1])
+    return (*(map(degrees, ends) if is_angle else ends), len(values), speed, acceleration)
+
+
+def _given(drive: Drive, sample: Sample | None) -> tuple[Any, Cell, Cell]:
+    """The values of a driver, its speed and its acceleration (at the first pose); as written, before solving."""
+    if sample is None:
+        values = None if drive.values is None else np.atleast_1d(drive.values)
+        return values, float(np.ravel(drive.speed)[0]), float(np.ravel(drive.acceleration)[0])
+    motion = sample.motion
+    rates = [np.reshape(sample.of(_shaped(sample, v)), -1)[0] for v in motion.inputs.drives[drive.name][1:3]]
+    return np.reshape(sample.of(motion.drives[drive.name].value), -1), float(rates[0]), float(rates[1])
+
+
+def _shaped(sample: Sample, value: Any) -> Any:
+    inputs = sample.motion.inputs
+    return np.broadcast_to(value, (inputs.designs, inputs.poses)).reshape(inputs.shape)
 
 
 def solving_section(structure: Structure, motion: Motion | None, design: int = 0) -> Section:

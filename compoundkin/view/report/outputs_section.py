@@ -1,38 +1,35 @@
-"""What moves: the drivers' ranges, the outputs over the cycle, and their extremes."""
+"""What moves: outputs over the cycle and their extremes, cams, and what stands for higher pairs at one pose."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import degrees
 from typing import Any
 
 import numpy as np
 
+from compoundkin.analysis.cam_analysis import CamAnalysis, cam_analysis, cam_pairs
+from compoundkin.analysis.equivalents import replaced
+from compoundkin.base.errors import CompoundkinError
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import (
     ANGLE,
-    DEGREES,
     DISPLACEMENT,
     POSITION,
-    RATES,
-    coordinate_dimension,
     order_of,
     unit_of,
 )
-from compoundkin.model.elements import FRAME, Drive
+from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure import Structure
-from compoundkin.view.report.laws_in_words import Wording
-from compoundkin.view.report.links_and_pairs import driven_pairs
-from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.structure import decompose, roman
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import ROUNDING, Sample
-from compoundkin.view.report.wording import counted, listed, ordinal
+from compoundkin.view.report.wording import counted, listed, number, ordinal
 
 # How many outputs a report chooses where the mechanism names none.
 MOST_OUTPUTS = 6
+WAYS = {True: "oscillates about a pin", False: "translates on a slide", None: "has no guide of its own"}
 
 
 def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
@@ -60,63 +57,6 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
 def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:
     """The outputs asked for, else those that the mechanism has by default and the motion was solved for."""
     return tuple(outputs or (name for name in default_outputs(motion.mechanism) if order_of(name) <= motion.order))
-
-
-def drivers_section(structure: Structure, sample: Sample | None) -> Section:
-    """Each driver with its range, its number of poses and its rates; angles and lengths in tables of their own."""
-    steps = driven_pairs(structure)
-    kinds: dict[bool, list[tuple[Cell, ...]]] = {}
-    for drive in structure.mechanism.drives:
-        step = steps.get(drive.name)
-        is_angle = step is None or step.pair.free_is_angle
-        what = f"{drive.link} on {drive.on}" + (f", {step.pair.name}" if step else "")
-        kinds.setdefault(is_angle, []).append((drive.name, what, *_span(drive, sample, is_angle)))
-    tables = tuple(_driver_table(structure, is_angle, rows) for is_angle, rows in kinds.items())
-    return Section("drivers", "Drivers", (*tables, *_laws(structure)) or (Paragraph("There is no driver."),))
-
-
-def _laws(structure: Structure) -> Iterator[Paragraph]:
-    """How each driver with a law moves."""
-    steps, unit = driven_pairs(structure), unit_of(structure.mechanism.unit, "length")
-    for drive in structure.mechanism.drives:
-        if drive.law is not None:
-            is_angle = drive.name not in steps or steps[drive.name].pair.free_is_angle
-            yield Paragraph(f"{drive.name} moves {Wording(is_angle, unit).law(drive.law)}.")
-
-
-def _driver_table(structure: Structure, is_angle: bool, rows: list[tuple[Cell, ...]]) -> TableBlock:
-    length, dimension = structure.mechanism.unit, coordinate_dimension(is_angle)
-    unit = DEGREES if is_angle else unit_of(length, dimension)
-    rates = (Column(RATES[k - 1], unit_of(length, dimension, k), "each") for k in (1, 2))
-    span = Column("from", unit, "each"), Column("to", unit, "each"), Column("poses", style="each")
-    return TableBlock((Column("driver"), Column("drives"), *span, *rates), tuple(rows))
-
-
-def _span(drive: Drive, sample: Sample | None, is_angle: bool) -> tuple[Cell, ...]:
-    """From, to, poses, speed, acceleration."""
-    values, speed, acceleration = _given(drive, sample)
-    if sample is None and drive.law is not None:
-        return None, None, None, None, None
-    if values is None and not is_angle:
-        return None, None, None, speed, acceleration
-    values = FULL_TURN if values is None else values
-    ends = float(values[0]), float(values[-1])
-    return (*(map(degrees, ends) if is_angle else ends), len(values), speed, acceleration)
-
-
-def _given(drive: Drive, sample: Sample | None) -> tuple[Any, Cell, Cell]:
-    """The values of a driver, its speed and its acceleration (at the first pose); as written, before solving."""
-    if sample is None:
-        values = None if drive.values is None else np.atleast_1d(drive.values)
-        return values, float(np.ravel(drive.speed)[0]), float(np.ravel(drive.acceleration)[0])
-    motion = sample.motion
-    rates = [np.reshape(sample.of(_shaped(sample, v)), -1)[0] for v in motion.inputs.drives[drive.name][1:3]]
-    return np.reshape(sample.of(motion.drives[drive.name].value), -1), float(rates[0]), float(rates[1])
-
-
-def _shaped(sample: Sample, value: Any) -> Any:
-    inputs = sample.motion.inputs
-    return np.broadcast_to(value, (inputs.designs, inputs.poses)).reshape(inputs.shape)
 
 
 def outputs_section(sample: Sample, outputs: Sequence[str]) -> Section:
@@ -182,3 +122,89 @@ def _extreme(sample: Sample, values: Any, floor: float) -> tuple[Cell, ...]:
 
 def _cell(value: Any) -> float | None:
     return float(value) if np.isfinite(value) else None
+
+
+def cams_sections(sample: Sample) -> tuple[Section, ...]:
+    """One section for all cams, where there are any."""
+    names = cam_pairs(sample.motion) if sample.motion.order and sample.assembled.any() else ()
+    blocks = [block for name in names for block in cam_blocks(sample, cam_analysis(sample.motion, name))]
+    return (Section("cams", "Cams", tuple(blocks)),) if blocks else ()
+
+
+def cam_blocks(sample: Sample, found: CamAnalysis) -> Iterator[Block]:
+    """What there is to say of one cam."""
+    pair = found.pair
+    said = f"{pair.name}: {found.follower} {WAYS[found.oscillates]}. The pressure angle is customarily not greater than"
+    yield Paragraph(f"{said} {number(float(np.rad2deg(found.allowed_pressure_angle)))} degrees.")
+    place = sample.places[0]
+    at = Column(f"at {place.name}", place.unit, "each", follows=True)
+    columns = (
+        Column("quantity"),
+        Column("unit"),
+        Column("least", style="each"),
+        at,
+        Column("greatest", style="each"),
+        at,
+    )
+    yield TableBlock(columns, tuple(_cam_rows(sample, found)), keys=1)
+    yield from (Alert(warning) for warning in found.warnings)
+
+
+def _cam_rows(sample: Sample, found: CamAnalysis) -> Iterator[tuple[Cell, ...]]:
+    unit = unit_of(sample.motion.mechanism.unit, "length")
+    yield _cam_extremes(sample, "pressure angle", "deg", np.rad2deg(found.pressure_angle))
+    yield _cam_extremes(sample, "radius of curvature of the profile", unit, found.radius_of_curvature)
+    if found.pitch_radius is not None and found.roller_rate is not None:
+        yield _cam_extremes(sample, "radius of curvature of the pitch curve", unit, found.pitch_radius)
+    yield _cam_extremes(sample, "sliding at the contact", f"{unit}/s", found.sliding)
+    if found.roller_rate is not None:
+        yield _cam_extremes(sample, "spin of a roller that rolls", "rad/s", found.roller_rate)
+
+
+def _cam_extremes(sample: Sample, what: str, unit: str, values: Any) -> tuple[Cell, ...]:
+    """The least and the greatest value and where they are; what is infinite or not known is left out."""
+    column, places = sample.places
+    of = sample.of(values)
+    known = np.flatnonzero(np.isfinite(of))
+    if not known.size:
+        return what, unit, None, None, None, None
+    least, greatest = known[np.argmin(of[known])], known[np.argmax(of[known])]
+    floor = max(column.floor, 0.0)
+    cells = (float(of[least]), float(places[least]), float(of[greatest]), float(places[greatest]))
+    low, low_at, high, high_at = (0.0 if k % 2 and abs(v) <= floor else v for k, v in enumerate(cells))
+    return what, unit, low, low_at, high, high_at
+
+
+def equivalent_section(sample: Sample) -> Section | None:
+    """What stands for each higher pair at the first pose with rates, and the groups that result; None without any."""
+    motion = sample.motion
+    regular = np.flatnonzero(sample.of(np.broadcast_to(motion.regular, motion.failed.shape).reshape(motion.shape)))
+    if not len(regular):
+        return None
+    at = sample.design * sample.poses + int(regular[0])
+    try:
+        linkage, found = replaced(motion, at)
+    except CompoundkinError:
+        return None
+    if not found:
+        return None
+    rows = tuple((one.pair.name, one.pair.title, *_link(one.length), *map(_place, one.centres)) for one in found)
+    columns = (
+        Column("pair"), Column("kind"), Column("stands for it"), Column("length", style="each"),
+        Column("centre on the first"), Column("centre on the second"),
+    )  # fmt: skip
+    groups = [f"{g.name} ({listed(g.links)}; class {roman(g.class_)})" for g in decompose(linkage).groups]
+    text = (
+        f"Pins and slides that give the same velocities and accelerations at pose {int(regular[0])}, and there only: a"
+        " bar between the centres of curvature, or a block on a straight profile. "
+        f"Its groups: {listed(groups) or 'none'}."
+    )
+    return Section("equivalent", "Equivalent linkage", (Paragraph(text), TableBlock(columns, rows)))
+
+
+def _link(length: float | None) -> tuple[Cell, Cell]:
+    return ("a block", None) if length is None else ("a bar", length)
+
+
+def _place(centre: complex | None) -> str:
+    return "straight" if centre is None else f"({centre.real:.6g}, {centre.imag:.6g})"

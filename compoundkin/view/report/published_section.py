@@ -18,8 +18,8 @@ from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import HIGHEST_ORDER, RATES, TIME
 from compoundkin.model.elements import Expectation
 from compoundkin.structure import Structure
-from compoundkin.view.report.links_and_pairs import driven_pairs
 from compoundkin.view.report.report_data import Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.view.report.structure_sections import driven_pairs
 from compoundkin.view.report.wording import counted
 
 # Up to so many published numbers are listed one by one; of more, each quantity's nearest to its tolerance.

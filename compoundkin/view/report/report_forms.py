@@ -2,23 +2,159 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+from functools import singledispatch
+from math import isfinite
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from compoundkin.base.display import Shows
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
-from compoundkin.view.report.json_text import json_text
-from compoundkin.view.report.markdown_text import markdown
-from compoundkin.view.report.report_data import Outcome, Section
+from compoundkin.view.report.report_data import (
+    Alert,
+    Cell,
+    Column,
+    FormulaBlock,
+    Outcome,
+    Paragraph,
+    Section,
+    StepBlock,
+    TableBlock,
+)
+from compoundkin.view.report.wording import written
 
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
 
 Subject: TypeAlias = Structure | Motion
+
+
+def json_text(title: str, sections: Sequence[Section], outcome: Outcome) -> str:
+    """The report as a JSON text: `title`, `outcome`, and `sections` by their keys in reading order.
+
+    A table has `columns` (name and unit) and `rows`; what is not assembled is null, a vector is [x, y].
+
+    >>> sections = [Section("about", "", (Paragraph("Watch B."),))]
+    >>> json.loads(json_text("Crank", sections, Outcome(True, 0, 0, 0, 0, 0, 0)))["sections"]["about"]["blocks"]
+    [{'kind': 'paragraph', 'text': 'Watch B.'}]
+    """
+    parts = {s.key: {"title": s.title, "blocks": [_as_data(block) for block in s.blocks]} for s in sections}
+    comes_to = {**asdict(outcome), "passed": outcome.passed}
+    whole = {"format": 1, "title": title, "outcome": comes_to, "sections": parts}
+    return json.dumps(whole, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+@singledispatch
+def _as_data(block: object) -> dict[str, Any]:
+    raise TypeError(f"{type(block).__name__} is not a part of a report")
+
+
+@_as_data.register
+def _(block: Paragraph) -> dict[str, Any]:
+    return {"kind": "paragraph", "text": block.text}
+
+
+@_as_data.register
+def _(block: FormulaBlock) -> dict[str, Any]:
+    return {"kind": "formula", "text": block.text, **({"latex": block.latex} if block.latex else {})}
+
+
+@_as_data.register
+def _(block: Alert) -> dict[str, Any]:
+    return {"kind": "alert", "text": block.text, "remedy": block.remedy}
+
+
+@_as_data.register
+def _(block: StepBlock) -> dict[str, Any]:
+    return {"kind": "step", "title": block.title, "facts": [list(fact) for fact in block.facts]}
+
+
+@_as_data.register
+def _(block: TableBlock) -> dict[str, Any]:
+    columns = [{"name": column.name, "unit": column.unit} for column in block.columns]
+    return {"kind": "table", "columns": columns, "rows": [[_cell_as_data(cell) for cell in row] for row in block.rows]}
+
+
+def _cell_as_data(cell: Cell) -> Any:
+    if isinstance(cell, tuple):
+        return [_cell_as_data(value) for value in cell]
+    if isinstance(cell, str):
+        return cell.replace("\n", " ")
+    return None if isinstance(cell, float) and not isfinite(cell) else cell
+
+
+def markdown(title: str, sections: Sequence[Section]) -> str:
+    """The report as Markdown, for GitHub and the like.
+
+    >>> print(markdown("Crank", [Section("about", "", (Paragraph("a | b"),))]))
+    # Crank
+    <BLANKLINE>
+    a \\| b
+    <BLANKLINE>
+    """
+    parts = [f"# {_plain(title)}", *(part for section in sections for part in _section_as_markdown(section))]
+    return "\n\n".join(parts) + "\n"
+
+
+def _section_as_markdown(section: Section) -> Iterator[str]:
+    if section.title:
+        yield f"## {_plain(section.title)}"
+    for block in section.blocks:
+        yield _as_markdown(block)
+
+
+@singledispatch
+def _as_markdown(block: object) -> str:
+    raise TypeError(f"{type(block).__name__} is not a part of a report")
+
+
+@_as_markdown.register
+def _(block: Paragraph) -> str:
+    return _plain(block.text)
+
+
+@_as_markdown.register
+def _(block: FormulaBlock) -> str:
+    return f"$$\n{block.latex}\n$$" if block.latex else f"```text\n{block.text}\n```"
+
+
+@_as_markdown.register
+def _(block: Alert) -> str:
+    remedy = f" *Remedy:* {_plain(block.remedy)}." if block.remedy else ""
+    return f"> **{_plain(block.text)}**{remedy}"
+
+
+@_as_markdown.register
+def _(block: StepBlock) -> str:
+    facts = "\n".join(f"- *{_plain(term)}*: {_plain(text)}" for term, text in block.facts)
+    return f"### {_plain(block.title)}\n\n{facts}"
+
+
+@_as_markdown.register
+def _(block: TableBlock) -> str:
+    rows = block.shown_rows
+    cells = [written(column, [row[k] for row in rows]) for k, column in enumerate(block.columns)]
+    lines = [map(_heading, block.columns), ("---:" if column.is_number else "---" for column in block.columns)]
+    return "\n".join(map(_line, [*lines, *(map(_plain, row) for row in zip(*cells, strict=True))]))
+
+
+def _line(cells: Iterable[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _heading(column: Column) -> str:
+    return _plain(f"{column.name} [{column.unit}]" if column.unit else column.name)
+
+
+def _plain(text: str) -> str:
+    """Text in which nothing is taken for markup."""
+    for mark in "\\`*_|<>":
+        text = text.replace(mark, "\\" + mark)
+    return " ".join(text.split())
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from rich.padding import Padding
 from rich.table import Table as Grid
 from rich.text import Text
 
-from compoundkin.view.report.digits import written
 from compoundkin.view.report.report_data import Alert, Column, FormulaBlock, Paragraph, Section, StepBlock, TableBlock
+from compoundkin.view.report.wording import written
 
 # Between two columns of a table.
 GAP = 2

@@ -8,11 +8,18 @@ from typing import TYPE_CHECKING
 
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.solvable import solvable
+from compoundkin.kinematics.solvable import relaxed, solvable
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
+from compoundkin.view.report.groups_section import drivers_section, solving_section
+from compoundkin.view.report.report_data import Outcome
 from compoundkin.view.report.report_forms import Report, Subject
-from compoundkin.view.report.structure_report import report_of_structure
+from compoundkin.view.report.structure_sections import (
+    about_section,
+    counted_sections,
+    faults_section,
+    structure_in_short,
+)
 
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
@@ -38,7 +45,7 @@ def report(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), de
     """
     subject = _solved(what) if isinstance(what, Mechanism) else what
     if isinstance(subject, Structure):
-        return report_of_structure(subject)
+        return _of_structure(subject)
     if not isinstance(subject, Motion):
         raise InvalidInput(Problem("report", f"{what!r} is no motion and no mechanism", "load() one from a file"))
     # what a motion takes is not loaded for the report of a structure
@@ -72,3 +79,14 @@ def _solved(mechanism: Mechanism) -> Subject:
             return solve(structure)
         except InvalidInput:
             return structure
+
+
+def _of_structure(structure: Structure) -> Report:
+    """Report a structure before it is solved, one with faults included."""
+    structure = relaxed(structure)
+    outcome = Outcome(not structure.faults, 0, 0, 0, 0, 0, 0)
+    about = about_section(structure, structure_in_short(structure))
+    faults = [faults_section(structure)] if structure.faults else []
+    solving = solving_section(structure, None), drivers_section(structure, None)
+    sections = about, *counted_sections(structure), *faults, *solving
+    return Report(structure.mechanism.title, sections, outcome, structure)

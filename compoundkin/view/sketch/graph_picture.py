@@ -11,12 +11,10 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs import Pair
 from compoundkin.structure import Body, Structure
 from compoundkin.view.sketch.label_places import Label, placed, text_half
-from compoundkin.view.sketch.picture import Picture, checked_size
-from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text
+from compoundkin.view.sketch.picture import Picture, Window, checked_size, fitted
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, sheet
 from compoundkin.view.sketch.sketch_labels import below, lines_of_text
 from compoundkin.view.sketch.sketch_style import SMALL, style_of
-from compoundkin.view.sketch.strokes import sheet
-from compoundkin.view.sketch.window import Window, fitted
 
 # The distance of two links that a pair joins, in picture units, and the radius of a link.
 APART, NODE = 110.0, 14.0

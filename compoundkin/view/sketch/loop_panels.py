@@ -1,4 +1,4 @@
-"""One independent loop on its panel: its vectors over what is behind it, its letters, its number with an arrow."""
+"""Panels side by side in rows, and the panel of one independent loop: its vectors, letters and number."""
 
 from __future__ import annotations
 
@@ -10,14 +10,26 @@ import numpy as np
 
 from compoundkin.structure import Loop
 from compoundkin.view.sketch.label_places import Label, around, placed, text_half
-from compoundkin.view.sketch.rows import PicturePart
-from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text, corners
-from compoundkin.view.sketch.shifted_shapes import moved
+from compoundkin.view.sketch.picture import MARGIN
+from compoundkin.view.sketch.shapes import (
+    CircleShape,
+    Polygon,
+    Polyline,
+    Shape,
+    ShapeGroup,
+    Strokes,
+    Text,
+    corners,
+    direction,
+    moved,
+)
 from compoundkin.view.sketch.sketch_labels import NARROW
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, PIN, SMALL, style_of
-from compoundkin.view.sketch.strokes import direction
-from compoundkin.view.sketch.window import MARGIN
 
+# Parts stand side by side until they are so wide together, in picture units.
+WIDEST = 1000.0
+# Between parts, with a sign.
+GAP = 30.0
 # Panels are at least so wide, for their headings.
 NARROWEST = 230.0
 # Vectors that lie on each other, nearer than this, are drawn beside their line.
@@ -30,6 +42,41 @@ ROUND, SWEEP = 11.0, 4.9
 RINGS = (0.0, 8.0, 16.0, 26.0, 38.0, 52.0, 70.0)
 # What it costs the number of a loop to be a picture unit away from its middle.
 NEAR = 0.3
+
+
+@dataclass(frozen=True)
+class PicturePart:
+    """A part with its size, its upper left corner at zero."""
+
+    shapes: tuple[Shape, ...]
+    width: float
+    height: float
+
+
+def in_rows(parts: Sequence[PicturePart], sign: str = "") -> tuple[list[Shape], float, float]:
+    """The parts side by side, in rows, with a sign between them; and the size of them all.
+
+    >>> in_rows([PicturePart((), 300.0, 100.0)] * 4)[1:]
+    (1016.0, 245.0)
+    """
+    rows: list[list[PicturePart]] = []
+    for part in parts:
+        if rows and sum(p.width + GAP for p in rows[-1]) + part.width <= WIDEST:
+            rows[-1].append(part)
+        else:
+            rows.append([part])
+    shapes: list[Shape] = []
+    y, first = MARGIN / 2.0, True
+    for row in rows:
+        x, tall = MARGIN / 2.0 + GAP, max(part.height for part in row)
+        for part in row:
+            if not first and sign:
+                shapes.append(Text(complex(x - GAP / 2.0, y + tall / 2.0), sign, "heading"))
+            shapes += moved(part.shapes, complex(x, y + (tall - part.height) / 2.0))
+            x, first = x + part.width + GAP, False
+        y += tall + LINE
+    width = max(sum(part.width + GAP for part in row) for row in rows) + MARGIN
+    return shapes, round(width, 1), round(y, 1)
 
 
 @dataclass(frozen=True)
@@ -70,7 +117,8 @@ def parts_of(panels: Sequence[LoopPanel]) -> list[PicturePart]:
     size = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j) - low
     wide = max(size.real, NARROWEST)
     low -= (wide - size.real) / 2.0
-    chains = [_wrapped(chain(panel.loop), wide) for panel in panels]
+    wrap = textwrap.TextWrapper(int(wide / (SMALL * NARROW)), break_on_hyphens=False, break_long_words=False).wrap
+    chains = [wrap(chain(panel.loop)) for panel in panels]
     down = LINE * (1 + max(map(len, chains)))
     parts = []
     for panel, lines in zip(panels, chains, strict=True):
@@ -82,11 +130,6 @@ def parts_of(panels: Sequence[LoopPanel]) -> list[PicturePart]:
         part = ShapeGroup((*heads, *moved(shapes, 1j * down)), links=panel.loop.links)
         parts.append(PicturePart((part,), wide, size.imag + down))
     return parts
-
-
-def _wrapped(text: str, wide: float) -> list[str]:
-    """A text in lines of a width; names stay whole."""
-    return textwrap.wrap(text, int(wide / (SMALL * NARROW)), break_on_hyphens=False, break_long_words=False)
 
 
 def _texts(panel: LoopPanel, low: complex, size: complex) -> list[Shape]:

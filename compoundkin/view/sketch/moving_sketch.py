@@ -14,18 +14,16 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import fit
 from compoundkin.model.elements import FRAME
-from compoundkin.view.sketch.arrows import KINDS_OF_VECTOR, LONGEST, VectorScale, scale_of
 from compoundkin.view.sketch.label_places import ROOM, placed, text_half
-from compoundkin.view.sketch.painter import Laid, Painter
+from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, corners, leaves
-from compoundkin.view.sketch.shifted_shapes import moved
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, corners, leaves, moved, sheet
 from compoundkin.view.sketch.shown_pose import scene_in
 from compoundkin.view.sketch.sketch_labels import badge, letters, numbered
-from compoundkin.view.sketch.sketch_layers import in_layers, path, window_on
 from compoundkin.view.sketch.sketch_style import LETTER
-from compoundkin.view.sketch.strokes import sheet
-from compoundkin.view.sketch.window import Window
+from compoundkin.view.sketch.sketches import in_layers, path, window_on
+from compoundkin.view.sketch.slide_shapes import Laid, Painter
+from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, LONGEST, VectorScale, scale_of
 
 # So many poses along the motion tell how much room it takes, besides all places of all points.
 SAMPLED = 24

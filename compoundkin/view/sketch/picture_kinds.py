@@ -9,16 +9,14 @@ from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, P
 from compoundkin.kinematics import Motion
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
-from compoundkin.view.sketch.circle_picture import circle_diagram
+from compoundkin.view.sketch.centre_pictures import circle_diagram
 from compoundkin.view.sketch.graph_picture import graph
-from compoundkin.view.sketch.groups_picture import groups_picture
-from compoundkin.view.sketch.loops_picture import loops, loops_in_graph
 from compoundkin.view.sketch.picture import Picture
 from compoundkin.view.sketch.scene import groups_of, numbers_of
-from compoundkin.view.sketch.shown_pose import Drawable, scene_of, solved_over
+from compoundkin.view.sketch.shown_pose import Drawable, Wishes, scene_of, solved_over
 from compoundkin.view.sketch.sketches import sketch
-from compoundkin.view.sketch.vector_polygons import vector_polygon
-from compoundkin.view.sketch.wishes import Wishes
+from compoundkin.view.sketch.structure_pictures import groups_picture, loops, loops_in_graph
+from compoundkin.view.sketch.vectors import vector_polygon
 
 
 def draw(

@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics import Motion
@@ -166,26 +165,8 @@ def scene_of_motion(motion: Motion, shown: Motion, design: int, pose: int) -> Sc
         name: tuple(End(*(_side(v, at) for v in end)) for end in sides) for name, sides in shown.inputs.ends.items()
     }
     whole = {name: _along(pose, design, known) for name, pose in motion.poses.items()}
-    here = {name: _at(pose, at) for name, pose in shown.poses.items()}
+    here = {name: pose_at(pose, at) for name, pose in shown.poses.items()}
     return Scene(motion.structure, whole, here, points, ends, shown, at, known)
-
-
-def scene_as_drawn(structure: Structure) -> Scene:
-    """The scene of the drawing of a mechanism; raises InvalidInput where the drawing does not show every link."""
-    geometry = structure.mechanism.geometry
-    here: dict[str, Pose] = {}
-    for name, placed in geometry.points.items():
-        letter = next((k for k in placed if k in geometry.sketch), None)
-        if name in geometry.drawn:
-            here[name] = _at(geometry.drawn[name], (0, 0))
-        elif letter is not None and len(placed) == 1:
-            here[name] = Pose.of(complex(np.ravel(geometry.sketch[letter])[0]) - _first(placed[letter]), 1 + 0j)
-        else:
-            what = f"{name!r} is not drawn, and the mechanism cannot be solved"
-            raise InvalidInput(Problem(f"links.{name}", what, "draw its points with drawn(...)"))
-    points = {link: {k: complex(_first(p)) for k, p in placed.items()} for link, placed in geometry.points.items()}
-    ends = {pair.name: tuple(End(*map(_first_side, end)) for end in pair.ends(geometry)) for pair in structure.pairs}
-    return Scene(structure, here, here, points, ends)
 
 
 def picked(pose: Pose, k: int) -> Pose:
@@ -202,7 +183,7 @@ def _along(pose: Pose, design: int, known: Number) -> Pose:
     return Pose(z or constant(0j), u or constant(1 + 0j), theta)
 
 
-def _at(pose: Pose, at: tuple[int, int]) -> Pose:
+def pose_at(pose: Pose, at: tuple[int, int]) -> Pose:
     """A pose with its rates at one place, numbers."""
     z, u = (Series(tuple(complex(_number(c, at)) for c in v.c)) for v in (pose.z, pose.u))
     theta = None if pose.theta is None else Series(tuple(float(_number(c, at)) for c in pose.theta.c))
@@ -220,11 +201,3 @@ def _number(value: Number, at: tuple[int, int], motion: Motion | None = None) ->
 
 def _side(value: Number, at: tuple[int, int]) -> Number:
     return None if value is None else _number(value.c[0] if isinstance(value, Series) else value, at)
-
-
-def _first(value: Number) -> Number:
-    return np.ravel(value)[0]
-
-
-def _first_side(value: Number) -> Number:
-    return None if value is None else _first(value.c[0] if isinstance(value, Series) else value)

@@ -1,10 +1,19 @@
-"""Shapes as data: what a picture consists of, in picture units, y downward, planar places as complex numbers."""
+"""Shapes as data, in picture units, y downward, planar places as complex numbers; and strokes made of them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
+
+import numpy as np
+
+from compoundkin.base.series import Number
+
+HATCH = 6.0  # distance of the strokes of a hatching
+HEAD = 10.0  # length of an arrow's head
+HEAD_HALF = 3.6
+SLANT = np.exp(2.4j)  # direction of a hatching as seen from its line
 
 
 @dataclass(frozen=True)
@@ -113,3 +122,76 @@ def leaves(shapes: Iterable[Shape]) -> Iterator[Shape]:
             yield from leaves(shape.shapes)
         else:
             yield shape
+
+
+def moved(shapes: Iterable[Shape], by: complex, turn: complex = 1 + 0j) -> list[Shape]:
+    """The same shapes, turned about zero and then moved on the picture; texts stay upright.
+
+    >>> moved([CircleShape(1 + 0j, 1.0, "pin")], 2j, 1j)
+    [CircleShape(centre=3j, radius=1.0, style='pin')]
+    """
+    return [_moved(shape, by, turn) for shape in shapes]
+
+
+def _moved(shape: Shape, by: complex, turn: complex) -> Shape:
+    if isinstance(shape, ShapeGroup):
+        return replace(shape, shapes=tuple(moved(shape.shapes, by, turn)))
+    if isinstance(shape, CircleShape):
+        return replace(shape, centre=shape.centre * turn + by)
+    if isinstance(shape, ArcShape):
+        return replace(shape, start=shape.start * turn + by, stop=shape.stop * turn + by)
+    if isinstance(shape, Polyline | Polygon):
+        return replace(shape, points=tuple(p * turn + by for p in shape.points))
+    if isinstance(shape, Strokes):
+        return replace(shape, lines=tuple(tuple(p * turn + by for p in line) for line in shape.lines))
+    return replace(shape, at=shape.at * turn + by)
+
+
+def direction(along: complex) -> complex:
+    """The unit vector of a direction; to the right for none."""
+    length = abs(along)
+    return along / length if length > 0 else 1 + 0j
+
+
+def box(middle: complex, along: complex, length: float, width: float) -> tuple[complex, ...]:
+    """The corners of a rectangle about a middle."""
+    e = direction(along)
+    a, b = e * length / 2.0, 1j * e * width / 2.0
+    return middle - a - b, middle + a - b, middle + a + b, middle - a + b
+
+
+def sheet(width: float, height: float) -> Polygon:
+    """The paper of a picture."""
+    return Polygon((0j, complex(width), complex(width, height), complex(0.0, height)), "paper")
+
+
+def hatching(start: complex, stop: complex, side: float) -> Strokes:
+    """A hatching along a line on one of its sides: that of ``1j * side`` as seen along it."""
+    length, e = abs(stop - start), direction(stop - start)
+    count = max(2, round(length / HATCH))
+    slant = e * SLANT.real + 1j * e * side * SLANT.imag
+    roots = [start + e * length * (k + 0.7) / count for k in range(count)]
+    return Strokes(tuple((root, root + slant * HATCH) for root in roots), "hatch")
+
+
+def arrow(start: complex, stop: complex, style: str) -> tuple[Shape, ...]:
+    """A straight arrow; a short one has a smaller head."""
+    length, e = abs(stop - start), direction(stop - start)
+    head = min(HEAD, 0.6 * length)
+    return Polyline((start, stop - e * head * 0.8), style), arrow_head(stop, e, f"{style}-head", head / HEAD)
+
+
+def arrow_head(tip: complex, along: complex, style: str, size: float = 1.0) -> Polygon:
+    """The head of an arrow."""
+    e = direction(along)
+    back = tip - e * HEAD * size
+    return Polygon((tip, back + 1j * e * HEAD_HALF * size, back - 1j * e * HEAD_HALF * size), style)
+
+
+def ticks(middle: complex, radius: float, start: float, count: int, inner: float, outer: float) -> tuple[Number, ...]:
+    """Radial strokes around a circle, the first one in the direction `start` (radians, on paper)."""
+    found = []
+    for k in range(count):
+        e = complex(np.exp(1j * (start + 2.0 * np.pi * k / count)))
+        found.append((middle + e * (radius + inner), middle + e * (radius + outer)))
+    return tuple(found)

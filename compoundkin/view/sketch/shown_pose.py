@@ -1,9 +1,10 @@
-"""Which pose is shown: that of given driver values, of an index, or the one nearest to the drawing."""
+"""What is asked of a picture, and which pose is shown: at driver values, at an index, or nearest to the drawing."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,19 +18,47 @@ from compoundkin.base.errors import (
     UnknownName,
     nearest,
 )
-from compoundkin.base.series import Number
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.attributes import RATES, after_number
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
-from compoundkin.view.sketch.scene import Scene, scene_as_drawn, scene_of_motion
+from compoundkin.view.sketch.scene import Scene, pose_at, scene_of_motion
 
 # A driver value is that of a pose if it differs by no more than this part of the driver's range.
 SAME = 1e-9
 # Places nearer to each other than this part of the size are one.
 ROUNDING = 1e-6
-
 Drawable: TypeAlias = Motion | Mechanism | Structure
+
+
+@dataclass(frozen=True, eq=False)
+class Wishes:
+    """What is asked of a picture besides its kind, as `draw` explains it."""
+
+    at: Any = None
+    pose: int | None = None
+    design: int = 0
+    ghosts: int = 0
+    paths: str | Sequence[str] | bool = ()
+    centres: bool = False
+    vectors: str | Sequence[str] = ()
+    labels: bool | str | Sequence[str] = True
+    size: float | None = None
+
+    def others(self, known: Sequence[str]) -> tuple[str, ...]:
+        """Return the names of those that are given and not among some.
+
+        >>> Wishes(at=0.5, ghosts=3).others(("at", "pose"))
+        ('ghosts',)
+        """
+        return tuple(one.name for one in fields(self) if one.name not in known and self._is_given(one.name))
+
+    def _is_given(self, name: str) -> bool:
+        value, usual = getattr(self, name), getattr(Wishes, name)
+        # without a comparison of arrays, which gives an array
+        return type(value) is not type(usual) or bool(usual is not None and value != usual)
 
 
 def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
@@ -45,6 +74,24 @@ def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
     if at is not None:
         return scene_in(solve(what, _by_name(structure, at)), None, None, design)
     return scene_as_drawn(structure)
+
+
+def scene_as_drawn(structure: Structure) -> Scene:
+    """The scene of the drawing of a mechanism; raises InvalidInput where the drawing does not show every link."""
+    geometry = structure.mechanism.geometry
+    here: dict[str, Pose] = {}
+    for name, placed in geometry.points.items():
+        letter = next((k for k in placed if k in geometry.sketch), None)
+        if name in geometry.drawn:
+            here[name] = pose_at(geometry.drawn[name], (0, 0))
+        elif letter is not None and len(placed) == 1:
+            here[name] = Pose.of(complex(np.ravel(geometry.sketch[letter])[0]) - _first(placed[letter]), 1 + 0j)
+        else:
+            what = f"{name!r} is not drawn, and the mechanism cannot be solved"
+            raise InvalidInput(Problem(f"links.{name}", what, "draw its points with drawn(...)"))
+    points = {link: {k: complex(_first(p)) for k, p in placed.items()} for link, placed in geometry.points.items()}
+    ends = {pair.name: tuple(End(*map(_first_side, end)) for end in pair.ends(geometry)) for pair in structure.pairs}
+    return Scene(structure, here, here, points, ends)
 
 
 def solved_over(what: Mechanism | Structure) -> Motion | None:
@@ -160,3 +207,11 @@ def pose_notes(scene: Scene) -> list[str]:
         shown = f"{np.rad2deg(value):.5g}" if is_angle else f"{value:.6g}"
         found.append(f"{step.drive.name} at {shown}{after_number(is_angle, scene.mechanism.unit)}")
     return found
+
+
+def _first(value: Number) -> Number:
+    return np.ravel(value)[0]
+
+
+def _first_side(value: Number) -> Number:
+    return None if value is None else _first(value.c[0] if isinstance(value, Series) else value)

@@ -9,13 +9,11 @@ import numpy as np
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Sliding, Wheel
 from compoundkin.view.sketch.label_places import Label, around, text_half
-from compoundkin.view.sketch.link_shapes import edges, skeleton
-from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.pin_shapes import joints
+from compoundkin.view.sketch.link_shapes import edges, joints, skeleton
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import CircleShape, Shape, ShapeGroup, Text
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, NUMBER, PIN, SMALL, style_of
-from compoundkin.view.sketch.slide_shapes import guide_line, rod_line
+from compoundkin.view.sketch.slide_shapes import Painter, guide_line, rod_line
 
 # Places along a bar for its number, the middle first; and how far beside it, in picture units.
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)

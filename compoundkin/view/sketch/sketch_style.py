@@ -15,7 +15,6 @@ PIN = 4.5
 STUD = 4.0
 BAR = 5.0
 BLOCK = (26.0, 15.0)
-HATCH = 6.0
 LETTER = 14.0
 SMALL = 11.0
 LINE = 16.0  # from line to line of a text

@@ -1,31 +1,116 @@
-"""The kinematic sketch of a mechanism at one pose."""
+"""The kinematic sketch of a mechanism at one pose: its layers, ghosts and paths, its labels."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.view.sketch.arrows import LONGEST, VectorScale, rates_of, scale_of, scale_shapes, vector_shapes, wanted
+from compoundkin.base.series import Number
+from compoundkin.model.elements import FRAME
+from compoundkin.model.pairs.symbols import Groove, Outline, Sliding, Strap, Track, Wheel
+from compoundkin.view.sketch.centre_pictures import centre_labels, centre_places, centre_shapes, shown_centres
 from compoundkin.view.sketch.label_places import placed
-from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.picture import Picture, checked_size
+from compoundkin.view.sketch.link_shapes import body, drives, edges, pins, skeleton
+from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted, smooth, thinned, window_of
 from compoundkin.view.sketch.scene import Scene
-from compoundkin.view.sketch.shapes import Shape, corners
-from compoundkin.view.sketch.shown_pose import Drawable, pose_notes, scene_of
-from compoundkin.view.sketch.sketch_centres import centre_labels, centre_places, centre_shapes, shown_centres
+from compoundkin.view.sketch.shapes import Polygon, Polyline, Shape, ShapeGroup, corners, sheet
+from compoundkin.view.sketch.shown_pose import Drawable, Wishes, pose_notes, scene_of
 from compoundkin.view.sketch.sketch_labels import below, label_shapes, letters, lines_of_text, numbered
-from compoundkin.view.sketch.sketch_layers import ghost, layered, path, window_on
 from compoundkin.view.sketch.sketch_style import LINE
-from compoundkin.view.sketch.strokes import sheet
-from compoundkin.view.sketch.window import MARGIN, Window, fitted
-from compoundkin.view.sketch.wishes import Wishes
+from compoundkin.view.sketch.slide_shapes import Laid, Layer, Painter
+from compoundkin.view.sketch.symbol_shapes import marks
+from compoundkin.view.sketch.vectors import (
+    LONGEST,
+    VectorScale,
+    rates_of,
+    scale_of,
+    scale_shapes,
+    vector_shapes,
+    wanted,
+)
 
+# A place that would be good to see, such as an instant centre, makes the picture larger by at most this part of it.
+STRETCH = 0.5
 # More ghosts than this are one grey stain.
 MOST_GHOSTS = 60
 LABELS = ("points", "links")
+
+
+def window_on(
+    scene: Scene, more: Sequence[Scene] = (), paths: Sequence[str] = (), wishes: Sequence[complex] = ()
+) -> Window:
+    """The window that holds a scene, its ghosts and the paths of points; and of the `wishes` those that are not far."""
+    places = [place for shown in (scene, *more) for place in _extent(shown)]
+    places += [scene.places(letter) for letter in paths]
+    plain = Window(1.0, 0j, 0.0, 0.0)
+    bars = [
+        abs(b - a) for name in scene.mechanism.links if name != FRAME for a, b in edges(skeleton(scene, plain, name))
+    ]
+    first = window_of(places, bars)
+    drawn = layered(Painter(scene, first))
+    drawn += [shape for other in more for shape in layered(Painter(other, first), grounded=False)]
+    points = np.concatenate([corners(drawn), *(first.at(scene.places(letter)) for letter in paths)])
+    return fitted(first, np.append(points, _near(points, [complex(first.at(wish)) for wish in wishes])))
+
+
+def _near(points: Number, wishes: Sequence[complex]) -> list[complex]:
+    """Those of the wishes that are not far outside the box around the points."""
+    low, high = complex(points.real.min(), points.imag.min()), complex(points.real.max(), points.imag.max())
+    room = STRETCH * max((high - low).real, (high - low).imag)
+    box = Window(1.0, 0j, (high - low).real + 2.0 * room, (high - low).imag + 2.0 * room)
+    return [wish for wish in wishes if box.holds(wish - low + room * (1 + 1j))]
+
+
+def _extent(scene: Scene) -> Iterator[Number]:
+    """Places that must be on the picture."""
+    yield np.array(list(scene.letters.values()))
+    for seen in scene.seen:
+        mark = seen.mark
+        if isinstance(mark, Wheel):
+            rim = mark.radius * np.array([1, 1j, -1, -1j])
+            yield scene.at(seen.members[mark.member], mark.at) + rim
+        elif isinstance(mark, Groove | Strap | Outline):
+            yield scene.here[seen.members[mark.member]].at(mark.line).c[0]
+        elif isinstance(mark, Track):
+            yield scene.here[seen.members[mark.member]].at(mark.at + mark.along * np.array([mark.low, mark.high])).c[0]
+        elif isinstance(mark, Sliding) and seen.members[0] == FRAME:
+            yield mark.at + mark.along * np.array([mark.low, mark.high])
+
+
+def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:
+    """The shapes of a scene from back to front; without what does not move where it is a ghost."""
+    return [laid.shape for laid in in_layers(painter, grounded=grounded)]
+
+
+def in_layers(painter: Painter, *, grounded: bool = True) -> list[Laid]:
+    """As `layered`, each shape with the link that it moves with."""
+    laid: list[Laid] = [*marks(painter)]
+    for name in filter(painter.shows, painter.scene.mechanism.links):
+        shapes = body(painter.scene, painter.window, name)
+        laid += [Laid(Layer.PLATE if isinstance(shape, Polygon) else Layer.BAR, shape, name) for shape in shapes]
+    laid += [*pins(painter), *drives(painter)] if grounded else []
+    ordered = sorted(laid, key=lambda one: one.layer)  # which keeps the order within a layer
+    return [one for one in ordered if grounded or one.layer not in (Layer.BACK, Layer.FRAME)]
+
+
+def by_links(laid: Iterable[Laid]) -> list[Shape]:
+    """Shapes in their order, those of one link that follow each other as a group of that link."""
+    runs = groupby(laid, key=lambda one: one.link)
+    return [ShapeGroup(tuple(one.shape for one in run), links=(link,)) for link, run in runs]
+
+
+def ghost(scene: Scene, window: Window) -> ShapeGroup:
+    """A scene drawn faintly."""
+    return ShapeGroup(tuple(layered(Painter(scene, window), grounded=False)), "ghost")
+
+
+def path(scene: Scene, window: Window, letter: str) -> list[Shape]:
+    """The path of a point along the motion, on the picture."""
+    return [Polyline(window.line(smooth(thinned(p))), "path") for p in scene.path(letter) if len(p) > 1]
 
 
 def sketch(what: Drawable, wishes: Wishes) -> Picture:

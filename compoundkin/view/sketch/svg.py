@@ -1,18 +1,28 @@
-"""Shapes as SVG: small, readable, the same every time."""
+"""Shapes as SVG; SVG as PNG, PDF and arrays of pixels, by CairoSVG where it is installed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
+from typing import Any
 
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text
-from compoundkin.view.sketch.sketch_style import css
+from compoundkin.view.sketch.sketch_style import PAPER, css
 
 FONT = "font-family:Helvetica,Arial,sans-serif"
 # Pixels for a picture unit where texts are as large as those of a page.
 NATURAL = 1.1
 # From the middle of a line of text to its baseline, in parts of the size of the letters.
 BASELINE = 0.35
+# A PNG has so many pixels for each of the picture's: sharp on fine screens and in print.
+FINE = 2.0
+# Where colours are in the four bytes of a pixel of Cairo's on machines of our days: blue, green, red.
+RED_GREEN_BLUE = [2, 1, 0]
+DOTS_PER_INCH = 96
 
 
 def svg(shapes: Sequence[Shape], width: float, height: float, size: float, title: str, description: str = "") -> str:
@@ -122,3 +132,56 @@ def _pair(point: complex) -> str:
 
 def _class(style: str) -> str:
     return f' class="{" ".join(f"ck-{name}" for name in style.split())}"' if style else ""
+
+
+def converted(source: str, form: str) -> bytes:
+    """An SVG source as "png" or "pdf"; raises InvalidInput where CairoSVG is not installed."""
+    try:
+        import cairosvg
+    except (ImportError, OSError) as error:
+        what = f"{form.upper()} needs CairoSVG and the library Cairo: {error}"
+        raise InvalidInput(Problem(f".{form}", what, "pip install compoundkin[pictures], or save an .svg")) from None
+    convert: Any = cairosvg.svg2png if form == "png" else cairosvg.svg2pdf
+    extra = {"scale": FINE} if form == "png" else {}
+    made: bytes = convert(bytestring=on_light_paper(source).encode("utf-8"), **extra)
+    return made
+
+
+def on_light_paper(source: str) -> str:
+    """The source without its rules for dark paper, which CairoSVG would apply to any."""
+    start, end = source.find("@media"), source.find("</style>")
+    return source[:start] + source[end:] if 0 <= start < end else source
+
+
+def require_cairo(form: str) -> None:
+    """Raise InvalidInput where CairoSVG is not installed."""
+    try:
+        import cairosvg  # noqa: F401
+    except (ImportError, OSError) as error:
+        what = f"{form.upper()} needs CairoSVG and the library Cairo: {error}"
+        raise InvalidInput(Problem(f".{form}", what, "pip install compoundkin[animation], or save an .svg")) from None
+
+
+def pixel_size(width: float, height: float, size: float) -> tuple[int, int]:
+    """Width and height in pixels, even numbers as films need them, the longer one that of `size` or next to it.
+
+    >>> pixel_size(300.0, 199.0, 640.0)
+    (640, 424)
+    """
+    scale = size / max(width, height)
+    return max(2, 2 * round(width * scale / 2.0)), max(2, 2 * round(height * scale / 2.0))
+
+
+def pixels(source: str, width: int, height: int) -> Number:
+    """Draw an SVG source on light paper, bytes of red, green, blue, (height, width, 3)."""
+    from cairosvg.parser import Tree
+    from cairosvg.surface import PNGSurface
+
+    tree = Tree(bytestring=on_light_paper(source).encode("utf-8"))
+    # drawn, but not packed as PNG and unpacked again, which takes longer than drawing
+    surface: Any = PNGSurface(
+        tree, None, DOTS_PER_INCH, output_width=width, output_height=height, background_color=PAPER[0]
+    ).cairo
+    surface.flush()
+    rows = np.frombuffer(surface.get_data(), dtype=np.uint8).reshape(height, surface.get_stride())
+    return np.ascontiguousarray(rows[:, : 4 * width].reshape(height, width, 4)[:, :, RED_GREEN_BLUE])

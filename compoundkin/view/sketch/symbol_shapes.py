@@ -9,12 +9,10 @@ import numpy as np
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Sliding, Strap, Stud, Track, Wheel
-from compoundkin.view.sketch.painter import Laid, Layer, Painter
 from compoundkin.view.sketch.scene import Seen
-from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Strokes
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Strokes, direction, hatching, ticks
 from compoundkin.view.sketch.sketch_style import PIN, STUD
-from compoundkin.view.sketch.slide_shapes import BEYOND, sliding
-from compoundkin.view.sketch.strokes import direction, hatching, ticks
+from compoundkin.view.sketch.slide_shapes import BEYOND, Laid, Layer, Painter, sliding
 
 # Teeth nearer than this to each other are not drawn one by one.
 CLOSEST = 7.0

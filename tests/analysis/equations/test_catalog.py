@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.analysis.equations import LoopEquations, Vector, latex, loop_equations, pair_terms, text
 from compoundkin.files.shipped_mechanisms import load_named, names
-from compoundkin.view.report.mobility_count import equation_count
+from compoundkin.view.report.loop_sections import equation_count
 from tests import catalog
 
 # Residuals of solved positions, of the size of the mechanism or in radians.

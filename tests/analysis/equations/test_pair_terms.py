@@ -15,8 +15,7 @@ import compoundkin as ck
 from compoundkin.analysis.equations import LoopEquations, latex, loop_equations, text
 from compoundkin.structure import assur_groups
 from compoundkin.view.page.mathml import mathml
-from compoundkin.view.report.equations_section import FUNCTIONS, equations_section
-from compoundkin.view.report.mobility_count import equation_count
+from compoundkin.view.report.loop_sections import FUNCTIONS, equation_count, equations_section
 from compoundkin.view.report.report_data import Paragraph
 
 PAGE = (Path(__file__).parents[3] / "docs" / "adding.md").read_text(encoding="utf-8")

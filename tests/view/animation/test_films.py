@@ -13,12 +13,12 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.view.animation import gif as gif_module
-from compoundkin.view.animation import mp4 as mp4_module
-from compoundkin.view.animation.film_palette import APART, indices, nearest_table, palette
-from compoundkin.view.animation.pixels import pixel_size, pixels
+from compoundkin.view.animation import films as gif_module
+from compoundkin.view.animation import films as mp4_module
+from compoundkin.view.animation.films import APART, indices, nearest_table, palette
 from compoundkin.view.sketch.shapes import CircleShape, Text, leaves
 from compoundkin.view.sketch.sketch_style import NUMBER
+from compoundkin.view.sketch.svg import pixel_size, pixels
 from tests import catalog
 
 pytest.importorskip("cairosvg")
@@ -113,7 +113,7 @@ def test_a_gif_has_all_frames_and_goes_on_for_ever(tmp_path: Path) -> None:
     assert frames[0].shape == (size[1], size[0], 3)
     assert max(size) == 120
     for k in (0, 7):
-        exact = pixels(animation.frame(k), *size).astype(int)
+        exact = pixels(animation.frame(k).svg, *size).astype(int)
         assert np.max(np.abs(frames[k] - exact).sum(axis=-1)) <= 2 * APART
         paper = (exact == 255).all(axis=-1)
         assert (frames[k][paper] == 255).all()
@@ -133,7 +133,7 @@ def test_a_gif_has_no_more_frames_a_second_than_browsers_show() -> None:
 
 def test_a_turn_of_the_six_bar_is_well_below_a_megabyte(tmp_path: Path) -> None:
     animation = six_bar(73).animate(size=640, seconds=4)
-    some = [pixels(animation.frame(k), *(640, 640)) for k in range(0, 72, 12)]
+    some = [pixels(animation.frame(k).svg, *(640, 640)) for k in range(0, 72, 12)]
     whole = gif_module.gif(lambda k: some[k], len(some), 0.05, (640, 640), lambda done, total: None)
     assert len(whole) / len(some) * 72 < 850_000
 
@@ -185,7 +185,7 @@ def test_the_frames_of_an_mp4_are_those_drawn(tmp_path: Path) -> None:
     raw = subprocess.run(words, capture_output=True, check=True).stdout
     shown = np.frombuffer(raw, dtype=np.uint8).reshape(12, height, width, 3).astype(int)
     for k in (0, 5, 11):
-        off = [np.mean(np.abs(shown[k] - pixels(animation.frame(n), width, height))) for n in range(12)]
+        off = [np.mean(np.abs(shown[k] - pixels(animation.frame(n).svg, width, height))) for n in range(12)]
         assert int(np.argmin(off)) == k
         assert off[k] < 6.0
 

@@ -15,9 +15,9 @@ import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.animation.timeline import Timeline
+from compoundkin.view.sketch.centre_pictures import TOGETHER
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, Strokes
 from compoundkin.view.sketch.shapes import leaves as shapes_in
-from compoundkin.view.sketch.sketch_centres import TOGETHER
 from tests import catalog
 
 # What moves is where it should be within this, picture units; its shapes are rounded to tenths as in all pictures.

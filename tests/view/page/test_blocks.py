@@ -18,13 +18,13 @@ from click.testing import CliRunner
 import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files import shipped_mechanisms
-from compoundkin.view.page.asset_files import ASSETS, asset
-from compoundkin.view.page.link_names import names_of
+from compoundkin.view.page.html_document import ASSETS, asset
+from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.report_page import Page
 from compoundkin.view.report import Report, page, report
-from compoundkin.view.report.atlas_section import atlas_report
-from compoundkin.view.report.digits import written
+from compoundkin.view.report.atlas_sections import atlas_report
 from compoundkin.view.report.report_data import Column, Outcome, Section, TableBlock
+from compoundkin.view.report.wording import written
 from tests import catalog
 
 from .conftest import HOSTILE

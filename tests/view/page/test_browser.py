@@ -12,7 +12,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.view.report import page
-from compoundkin.view.report.atlas_section import atlas_report
+from compoundkin.view.report.atlas_sections import atlas_report
 from tests import catalog
 
 from .conftest import DESK, PHONE

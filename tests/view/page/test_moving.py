@@ -10,8 +10,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.view.page.markup import brief, exact
 from compoundkin.view.page.moving_data import FEWEST_POSES, MOST_POSES, MotionData
-from compoundkin.view.page.packed_numbers import brief, exact
 from compoundkin.view.page.player import framed, player
 from compoundkin.view.page.viewer import viewer, viewer_of
 from compoundkin.view.report.shown_poses import Sample

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.view.plot.extremes import extremes
+from compoundkin.view.plot.marked_places import extremes
 
 PHASES = st.floats(0.0, 2 * np.pi)
 

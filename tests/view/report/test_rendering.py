@@ -10,8 +10,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.report import Report, report
-from compoundkin.view.report.digits import written
 from compoundkin.view.report.report_data import Column, Outcome, Paragraph, Section, TableBlock
+from compoundkin.view.report.wording import written
 from tests.view.report.support import assert_fits, assert_well_formed, four_bar, parsed
 
 ESCAPE = "\x1b"

@@ -7,7 +7,7 @@ import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named, names
 from compoundkin.kinematics.solvable import solvable
 from compoundkin.view.report import Report, report
-from compoundkin.view.report.mobility_count import equation_count
+from compoundkin.view.report.loop_sections import equation_count
 from compoundkin.view.report.report_data import Alert, FormulaBlock, Paragraph, StepBlock, TableBlock
 from tests import catalog
 from tests.view.report.support import four_bar

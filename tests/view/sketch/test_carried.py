@@ -9,9 +9,9 @@ import compoundkin as ck
 from compoundkin.base.errors import CompoundkinError, InvalidInput, NotAssembled
 from compoundkin.files.shipped_mechanisms import load_named, names
 from compoundkin.view.sketch.moving_sketch import moving_sketch
-from compoundkin.view.sketch.painter import Painter
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, Shape, corners, leaves
-from compoundkin.view.sketch.sketch_layers import layered
+from compoundkin.view.sketch.sketches import layered
+from compoundkin.view.sketch.slide_shapes import Painter
 from tests import catalog
 
 SOLVABLE = ("six-bar", "jansen-leg", "planetary-train", "geneva-wheel", "disc-cam-roller-program",

@@ -14,10 +14,10 @@ import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files import shipped_mechanisms
 from compoundkin.structure import decompose, loop_count
-from compoundkin.view.sketch.loops_picture import MOST, polygon
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, ShapeGroup, Text, leaves
 from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import style_of
+from compoundkin.view.sketch.structure_pictures import MOST, polygon
 from tests import catalog
 
 NAMES = ["six-bar", "stephenson-iii", "class-iii-six-bar", "jansen-leg", "planetary-train", "crank-shaper"]

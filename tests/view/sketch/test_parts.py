@@ -24,12 +24,12 @@ from compoundkin.model.pairs import KINDS, Pair
 from compoundkin.model.pairs.symbols import Mark, Pin, Sliding, strap_line
 from compoundkin.structure import decompose
 from compoundkin.view.sketch.label_places import around, placed
+from compoundkin.view.sketch.picture import simplified
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, ShapeGroup, Text, leaves
 from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_style import COLOURS, FRAME, INK, PAPER
 from compoundkin.view.sketch.symbol_shapes import PAINTED
-from compoundkin.view.sketch.window import simplified
 from tests.pictures import GALLERY
 from tests.support import sample
 

@@ -1,4 +1,4 @@
-"""The independent loops: each one as a closed polygon of vectors, from pair to pair, over the faint mechanism."""
+"""The mechanism taken apart into its groups, and its independent loops."""
 
 from __future__ import annotations
 
@@ -10,20 +10,23 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Series
 from compoundkin.model.elements import FRAME
-from compoundkin.structure import Loop, Structure
+from compoundkin.structure import Group, Loop, Structure, roman
 from compoundkin.view.sketch.graph_picture import APART, NODE, node, spread
+from compoundkin.view.sketch.label_places import WIDE, Label, placed
 from compoundkin.view.sketch.link_shapes import edges, skeleton
-from compoundkin.view.sketch.loop_panels import Corner, LoopPanel, chain, panel_of, parts_of
-from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.picture import Picture, checked_size
-from compoundkin.view.sketch.rows import in_rows
+from compoundkin.view.sketch.loop_panels import Corner, LoopPanel, PicturePart, chain, in_rows, panel_of, parts_of
+from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted
 from compoundkin.view.sketch.scene import Scene, groups_of, numbers_of
-from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Strokes
-from compoundkin.view.sketch.sketch_labels import below, lines_of_text
-from compoundkin.view.sketch.sketch_layers import ghost, layered, window_on
-from compoundkin.view.sketch.strokes import sheet
-from compoundkin.view.sketch.window import Window, fitted
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Strokes, Text, corners, moved, sheet
+from compoundkin.view.sketch.sketch_labels import below, label_shapes, letters, lines_of_text, numbered
+from compoundkin.view.sketch.sketch_style import LETTER, LINE
+from compoundkin.view.sketch.sketches import by_links, ghost, in_layers, layered, window_on
+from compoundkin.view.sketch.slide_shapes import Painter
 
+# Parts are drawn in this part of the size of a sketch.
+PART_OF_SKETCH = 0.52
+# Above each part, for its heading.
+HEADING = 30.0
 # More loops than this nobody looks at one by one.
 MOST = 40
 # Panels are drawn in this part of the size of a sketch, and no larger than this, in picture units: two of them, or
@@ -33,6 +36,61 @@ SMALLER, TWO, THREE, FEW = 0.52, 420.0, 250.0, 4
 MOST_MARKED = 16
 # Places nearer to each other than this part of a loop's size are one.
 SAME = 1e-9
+
+
+def groups_picture(scene: Scene, size: float | None) -> Picture:
+    """The picture of all parts in solving order, each in its own colour."""
+    first = window_on(scene)
+    whole = Window(
+        first.scale * PART_OF_SKETCH, first.corner, first.width * PART_OF_SKETCH, first.height * PART_OF_SKETCH
+    )
+    ground = frozenset((FRAME, *scene.structure.ground.links))
+    parts = [_part(scene, whole, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")]
+    parts += [_part(scene, whole, frozenset(g.links), heading(g), outer_letters(g)) for g in scene.structure.groups]
+    shapes, width, height = in_rows(parts, "+")
+    notes = [f"{number} {name}" for name, number in scene.numbers.items()]
+    notes += ["dashed circles: outer pairs"] if scene.structure.groups else []
+    texts, height = below(lines_of_text(notes, width - 32.0), height + LINE)
+    paper = sheet(width, height)
+    title = f"{scene.mechanism.title}, taken apart"
+    described = "; ".join(heading(group) for group in scene.structure.groups)
+    return Picture((paper, *shapes, *texts), width, height, title, described, checked_size(size))
+
+
+def heading(group: Group) -> str:
+    """What a group is called: its class and the letters of its pairs."""
+    return f"class {roman(group.class_)}: {group.name}"
+
+
+def outer_letters(group: Group) -> frozenset[str]:
+    """The points of the pairs by which a group is attached to what stands before it."""
+    return frozenset(letter for pair in group.outer for letter in pair.letters[:1])
+
+
+def _part(
+    scene: Scene, whole: Window, links: frozenset[str], title: str, outer: frozenset[str] = frozenset()
+) -> PicturePart:
+    """The links of a part as they are in the mechanism, with their letters and numbers."""
+    painter = Painter(scene, whole, links, outer)
+    shapes = by_links(in_layers(painter))
+    points = np.array(corners(shapes) or [0j])
+    low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
+    high = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j)
+    wide = max((high - low).real, len(title) * LETTER * WIDE)
+    low -= (wide - (high - low).real) / 2.0
+    shapes = moved(shapes, -low)
+    named: list[Label] = [*numbered(painter), *letters(painter)]
+    own = [_shifted(label, -low) for label in named]
+    tall = (high - low).imag
+    shapes += label_shapes(scene, placed(own, shapes, wide, tall))
+    named_part = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")
+    own_links = tuple(name for name in scene.numbers if name in links)
+    return PicturePart((ShapeGroup((named_part, *moved(shapes, HEADING * 1j)), links=own_links),), wide, tall + HEADING)
+
+
+def _shifted(label: Label, by: complex) -> Label:
+    own = tuple((a + by, b + by) for a, b in label.own)
+    return Label(label.key, label.half, tuple(place + by for place in label.places), label.costs, own)
 
 
 def loops(scene: Scene, size: float | None) -> Picture:

@@ -1,4 +1,4 @@
-"""The parts of a mechanism: sections on its links, its pairs, and faults of its structure."""
+"""The parts of a mechanism: what it is, its links, its pairs, faults of its structure."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.structure import DrivenPair, Structure, links_by_pairs, pair_counts
-from compoundkin.view.report.digits import number
+from compoundkin.kinematics import Motion
+from compoundkin.structure import DrivenPair, Structure, links_by_pairs, pair_counts, roman
+from compoundkin.view.report.loop_sections import loops_section
+from compoundkin.view.report.mobility_sections import chain_section, mobility_section
 from compoundkin.view.report.report_data import Alert, Block, Column, Paragraph, Section, TableBlock
-from compoundkin.view.report.wording import counted, joined, kind_of_link, listed
+from compoundkin.view.report.wording import counted, joined, kind_of_link, listed, number
 
 # A coordinate below this part of the mechanism's size is the rounding of a zero.
 ROUNDING = 1e-12
@@ -90,3 +92,34 @@ def faults_section(structure: Structure) -> Section:
 
 def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:] + "."
+
+
+def counted_sections(structure: Structure, design: int = 0, motion: Motion | None = None) -> tuple[Section, ...]:
+    """The parts of a mechanism and what counting them tells."""
+    parts = links_section(structure, design), pairs_section(structure)
+    return (*parts, mobility_section(structure, motion), chain_section(structure), loops_section(structure))
+
+
+def about_section(structure: Structure, in_short: str, more: str = "") -> Section:
+    """What the mechanism is, in which units, and what the report comes to."""
+    mechanism = structure.mechanism
+    said = (
+        mechanism.description,
+        f"Source: {mechanism.source}" if mechanism.source else "",
+        f"Lengths in {mechanism.unit or 'the unit of the file (none is named)'}, angles in degrees, time in seconds.",
+        more,
+        in_short,
+    )
+    return Section("about", "", tuple(Paragraph(text) for text in said if text))
+
+
+def structure_in_short(structure: Structure) -> str:
+    """The one line that says what it is made of."""
+    links, freedoms = len(structure.mechanism.links), structure.mobility.freedoms
+    text = f"In short: {counted(links, 'link')}, mobility {freedoms}"
+    if structure.relaxation and not structure.faults:
+        drivers = structure.mobility.drivers
+        text = f"In short: {counted(links, 'link')}, mobility {drivers} ({freedoms} by the count)"
+    if structure.groups:
+        text += f", {counted(len(structure.groups), 'group')}, class {roman(max(g.class_ for g in structure.groups))}"
+    return f"{text}; it cannot be solved." if structure.faults else f"{text}."

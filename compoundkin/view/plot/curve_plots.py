@@ -1,4 +1,4 @@
-"""Polar plots: quantities as radii over the driver's angle."""
+"""Quantities against each other: phase plots, hodographs, polar plots."""
 
 from __future__ import annotations
 
@@ -11,16 +11,100 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import LENGTH, readable
 from compoundkin.view.plot import canvas, planar, plot_style
-from compoundkin.view.plot.plot_picture import Plot
-from compoundkin.view.plot.plotted_rows import Plotted, all_of, driver, shown
+from compoundkin.view.plot.plot_style import Plot
+from compoundkin.view.plot.plotted_rows import Plotted, all_of, driver, rate_name, shown
 
-SIZE = (5.6, 5.8)
+# Sizes in inches.
+PHASE, HODOGRAPH, POLAR = (6.0, 5.0), (6.0, 5.6), (5.6, 5.8)
 # What Matplotlib leaves out of legends begins so.
 ZERO = "_zero"
 # Where the radii may be written, degrees, between the lines of angles.
 FREE_ANGLES = np.arange(15.0, 375.0, 30.0)
 # Free space inside the lowest and outside the highest value, as a part of their distance.
 MARGIN = 0.08
+
+
+def phase(
+    motion: Motion,
+    name: str,
+    rate: str | None = None,
+    *,
+    every: int | None = None,
+    designs: Sequence[str] = (),
+    title: str | None = None,
+    size: tuple[float, float] | None = None,
+) -> Plot:
+    """Draw a quantity against its rate: "rocker.angle" against "rocker.angular_velocity".
+
+    `rate` is any other quantity to take in place of the rate. A dot every so many poses tells the driver's value or the
+    time, the arrow the direction of the motion; designs are a family of curves. Raises UnknownName for names that the
+    motion does not have and for quantities without a rate (take a component of a vector: "G.velocity.x"), InvalidInput
+    for vectors and where the motion's order is too low.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> picture = phase(solve(load_named("crank-rocker")), "rocker.angle")
+    >>> picture.figure.axes[0].get_ylabel()
+    'rocker.angular_velocity [rad/s]'
+    """
+    x, y = shown(motion, name), shown(motion, rate or rate_name(motion, name))
+    for one in (x, y):
+        if one.is_vector:
+            raise InvalidInput(Problem(one.name, "it is a vector", f"take a component: {one.name}.x"))
+    shared = planar.drawing(motion, designs, every)
+    with plot_style.styled():
+        figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or PHASE)
+        shades: Any = plot_style.colours(1, shared.designs)
+        for d in range(shared.designs):
+            z = x.values[d] + 1j * y.values[d]
+            planar.curve(axes[0], shared, d, z, shades[d], shared.called[d])
+            planar.marks(axes[0], shared, d, z, shades[d], shared.designs == 1)
+        axes[0].margins(0.1)
+        canvas.axis_labels(axes[0], x, y, canvas.WHOLE)
+        planar.finish(figure, axes, shared, True)
+        return canvas.finished(figure, shared.labels)
+
+
+def hodograph(
+    motion: Motion,
+    *names: str,
+    every: int | None = None,
+    designs: Sequence[str] = (),
+    title: str | None = None,
+    size: tuple[float, float] | None = None,
+) -> Plot:
+    """Draw the curves that the tips of vectors run along, all from one origin: "G.velocity".
+
+    Equal scales; a dot every so many poses with the driver's value or the time. Vectors of one plot have one unit.
+    Raises UnknownName for names that the motion does not have, InvalidInput for what is no vector or has another unit.
+    Source: W. R. Hamilton, The Hodograph (1847).
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> hodograph(solve(load_named("six-bar")), "G.velocity").figure.axes[0].get_xlabel()
+    'G.velocity, x [mm/s]'
+    """
+    vectors = all_of(motion, names)
+    for one in vectors:
+        if not one.is_vector:
+            raise InvalidInput(Problem(one.name, "it is no vector", "a hodograph takes vectors such as G.velocity"))
+        if one.unit != vectors[0].unit:
+            told = f"its unit is {one.unit}, that of {vectors[0].name} {vectors[0].unit}"
+            raise InvalidInput(Problem(one.name, told, "draw them one by one"))
+    shared = planar.drawing(motion, designs, every)
+    with plot_style.styled():
+        figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or HODOGRAPH)
+        shades: Any = plot_style.colours(len(vectors), shared.designs)
+        for k, one in enumerate(vectors):
+            for d in range(shared.designs):
+                colour = shades[k if shared.designs == 1 else d]
+                planar.curve(axes[0], shared, d, one.values[d], colour, one.name)
+                planar.marks(axes[0], shared, d, one.values[d], colour, shared.designs == len(vectors) == 1)
+        axes[0].plot([0.0], [0.0], marker="+", markersize=11, color=plot_style.INK, linestyle="none", zorder=6)
+        unit, names_ = readable(vectors[0].unit), ", ".join(one.name for one in vectors)
+        canvas.plane(axes[0], f"{names_}, x [{unit}]", f"y [{unit}]")
+        planar.finish(figure, axes, shared, True)
+        return canvas.finished(figure, shared.labels)
 
 
 def polar(
@@ -48,7 +132,7 @@ def polar(
     shared = planar.drawing(motion, designs, None)
     with plot_style.styled():
         text = motion.mechanism.title if title is None else title
-        figure, axes = canvas.panels(1, text, size or SIZE, subplot_kw={"projection": "polar"})
+        figure, axes = canvas.panels(1, text, size or POLAR, subplot_kw={"projection": "polar"})
         shades: Any = plot_style.colours(len(radii), shared.designs)
         for k, one in enumerate(radii):
             for d in range(shared.designs):
