@@ -64,7 +64,7 @@ COMMON = {"angle", "displacement", "x", "y", "speed", "rate", "value", "second",
 KEYS_OF_PROBLEMS = {
     "analysis/mechanical_advantage.py: .angle",
     "model/validation.py: .value",
-    "view/plot/phase_plot.py: .x",
+    "view/plot/curve_plots.py: .x",
 }
 # Names with an underscore that Python and IPython give meaning to.
 PROTOCOLS = re.compile(r"__\w+__|_replace|_asdict|_fields|_repr_\w+_")

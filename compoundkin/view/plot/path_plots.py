@@ -127,15 +127,20 @@ def centrodes(
         planar.curve(one, shared, design, moving, shades[1], f"moving centrode ({link})")
         _pole(one, shared, fixed[pose])
         fixed_points(one, motion, on, shared)
-        for letter, z in body.items():
-            one.plot([z.real], [z.imag], marker="x", markersize=6, color=shades[1], linestyle="none", zorder=6)
-            shared.labels.append(PointLabel(one, z.real, z.imag, letter, 1j, shades[1]))
+        _moving_points(one, body, shades[1], shared)
         unit = unit_of(motion.mechanism.unit, "length")
         canvas.plane(one, f"x [{unit}]", f"y [{unit}]")
         canvas.legend(one)
         where = f"every {shared.every} poses: {shared.x.label}"
         canvas.events_legend(figure, False, bool(shared.happened.blanks), False, where)
         return canvas.finished(figure, shared.labels)
+
+
+def _moving_points(axes: Any, body: dict[str, complex], colour: Any, shared: planar.SharedCurves) -> None:
+    """The points of the moving link at the pose, as crosses with their letters."""
+    for letter, z in body.items():
+        axes.plot([z.real], [z.imag], marker="x", markersize=6, color=colour, linestyle="none", zorder=6)
+        shared.labels.append(PointLabel(axes, z.real, z.imag, letter, 1j, colour))
 
 
 def _check(motion: Motion, pose: int, design: int) -> None:
