@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
-from compoundkin.model.attributes import LENGTH, readable
+from compoundkin.model.attributes import LENGTH, PARTS, readable
 from compoundkin.view.plot import canvas, planar, plot_style
 from compoundkin.view.plot.plot_style import Plot
 from compoundkin.view.plot.plotted_rows import Plotted, all_of, driver, rate_name, shown
@@ -50,7 +50,7 @@ def phase(
     x, y = shown(motion, name), shown(motion, rate or rate_name(motion, name))
     for one in (x, y):
         if one.is_vector:
-            raise InvalidInput(Problem(one.name, "it is a vector", f"take a component: {one.name}.x"))
+            raise InvalidInput(Problem(one.name, "it is a vector", f"take a component: {one.name}.{next(iter(PARTS))}"))
     shared = planar.drawing(motion, designs, every)
     with plot_style.styled():
         figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or PHASE)
