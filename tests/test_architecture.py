@@ -310,7 +310,6 @@ STILL_TRACKING: set[str] = set()
 STILL_LONG_FUNCTIONS = {
     "kinematics/solution.py: solve",
     "kinematics/tracking.py: __init__",
-    "view/plot/path_plots.py: centrodes",
 }
 STILL_LONG = {
     "analysis/equations/loop_equations.py",
