@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import entry, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import constant
@@ -82,7 +83,7 @@ class _Builder:
         self.at = at
         design, pose = divmod(at, motion.inputs.poses)
         self.inputs: Inputs = motion.inputs.pick(np.array([design]), np.array([float(pose)]))
-        self.poses = {name: _at(pose_, at, motion.failed.shape) for name, pose_ in motion.poses.items()}
+        self.poses = {name: _at(pose_, (design, pose)) for name, pose_ in motion.poses.items()}
         self.on = {spin.link: spin.on for spin in motion.structure.passive}
         self.points = {name: dict(self._points(name)) for name in motion.mechanism.links if name not in self.on}
         self.found: list[Replacement] = []
@@ -106,7 +107,7 @@ class _Builder:
         return complex(self.poses[name].at(p).c[0])
 
     def _drive(self, item: Drive) -> Drive:
-        value, *rates = (float(np.ravel(v)[0]) for v in self.inputs.drives[item.name])
+        value, *rates = (float(first_entry(v)) for v in self.inputs.drives[item.name])
         return drive(item.link, on=item.on, pair=item.pair, values=value, name=item.name,
                      **dict(zip(RATES, rates, strict=True)))  # fmt: skip
 
@@ -165,18 +166,17 @@ class _Builder:
 
 def _angle(end: End) -> float:
     """Return the direction of a side, as an angle in its link's frame."""
-    return float(np.ravel(end.along.angle().c[0])[0])
+    return float(first_entry(end.along.angle().c[0]))
 
 
 def _plain(found: Osculation, size: float) -> Osculation:
     """Return a replacement with numbers, None for a centre too far away."""
-    centres = (None if v is None else complex(np.ravel(v)[0]) for v in found[:2])
+    centres = (None if v is None else complex(first_entry(v)) for v in found[:2])
     first, second = (None if v is None or not abs(v) < STRAIGHT * size else v for v in centres)
-    return Osculation(first, second, complex(np.ravel(found.normal)[0]))
+    return Osculation(first, second, complex(first_entry(found.normal)))
 
 
-def _at(pose: Pose, at: int, shape: tuple[int, ...]) -> Pose:
+def _at(pose: Pose, at: tuple[int, ...]) -> Pose:
     """Return one pose of a motion, without derivatives."""
-    z, u = (complex(np.broadcast_to(series.c[0], shape).flat[at]) for series in (pose.z, pose.u))
-    theta = float(np.broadcast_to(pose.angle.c[0], shape).flat[at])
-    return Pose(constant(z), constant(u), constant(theta))
+    z, u = (complex(entry(series.c[0], at)) for series in (pose.z, pose.u))
+    return Pose(constant(z), constant(u), constant(float(entry(pose.angle.c[0], at))))

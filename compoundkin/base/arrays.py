@@ -156,10 +156,10 @@ def entry(value: Number, at: tuple[int, ...]) -> Number:
     return array[tuple([k if n > 1 else 0 for k, n in zip(own, array.shape, strict=True)])]
 
 
-def first(value: Number) -> Number:
+def first_entry(value: Number) -> Number:
     """Return a number as it is, of an array its first entry.
 
-    >>> first(np.array([[1.0, 2.0]])), first(3.0)
+    >>> first_entry(np.array([[1.0, 2.0]])), first_entry(3.0)
     (np.float64(1.0), 3.0)
     """
     return value if np.ndim(value) == 0 else np.ravel(value)[0]

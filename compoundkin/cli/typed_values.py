@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.files.written_quantities import MOST_VALUES, RPM, spaced
@@ -71,14 +72,14 @@ def of_pose(structure: Structure, given: Sequence[str], option: str = "--at") ->
 def _first(structure: Structure) -> dict[str, float]:
     """The first value of every driver that has values, a law, or turns a full turn."""
     own = {drive.name: _values_of(structure, drive) for drive in structure.mechanism.drives}
-    return {name: float(np.ravel(values)[0]) for name, values in own.items() if values is not None}
+    return {name: float(first_entry(values)) for name, values in own.items() if values is not None}
 
 
 def _values_of(structure: Structure, drive: Drive) -> Number | None:
     """The values of a driver that it has itself; one that has a law, its first one."""
     if drive.law is not None:
         time = structure.mechanism.time
-        first = float(np.ravel(time)[0]) if time is not None else (drive.law.span or (0.0,))[0]
+        first = float(first_entry(time)) if time is not None else (drive.law.span or (0.0,))[0]
         return drive.law.coordinate(np.array([first]), 0).c[0]
     return FULL_TURN if drive.values is None and _angles(structure)[drive.name] else drive.values
 

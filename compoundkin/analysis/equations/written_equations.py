@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from compoundkin.analysis.equations.loop_equations import DriverEquation, VectorLoop
-from compoundkin.base.series import Number
+from compoundkin.base.arrays import first_entry
 from compoundkin.model.pairs.loop_terms import LETTERS, Auxiliary, Curved, Implicit, Sum, Term, Unknown
 
 # A constant below this is rounding; a factor nearer to one than this is one.
@@ -139,11 +139,11 @@ def _vector(term: Term, how: _How) -> str:
 def _sum(of: Sum, how: _How, constant: Callable[[float], str]) -> str:
     parts = []
     for factor, unknown in of.parts:
-        number = _first(factor)
+        number = float(first_entry(factor))
         size = "" if abs(abs(number) - 1.0) < ROUNDING else f"{abs(number):.6g} "
         if abs(number) > ROUNDING:
             parts.append((1 if number > 0 else -1, f"{size}{how.unknown(unknown)}"))
-    number = _first(of.constant)
+    number = float(first_entry(of.constant))
     if abs(number) > ROUNDING or not parts:
         parts.append((1 if number >= 0 else -1, constant(abs(number)) if abs(number) > ROUNDING else "0"))
     return _joined(parts)
@@ -157,10 +157,6 @@ def _joined(parts: Sequence[tuple[int, str]]) -> str:
 
 def _plain(value: float) -> str:
     return f"{value:.6g}"
-
-
-def _first(value: Number) -> float:
-    return float(np.ravel(value)[0])
 
 
 def _escaped(name: str) -> str:

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number
 from compoundkin.model.fields import value_key, word
@@ -64,7 +65,7 @@ class Belt(Geared):
         radii = one * unit, two * unit
         back = poses[2].inverse()
         middles = [back.at(pose.at(end.point)).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True)]
-        first, second = (complex(np.ravel(middle)[0]) for middle in middles)
+        first, second = (complex(first_entry(middle)) for middle in middles)
         discs = (Wheel(k, ends[k].point, radii[k]) for k in range(2))
         return *discs, Strap(2, strap_line((first, second), radii, self.crossed))
 

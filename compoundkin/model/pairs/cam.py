@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
@@ -216,8 +217,8 @@ class Cam(Profiled):
         """The profile in a random direction, the roller somewhere on it."""
         angle, s = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(self.curve.low, self.curve.high)
         u, z = complex(np.cos(angle), np.sin(angle)), complex(*rng.standard_normal(2))
-        place = self.curve.at(s) + self.curve.normal(s) * self.outward * float(np.ravel(self.radius)[0])
-        return End(z, u), End(z + u * place.c[0], None, float(np.ravel(self.radius)[0]))
+        place = self.curve.at(s) + self.curve.normal(s) * self.outward * float(first_entry(self.radius))
+        return End(z, u), End(z + u * place.c[0], None, float(first_entry(self.radius)))
 
     @property
     def rank_key(self) -> Hashable:

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
@@ -222,14 +223,14 @@ class Geared(TurnCounting, Replaceable):
 
     def generic(self, rng: np.random.Generator) -> Ends:
         """Axes at random places, the ratio as it is: it may make a train lock."""
-        one, two = (float(np.ravel(size)[0]) for size in self.sizes)
+        one, two = (float(first_entry(size)) for size in self.sizes)
         places = (complex(*rng.standard_normal(2)) for _ in range(2))
         return *(End(place, None, size) for place, size in zip(places, (one, two), strict=True)), End(0j, None, 0.0)
 
     @property
     def rank_key(self) -> Hashable:
         """The kind and the ratio."""
-        one, two = (float(np.ravel(size)[0]) for size in self.sizes)
+        one, two = (float(first_entry(size)) for size in self.sizes)
         return type(self), one / two
 
     def apart(self, ends: Ends, poses: Poses) -> float:

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, point_key, value_key, word
@@ -125,8 +126,8 @@ class Rack(OnLine):
     def pitch(self) -> float:
         """The distance of teeth: by the module, else by as many as a gear of unknown teeth shows."""
         if self.module is not None:
-            return float(np.pi * np.ravel(self.module)[0])
-        return float(2.0 * np.pi * np.ravel(self.size)[0] / UNCOUNTED)
+            return float(np.pi * first_entry(self.module))
+        return float(2.0 * np.pi * first_entry(self.size) / UNCOUNTED)
 
 
 rack = word("rack", Rack)

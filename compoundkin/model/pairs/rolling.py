@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
@@ -98,7 +99,7 @@ class Rolling(OnLine, Drivable):
         """Along the line and out to the wheel's middle."""
         free, radius = Unknown("displacement", self.name), ends[1].measure
         on, wheel = (angle_of(name) for name in self.members)
-        along, side = on.plus(direction(ends[0])), int(np.sign(np.ravel(radius)[0]))
+        along, side = on.plus(direction(ends[0])), int(np.sign(first_entry(radius)))
         out = Vector(f"r({self.name})", Sum(np.abs(radius)), along.plus(np.pi / 2.0), side)
         turned = times(radius, difference(on, wheel))
         rolled = Auxiliary(self.name, Sum(-ends[0].measure, ((1.0, free), *turned.parts)), counts_turns=True)

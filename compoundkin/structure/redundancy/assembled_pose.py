@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, first, wrapped
+from compoundkin.base.arrays import Number, first_entry, wrapped
 from compoundkin.base.newton import Rest, gauss_newton
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import constant
@@ -99,7 +99,7 @@ def assemble(equations: ConstraintEquations) -> AssembledPose:
         return _nearest(equations, None)
     drives = zip(mechanism.drives, equations.driven, strict=True)
     values = [
-        (SOMEWHERE if pair.free_is_angle else 0.0) if drive.values is None else float(first(drive.values))
+        (SOMEWHERE if pair.free_is_angle else 0.0) if drive.values is None else float(first_entry(drive.values))
         for drive, pair in drives
     ]
     at_values = _nearest(equations, np.array(values))
@@ -188,4 +188,4 @@ def _placed(
 
 
 def _number(value: Number) -> complex:
-    return complex(first(value))
+    return complex(first_entry(value))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import first
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import constant
 from compoundkin.model.elements import FRAME
@@ -216,4 +216,4 @@ def _first(end: End) -> End:
 
 
 def _number(value: Any) -> Any:
-    return value if np.ndim(value) == 0 else first(value).item()
+    return np.asarray(first_entry(value)).item()

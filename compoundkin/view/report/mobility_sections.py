@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis, mobility_analysis
@@ -42,20 +41,11 @@ def mobility_section(structure: Structure, motion: Motion | None = None) -> Sect
 
 def _pose(motion: Motion) -> dict[str, Pose] | None:
     """A pose of the first design, about the middle of its motion."""
-    shape = motion.failed.shape
     good = np.flatnonzero(motion.regular[0])
     if not len(good) or motion.inputs.designs > 1:
         return None
     at = int(good[len(good) // 2])
-
-    def number(value: Number) -> Number:
-        return np.broadcast_to(value, shape)[0, at]
-
-    found = {}
-    for name, pose in motion.poses.items():
-        theta = None if pose.theta is None else constant(number(pose.theta.c[0]))
-        found[name] = Pose(constant(number(pose.z.c[0])), constant(number(pose.u.c[0])), theta)
-    return found
+    return {name: pose.entry((0, at)) for name, pose in motion.poses.items()}
 
 
 def analysis_blocks(found: MobilityAnalysis) -> Iterator[Block]:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import wrapped
+from compoundkin.base.arrays import first_entry, wrapped
 from compoundkin.base.errors import NotAssembled, UnassembledPoses, UnknownName
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.quantities import quantity
@@ -84,9 +84,9 @@ def _solved(structure: Structure, at: Mapping[str, float]) -> Motion | None:
     values: dict[str, float] = {}
     rates: dict[str, Any] = {rate: {} for rate in RATES}
     for drive in structure.mechanism.drives:
-        values[drive.name] = at.get(drive.name, 0.0 if drive.values is None else _first(drive.values))
+        values[drive.name] = at.get(drive.name, 0.0 if drive.values is None else float(first_entry(drive.values)))
         for rate, given in rates.items():
-            given[drive.name] = at.get(f"{drive.name}.{rate}", _first(getattr(drive, rate)))
+            given[drive.name] = at.get(f"{drive.name}.{rate}", float(first_entry(getattr(drive, rate))))
     return _pose(structure, values, **rates)
 
 
@@ -108,10 +108,6 @@ def _pose(structure: Structure, values: Mapping[str, float], **how: Any) -> Moti
         return None
 
 
-def _first(values: Any) -> float:
-    return float(np.ravel(values)[0])
-
-
 def _compared(expectation: Expectation, motion: Motion | None, where: str) -> Comparison:
     if motion is None:
         return Comparison(expectation, complex("nan"))
@@ -119,7 +115,7 @@ def _compared(expectation: Expectation, motion: Motion | None, where: str) -> Co
         found = quantity(motion, expectation.quantity)
     except UnknownName as error:
         raise UnknownName([replace(problem, where=where) for problem in error.problems]) from None
-    value = complex(np.ravel(found.values)[0])
+    value = complex(first_entry(found.values))
     if found.is_angle and isfinite(value.real):
         published = expectation.value.real
         value = complex(published + wrapped(value.real - published))

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from compoundkin.base.arrays import entry
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics import Motion
@@ -112,7 +113,7 @@ class Scene:
 
     def ghost(self, k: int) -> Scene:
         """The same scene at the k-th assembled pose of the motion."""
-        poses = {name: picked(pose, k) for name, pose in self.whole.items()}
+        poses = {name: Pose(pose.z, pose.u).entry((k,)) for name, pose in self.whole.items()}
         return Scene(self.structure, self.whole, poses, self.points, self.ends, known=self.known)
 
     @property
@@ -165,14 +166,8 @@ def scene_of_motion(motion: Motion, shown: Motion, design: int, pose: int) -> Sc
         name: tuple(End(*(_side(v, at) for v in end)) for end in sides) for name, sides in shown.inputs.ends.items()
     }
     whole = {name: _along(pose, design, known) for name, pose in motion.poses.items()}
-    here = {name: pose_at(pose, at) for name, pose in shown.poses.items()}
+    here = {name: pose.entry(at) for name, pose in shown.poses.items()}
     return Scene(motion.structure, whole, here, points, ends, shown, at, known)
-
-
-def picked(pose: Pose, k: int) -> Pose:
-    """One pose of an array of them."""
-    z, u = (complex(np.ravel(c)[k if np.size(c) > 1 else 0]) for c in (pose.z.c[0], pose.u.c[0]))
-    return Pose.of(z, u)
 
 
 def _along(pose: Pose, design: int, known: Number) -> Pose:
@@ -183,20 +178,11 @@ def _along(pose: Pose, design: int, known: Number) -> Pose:
     return Pose(z or constant(0j), u or constant(1 + 0j), theta)
 
 
-def pose_at(pose: Pose, at: tuple[int, int]) -> Pose:
-    """A pose with its rates at one place, numbers."""
-    z, u = (Series(tuple(complex(_number(c, at)) for c in v.c)) for v in (pose.z, pose.u))
-    theta = None if pose.theta is None else Series(tuple(float(_number(c, at)) for c in pose.theta.c))
-    return Pose(z, u, theta)
-
-
 def _number(value: Number, at: tuple[int, int], motion: Motion | None = None) -> Number:
     """A number of an array (1 or designs, 1 or poses), or of one that broadcasts with a motion's shape."""
     if np.ndim(value) == 0:
         return value
-    if motion is not None:
-        value = fit(motion.shape)(value)
-    return value[min(at[0], value.shape[0] - 1), min(at[1], value.shape[1] - 1)]
+    return entry(value if motion is None else fit(motion.shape)(value), at)
 
 
 def _side(value: Number, at: tuple[int, int]) -> Number:

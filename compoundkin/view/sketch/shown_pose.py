@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import (
     InvalidInput,
     NotAssembled,
@@ -24,7 +25,7 @@ from compoundkin.kinematics import Motion, solve
 from compoundkin.model.attributes import RATES, after_number
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
-from compoundkin.view.sketch.scene import Scene, pose_at, scene_of_motion
+from compoundkin.view.sketch.scene import Scene, scene_of_motion
 
 # A driver value is that of a pose if it differs by no more than this part of the driver's range.
 SAME = 1e-9
@@ -83,13 +84,13 @@ def scene_as_drawn(structure: Structure) -> Scene:
     for name, placed in geometry.points.items():
         letter = next((k for k in placed if k in geometry.sketch), None)
         if name in geometry.drawn:
-            here[name] = pose_at(geometry.drawn[name], (0, 0))
+            here[name] = geometry.drawn[name].entry((0, 0))
         elif letter is not None and len(placed) == 1:
-            here[name] = Pose.of(complex(np.ravel(geometry.sketch[letter])[0]) - _first(placed[letter]), 1 + 0j)
+            here[name] = Pose.of(complex(first_entry(geometry.sketch[letter])) - first_entry(placed[letter]), 1 + 0j)
         else:
             what = f"{name!r} is not drawn, and the mechanism cannot be solved"
             raise InvalidInput(Problem(f"links.{name}", what, "draw its points with drawn(...)"))
-    points = {link: {k: complex(_first(p)) for k, p in placed.items()} for link, placed in geometry.points.items()}
+    points = {link: {k: complex(first_entry(p)) for k, p in placed.items()} for link, placed in geometry.points.items()}
     ends = {pair.name: tuple(End(*map(_first_side, end)) for end in pair.ends(geometry)) for pair in structure.pairs}
     return Scene(structure, here, here, points, ends)
 
@@ -149,7 +150,7 @@ def _nearest_to_drawing(motion: Motion, design: int, failed: Number) -> int:
     off = np.zeros(motion.inputs.poses)
     for letter, drawn in sketch.items():
         places = np.asarray(motion.points[letter].position).reshape(motion.inputs.designs, -1)[design]
-        off = off + np.abs(places - np.ravel(drawn)[0]) ** 2
+        off = off + np.abs(places - first_entry(drawn)) ** 2
     # a crank at zero hides behind the frame: without a drawing, an eighth of the motion is a better view
     # the first of those that are equally near but for rounding, as the first and the last pose of a full turn are
     near = known[off[known] <= off[known].min() + (ROUNDING * motion.size) ** 2]
@@ -209,9 +210,5 @@ def pose_notes(scene: Scene) -> list[str]:
     return found
 
 
-def _first(value: Number) -> Number:
-    return np.ravel(value)[0]
-
-
 def _first_side(value: Number) -> Number:
-    return None if value is None else _first(value.c[0] if isinstance(value, Series) else value)
+    return None if value is None else first_entry(value.c[0] if isinstance(value, Series) else value)
