@@ -127,7 +127,7 @@ class _Builder:
 
     def _letter(self, name: str, end: End, pair: str) -> str:
         """Return the letter of a pair's side on a link."""
-        return self._named(name, self._world(name, complex(np.ravel(np.asarray(end.point))[0])), pair)
+        return self._named(name, self._world(name, complex(first_entry(end.point))), pair)
 
     def _replaced(self, pair: Pair, found: Osculation) -> Iterator[Item]:
         """Yield the bar or block that stands for a pair, and its slide."""

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.arrays import TURN, Number, first_entry, row
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.configurations.segment_poses import Sweep, drawn_angle
 from compoundkin.configurations.segments import Segments, driver_segment
@@ -101,7 +101,7 @@ def _geared(sweep: Sweep, s: Number, more: float) -> Number:
     block = run(plan, sweep.start(s[None]), _Turned(plan, more), upto)
     links = [link for solver in plan.solvers[:upto] if solver.counted_from for link in solver.group.links]
     values = [value for link in links for value in (block.world[link].z.c[0], block.world[link].u.c[0])]
-    return np.array([np.broadcast_to(value, (1, len(s)))[0] for value in values]).reshape(-1, len(s))
+    return np.array([row(value, len(s)) for value in values]).reshape(-1, len(s))
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ def starting_values(plan: SolvingOrder, values: Mapping[str, Any], moved: str) -
 
 def _first(plan: SolvingOrder, drive: Drive) -> float:
     if drive.values is not None:
-        return float(np.ravel(drive.values)[0])
+        return float(first_entry(drive.values))
     return 0.0 if plan.driven[drive.name].pair.free_is_angle else plan.size / 2.0
 
 
@@ -161,4 +161,4 @@ def _drawn(plan: SolvingOrder, first: Mapping[str, float]) -> dict[str, float]:
         return {}
     geometry = plan.structure.mechanism.geometry
     lead, _, _ = approach(plan, inputs(plan, first, None, None, None), geometry.drawn, geometry.sketch)
-    return {name: float(np.ravel(v[0])[0]) for name, v in lead.drives.items()}
+    return {name: float(first_entry(v[0])) for name, v in lead.drives.items()}

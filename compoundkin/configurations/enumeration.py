@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.arrays import TURN, Number, first_entry
 from compoundkin.base.bracketing import bisected
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.poses import Pose
@@ -186,7 +186,7 @@ def _nothing(plan: SolvingOrder, given: Inputs) -> Problem:
 def _nearest(plan: SolvingOrder, given: Inputs, name: str) -> tuple[float, float]:
     """The value of a driver nearest to its own with any configuration, and how far it is (of the size, or radians)."""
     first = given.cut(slice(0, 1), slice(0, 1))
-    here = float(np.ravel(first.drives[name][0])[0])
+    here = float(first_entry(first.drives[name][0]))
     is_angle = plan.driven[name].pair.free_is_angle
     span = TURN / 2.0 if is_angle else 2.0 * reach_of(plan)
     offsets = np.linspace(-span, span, TRIED)
@@ -201,6 +201,6 @@ def _nearest(plan: SolvingOrder, given: Inputs, name: str) -> tuple[float, float
 
 
 def _any(plan: SolvingOrder, given: Inputs, name: str, values: Number) -> Number:
-    rest = {other: tuple(np.ravel(v)[0] for v in vs) for other, vs in given.drives.items()}
+    rest = {other: tuple(first_entry(v) for v in vs) for other, vs in given.drives.items()}
     drives = {**rest, name: (values[None],)}
     return AllModes.of(plan, Inputs((len(values),), given.ends, drives)).real.any(axis=(0, 1))

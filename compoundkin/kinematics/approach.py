@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.base.arrays import whole_turns
+from compoundkin.base.arrays import TURN, whole_turns
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.kinematics.inputs import Inputs
@@ -58,9 +58,9 @@ def _as_drawn(plan: SolvingOrder, home: Inputs) -> tuple[Inputs, dict[str, Numbe
         if value is None:
             continue
         if driven.pair.free_is_angle:
-            turns = np.round((home.drives[name][0] - value) / (2.0 * np.pi))
+            turns = np.round((home.drives[name][0] - value) / TURN)
             rounds[driven.pair.name] = turns * driven.pair.driven_by(driven.drive.link)
-            value = value + 2.0 * np.pi * turns
+            value = value + TURN * turns
         home = home.driven({**home.drives, name: (value,)})
     return home, rounds
 
@@ -88,7 +88,7 @@ def _turns_at(plan: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]
         for link in (link for link in body.links[1:] if link in poses and base in poses and link in plan.turning):
             pose = start.world.get(link) or start.local[link]
             gap = column(poses[base]).angle.c[0] + pose.angle.c[0] - column(poses[link]).angle.c[0]
-            yield link, np.round(gap / (2.0 * np.pi))
+            yield link, np.round(gap / TURN)
 
 
 def _drawn_value(

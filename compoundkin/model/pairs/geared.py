@@ -235,7 +235,7 @@ class Geared(TurnCounting, Replaceable):
 
     def apart(self, ends: Ends, poses: Poses) -> float:
         """The distance of the axes at the first pose."""
-        first, second = (np.ravel(pose.at(end.point).c[0])[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
+        first, second = (first_entry(pose.at(end.point).c[0]) for pose, end in zip(poses[:2], ends[:2], strict=True))
         return float(abs(second - first))
 
 

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import prod
 
-import numpy as np
-
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import CompoundkinError, InvalidInput
 from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit
 from compoundkin.configurations.circuit_search import Circuits, circuits
@@ -46,7 +45,7 @@ def configurations_section(found: Configurations) -> Section:
     rows: tuple[tuple[Cell, ...], ...] = tuple(
         (i, one.name, *(float(degrees(one.angles[link])) for link in links)) for i, one in enumerate(ones, start=1)
     )
-    at = {name: float(np.ravel(value)[0]) for name, value in found.values.items()}
+    at = {name: float(first_entry(value)) for name, value in found.values.items()}
     angles = "The angles are those of the links from the frame's x axis."
     text = f"{_drivers(structure, at)}: {_count(found, len(ones))} {angles}"
     return Section("configurations", "Configurations", (Paragraph(text), _table(columns, rows, keys=2)))
@@ -91,7 +90,7 @@ def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
     modes = prod(solver.modes or _modes(solver.group) for solver in motion.tracker.plan.solvers)
     if not drives or motion.inputs.designs > 1 or modes > MOST_MODES:
         return ()
-    first = {name: float(np.ravel(values[0])[0]) for name, values in motion.inputs.drives.items()}
+    first = {name: float(first_entry(values[0])) for name, values in motion.inputs.drives.items()}
     others = {name: value for name, value in first.items() if name != drives[0].name}
     try:
         found = circuits(structure, drives[0].name, others, design=design)
