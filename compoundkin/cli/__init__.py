@@ -50,11 +50,11 @@ class Verbs(click.Group):
     """The commands by name, imported one at a time."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The verbs, in the order of a newcomer's interest."""
+        """Return the verbs, in the order of a newcomer's interest."""
         return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command of a verb."""
+        """Return the command of a verb."""
         if cmd_name not in VERBS:
             return None
         command: click.Command = import_module(f"compoundkin.cli.{cmd_name}").command
@@ -63,7 +63,7 @@ class Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command that the arguments name; an unknown one is told the nearest."""
+        """Return the command that the arguments name; an unknown one is told the nearest."""
         if args and args[0] not in VERBS and not args[0].startswith("-"):
             from compoundkin.base.errors import nearest
 
@@ -71,7 +71,7 @@ class Verbs(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """The list of verbs, none of them loaded."""
+        """Write the list of verbs, none of them loaded."""
         with formatter.section("Commands"):
             formatter.write_dl(list(VERBS.items()))
 
@@ -103,5 +103,5 @@ def cli() -> None:
 
 
 def main() -> None:
-    """The command `compoundkin`."""
+    """Run the command `compoundkin`."""
     cli.main(prog_name="compoundkin")

@@ -62,7 +62,7 @@ def command(
 
 
 def solved_at_pose(structure: Structure, at: Sequence[str], asked: Mapping[str, Any], option: str = "--at") -> Motion:
-    """The motion at one pose, with velocities; raises InvalidInput for values that do not fit the drivers."""
+    """Return the motion at one pose, with velocities; raises InvalidInput for values that do not fit the drivers."""
     from compoundkin.cli import typed_values
 
     driven = typed_values.of_pose(structure, at, option)

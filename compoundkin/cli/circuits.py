@@ -73,7 +73,7 @@ def _fixed(structure: Structure, at: Sequence[str]) -> dict[str, float]:
 def range_of(
     structure: Structure, driver: str | None, start: float | None, stop: float | None
 ) -> tuple[float, float] | None:
-    """The range of the driver, in radians or lengths."""
+    """Return the range of the driver, in radians or lengths."""
     import numpy as np
 
     from compoundkin.base.errors import InvalidInput, Problem

@@ -52,21 +52,21 @@ LABELS = click.option("--labels/--no-labels", default=True, help="Letters at poi
 
 
 def drive_options(command: F) -> F:
-    """The options of a command that solves a mechanism; values in degrees or lengths."""
+    """Add the options of a command that solves a mechanism; values in degrees or lengths."""
     for option in reversed(OPTIONS):
         command = option(command)
     return command
 
 
 def pose_options(command: F) -> F:
-    """The options of a command that shows one pose: rates, modes, which design."""
+    """Add the options of a command that shows one pose: rates, modes, which design."""
     for option in (DESIGN, MODE, SPEED):
         command = option(command)
     return command
 
 
 def names(given: Sequence[str]) -> tuple[str, ...]:
-    """Names given one by one or with commas between them.
+    """Return names given one by one or with commas between them.
 
     >>> names(["G.x,G.y", "bar"])
     ('G.x', 'G.y', 'bar')
@@ -75,7 +75,7 @@ def names(given: Sequence[str]) -> tuple[str, ...]:
 
 
 def solved(structure: Structure, asked: Mapping[str, Any]) -> Motion:
-    """The motion that the options ask for; what cannot be assembled is said on stderr.
+    """Return the motion that the options ask for; what cannot be assembled is said on stderr.
 
     Raises InvalidInput for options that do not fit the mechanism, and whatever `solve` raises.
     """
@@ -85,7 +85,7 @@ def solved(structure: Structure, asked: Mapping[str, Any]) -> Motion:
 
 
 def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[str, Any]) -> Motion:
-    """As `solved`, at these values of the drivers."""
+    """Solve as `solved`, at these values of the drivers."""
     from compoundkin.base.errors import UnassembledPoses
     from compoundkin.cli import typed_values
     from compoundkin.cli.progress import working

@@ -18,7 +18,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def complete_name(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """The names of the catalog that begin so."""
+    """Return the names of the catalog that begin so."""
     from compoundkin.files.shipped_mechanisms import names
 
     return [CompletionItem(name) for name in names() if name.startswith(incomplete)]
@@ -30,12 +30,12 @@ def _complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> li
 
 
 def mechanism_argument(command: F) -> F:
-    """The argument FILE of a command."""
+    """Add the argument FILE to a command."""
     return click.argument("file", metavar="FILE", shell_complete=_complete)(command)
 
 
 def loaded(file: str) -> Mechanism:
-    """The mechanism of a file or of a name; raises what is wrong with it."""
+    """Load the mechanism of a file or of a name; raises what is wrong with it."""
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.files import load
     from compoundkin.files.shipped_mechanisms import resolve

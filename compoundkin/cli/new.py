@@ -91,7 +91,7 @@ def command(path: str, force: bool) -> int:
 
 
 def starting_file(target: Path) -> str:
-    """The text of the file, its title the file's name.
+    """Return the text of the file, its title the file's name.
 
     >>> "title = \\"My linkage\\"" in starting_file(Path("my-linkage.toml"))
     True

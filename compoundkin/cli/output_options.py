@@ -21,7 +21,7 @@ FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
 
 
 def report_options(command: F) -> F:
-    """The options --format and -o of a command that prints a report."""
+    """Add the options --format and -o to a command that prints a report."""
     file = click.option("-o", "--to-file", "path", metavar="PATH", help="Write the report here instead of printing it.")
     told = "Text unless PATH ends in .md, .json or .html."
     form = click.option("--format", "form", type=click.Choice(FORMATS), help=told)

@@ -50,7 +50,7 @@ def _tick(what: str, patience: float, done: threading.Event) -> None:
 
 @contextmanager
 def counting(what: str, things: str, patience: float = PATIENCE) -> Iterator[Callable[[int, int], None]]:
-    """A function to be told how much is done, of how much; it shows a bar on stderr as `working` shows a line.
+    """Yield a function to be told how much is done, of how much; it shows a bar on stderr as `working` shows a line.
 
     >>> with counting("drawing", "frames") as progress:
     ...     progress(1, 2)

@@ -21,7 +21,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def asking_options(command: F) -> F:
-    """The options that say what is reported of a mechanism."""
+    """Add the options that say what is reported of a mechanism."""
     centres = click.option(
         "--centres", "centres", metavar="VALUES", help="Add the instant centres at a pose: 35 or left=60,right=100."
     )
@@ -55,7 +55,7 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
 
 
 def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, bool]:
-    """The report of a mechanism, and whether every pose that was asked for is assembled."""
+    """Return the report of a mechanism, and whether every pose that was asked for is assembled."""
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
@@ -75,7 +75,7 @@ def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, bool]:
 
 
 def verdict(made: Report, closed: bool) -> int:
-    """The exit code of a report; what failed is said on stderr too."""
+    """Return the exit code of a report; what failed is said on stderr too."""
     if (faults := made.section("faults")) is not None:
         return unsolvable(len(faults.blocks) - 1)
     if not made.outcome.passed:

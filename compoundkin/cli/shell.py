@@ -66,7 +66,7 @@ def say(text: str) -> None:
 
 
 def show(error: CompoundkinError) -> None:
-    """An error on stderr: what, where, and how to mend it."""
+    """Tell an error on stderr: what, where, and how to mend it."""
     several = len(error.problems) > 1 or error.heading
     if several:
         say(f"{_red('Error:')} {error.heading or f'{len(error.problems)} problems'}")
@@ -80,7 +80,7 @@ def show(error: CompoundkinError) -> None:
 
 
 def has_colour(stream: Any) -> bool:
-    """Whether a stream takes colour: a terminal that is not told otherwise (https://no-color.org).
+    """Tell whether a stream takes colour: a terminal that is not told otherwise (https://no-color.org).
 
     >>> import io
     >>> has_colour(io.StringIO())
@@ -90,7 +90,7 @@ def has_colour(stream: Any) -> bool:
 
 
 def width() -> int:
-    """The width of a report: the terminal's within bounds, 80 where there is none."""
+    """Return the width of a report: the terminal's within bounds, 80 where there is none."""
     if not sys.stdout.isatty():
         return WIDTH
     return max(NARROWEST, min(WIDEST, shutil.get_terminal_size((WIDTH, 24)).columns))

@@ -23,7 +23,7 @@ TIMES = "write seconds: 0.5, 0,0.5,1 or 0:2:0.01 (from:to:step)"
 
 
 def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
-    """The values asked for, by driver, as `solve` takes them: radians or lengths.
+    """Return the values asked for, by driver, as `solve` takes them: radians or lengths.
 
     Raises InvalidInput for what cannot be read, for drivers that do not exist, and for ranges of different lengths.
     """
@@ -47,7 +47,7 @@ def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Numb
 
 
 def of_times(text: str | None) -> Number | None:
-    """The times asked for, in seconds; None where none are.
+    """Return the times asked for, in seconds; None where none are.
 
     >>> of_times("0:1:0.5").tolist()
     [0.0, 0.5, 1.0]
@@ -56,7 +56,7 @@ def of_times(text: str | None) -> Number | None:
 
 
 def of_pose(structure: Structure, given: Sequence[str], option: str = "--at") -> dict[str, float]:
-    """One value of every driver, radians or lengths: the one given, else the first of its own range."""
+    """Return one value of every driver, radians or lengths: the one given, else the first of its own range."""
     names = [drive.name for drive in structure.mechanism.drives]
     if len(names) > 1 and any("=" not in text for text in given):
         raise _wrong(option, f"there are {len(names)} drivers", f"write NAME=VALUE, NAME one of {', '.join(names)}")
@@ -93,7 +93,7 @@ def _single(text: str, where: str, is_angle: bool) -> float:
 
 
 def numbers(text: str, where: str, how: str = HOW) -> Number:
-    """Numbers written one by one, or as from:to:step.
+    """Return numbers written one by one, or as from:to:step.
 
     >>> numbers("0:10:5", "--at").tolist()
     [0.0, 5.0, 10.0]
@@ -108,7 +108,7 @@ def numbers(text: str, where: str, how: str = HOW) -> Number:
 
 
 def number(text: str, where: str, how: str = HOW) -> float:
-    """One finite number."""
+    """Return one finite number."""
     try:
         value = float(text)
     except ValueError:
@@ -129,7 +129,7 @@ def stepped(start: float, stop: float, step: float, where: str) -> Number:
 
 
 def of_rates(structure: Structure, option: str, given: Sequence[str]) -> dict[str, float] | None:
-    """Rates by driver; None where none is given."""
+    """Return rates by driver; None where none is given."""
     angles = _angles(structure)
     named = _named(structure, option, given)
     return {name: _rate(text, f"{option} {name}", angles[name]) for name, text in named} or None

@@ -38,7 +38,7 @@ FITTED = "max-width:100%;height:auto;"
 
 
 def html_of(what: object) -> str | None:
-    """What a notebook shows of an object; None where there is nothing to show, so that it shows the text instead.
+    """Return what a notebook shows of an object; None where it had better show the text.
 
     It never raises: an object that was made without an error is not to end in one because a cell ends with it.
 
@@ -54,7 +54,7 @@ def html_of(what: object) -> str | None:
 
 
 def svg_of(what: Mechanism | Structure | Motion) -> str | None:
-    """The picture of a mechanism, or of one taken apart; None where there is none, or where it would take long."""
+    """Return the picture of a mechanism or of one taken apart; None where it would take long."""
     mechanism = what if isinstance(what, Mechanism) else what.mechanism
     if len(mechanism.links) > MOST_LINKS:
         return None
@@ -81,7 +81,10 @@ def _apart(structure: Structure) -> str:
 
 
 def unguarded(what: object) -> str:
-    """What `html_of` gives, errors and all; numbers that are not defined everywhere are no reason for a warning."""
+    """Return what `html_of` gives, errors and all.
+
+    Numbers that are not defined everywhere are no reason for a warning.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return "\n".join(_parts(what))

@@ -65,7 +65,7 @@ class Animation(Savable):
         return self.timeline.seconds
 
     def frame(self, k: int) -> Picture:
-        """The k-th frame; raises InvalidInput where there is none."""
+        """Return the k-th frame; raises InvalidInput where there is none."""
         if isinstance(k, bool) or not isinstance(k, int) or not -len(self) <= k < len(self):
             raise InvalidInput(Problem("frame", f"there is no frame {k!r}", f"0 to {len(self) - 1}"))
         place = self.timeline.frames[k]
@@ -102,7 +102,7 @@ class Animation(Savable):
         write_atomically(path, lambda file: file.write(made))
 
     def content(self, form: str, progress: Progress | None = None) -> bytes:
-        """The bytes of a file in the form "gif", "mp4" or "svg"; the same every time."""
+        """Return the bytes of a file in the form "gif", "mp4" or "svg"; the same every time."""
         if form == "svg":
             (progress or _untold)(len(self), len(self))
             return self.svg.encode("utf-8")
@@ -132,7 +132,7 @@ class Animation(Savable):
 
 
 def ready_for(path: str | os.PathLike[str]) -> str:
-    """The form of a file that can be written; raises InvalidInput where it cannot, before anything is drawn."""
+    """Return the form of a file that can be written; raises InvalidInput where it cannot, before anything is drawn."""
     form = form_of("animation", path)
     if not Path(path).absolute().parent.is_dir():
         raise InvalidInput(Problem(str(path), "it cannot be written: there is no such folder", "make it first"))
@@ -162,7 +162,7 @@ def animate(
     back: bool | None = None,
     size: float | None = None,
 ) -> Animation:
-    """A motion as an animation, to be saved as GIF, MP4 or SVG.
+    """Animate a motion, to be saved as GIF, MP4 or SVG.
 
     A mechanism is solved over its drivers' own ranges, finely enough to be shown.
 
@@ -204,7 +204,7 @@ def _motion(what: Motion | Mechanism | Structure) -> Motion:
 
 
 def finer_values(motion: Motion) -> dict[str, Number] | None:
-    """Values of the drivers with others evenly between them, where there are too few to be shown one after another.
+    """Return the drivers' values with others evenly between them, where there are too few to be shown.
 
     None where there are enough, and where rates or dimensions change along the motion with the values.
     """

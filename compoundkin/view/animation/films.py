@@ -57,7 +57,7 @@ def palette(pixels: Number, most: int) -> Number:
 
 
 def nearest_table(colours: Number) -> Number:
-    """Which colour of a palette is the nearest to any other: a table for `indices`."""
+    """Tell which colour of a palette is the nearest to any other: a table for `indices`."""
     levels = np.arange(LEVELS) * (256 // LEVELS) + 128 // LEVELS
     any_colour = np.stack(np.meshgrid(levels, levels, levels, indexing="ij"), axis=-1).reshape(-1, 1, 3)
     parts = np.array_split(any_colour, LEVELS)
@@ -66,7 +66,7 @@ def nearest_table(colours: Number) -> Number:
 
 
 def indices(pixels: Number, table: Number) -> Number:
-    """The colours of a palette, by their numbers, that are nearest to those of pixels, (..., 3)."""
+    """Return the colours of a palette, by their numbers, that are nearest to those of pixels, (..., 3)."""
     red, green, blue = np.moveaxis(pixels >> (8 - BITS), -1, 0).astype(np.intp)
     return np.asarray(table[(red * LEVELS + green) * LEVELS + blue])
 
@@ -128,7 +128,7 @@ def _durations(count: int, hold: float) -> list[int]:
 
 
 def require_ffmpeg() -> str:
-    """Where ffmpeg is; raises InvalidInput where it is not installed."""
+    """Tell where ffmpeg is; raises InvalidInput where it is not installed."""
     found = shutil.which("ffmpeg")
     if found is None:
         remedy = "install it (https://ffmpeg.org), or save a .gif or .svg, which do without"

@@ -75,7 +75,7 @@ class Caption:
         return f"Motion of {mechanism.title}: {len(mechanism.links)} links"
 
     def notes(self, k: int) -> list[str]:
-        """The time and the drivers' values at the k-th assembled pose."""
+        """Return the time and the drivers' values at the k-th assembled pose."""
         if not self.is_told:
             return []
         scene, motion = self.sketch.scene, self.sketch.motion
@@ -84,14 +84,14 @@ class Caption:
         return [*times, *pose_notes(here)]
 
     def shapes(self, k: int) -> tuple[list[Shape], float]:
-        """The texts at the k-th assembled pose, and the height of the picture with them."""
+        """Return the texts at the k-th assembled pose, and the height of the picture with them."""
         lines = lines_of_text(self.notes(k), self._room)
         lines += [""] * (self._changing - len(lines)) + lines_of_text(self.names, self._room)
         found, height = below(lines, self.window.height)
         return self._scaled([shape for shape in found if not isinstance(shape, Text) or shape.text], height)
 
     def gauges(self) -> tuple[list[Gauge], list[Shape], float]:
-        """Lines with dots in the place of texts that change; what else stands there, and the height with all."""
+        """Return lines with dots in the place of texts that change; what else stands there, and the height with all."""
         told = list(self._gauged()) if self.is_told else []
         moving = [(text, values) for text, values in told if np.ptp(values) > 0]
         start = complex(LEFT, self.window.height + BELOW)
@@ -147,6 +147,6 @@ class Caption:
         return texts, height
 
     def paper(self, height: float) -> Polygon:
-        """The paper of a picture so high."""
+        """Return the paper of a picture so high."""
         wide = self.window.width
         return sheet(wide, height)

@@ -47,7 +47,7 @@ def keys_of(
     shown: Number | None = None,
     away: complex = 0j,
 ) -> Keys:
-    """The keyframes of values at the poses of a timeline, (poses,) or (poses, columns), complex or real.
+    """Return the keyframes of values at the poses of a timeline, (poses,) or (poses, columns), complex or real.
 
     Where they are not `shown` they are `away`; poses may be shown `one_by_one`.
     """
@@ -157,7 +157,7 @@ def _distinct(times: Number, values: Number, steady: bool = False) -> Keys:
 
 
 def short(value: float, digits: int) -> str:
-    """A number as a short text.
+    """Return a number as a short text.
 
     >>> short(0.25, 2), short(10.0, 2), short(-0.001, 2), short(-0.5, 1)
     ('.25', '10', '0', '-.5')
@@ -176,18 +176,18 @@ class Writer:
     one_by_one: bool
 
     def keys(self, values: Number, deviation: float = DEVIATION, shown: Number | None = None) -> Keys:
-        """The keyframes of values at the poses of the timeline."""
+        """Return the keyframes of values at the poses of the timeline."""
         return keys_of(self.timeline, values, deviation, self.one_by_one, shown, AWAY)
 
     def timing(self, keys: Keys, written: Callable[[Number], str]) -> str:
-        """The attributes that say which values there are when."""
+        """Return the attributes that say which values there are when."""
         words = [f'dur="{short(self.timeline.seconds, 3)}s" repeatCount="indefinite"']
         words += ['calcMode="discrete"'] if keys.is_steady else []
         words += [] if keys.is_even else [f'keyTimes="{";".join(short(float(t), OF_TIMES) for t in keys.times)}"']
         return " ".join([*words, f'values="{";".join(map(written, keys.values))}"'])
 
     def moving(self, kind: str, keys: Keys, written: Callable[[Number], str], inside: list[str]) -> list[str]:
-        """Elements in a group that is moved ("translate") or turned ("rotate") by keyframes."""
+        """Return elements in a group that is moved ("translate") or turned ("rotate") by keyframes."""
         first = written(keys.values[0])
         if len(keys.times) == 1:
             return [f'<g transform="{kind}({first})">', *inside, "</g>"] if first.strip("0 ") else inside
@@ -195,21 +195,21 @@ class Writer:
         return [f'<g transform="{kind}({first})">', how, *inside, "</g>"]
 
     def translated(self, places: Number, inside: list[str], shown: Number | None = None) -> list[str]:
-        """Elements moved along places at the poses of the timeline."""
+        """Return elements moved along places at the poses of the timeline."""
         return self.moving("translate", self.keys(places, shown=shown), place, inside)
 
     def turned(self, angles: Number, deviation: float, inside: list[str]) -> list[str]:
-        """Elements turned by angles over the assembled poses, radians, clockwise on the picture."""
+        """Return elements turned by angles over the assembled poses, radians, clockwise on the picture."""
         return self.moving("rotate", self.turns(angles, deviation), _degrees, inside)
 
     def turns(self, angles: Number, deviation: float) -> Keys:
-        """The keyframes of those angles, in degrees."""
+        """Return the keyframes of those angles, in degrees."""
         shown = np.rad2deg(self.timeline.turning(angles))
         return self.keys(shown - whole_turns(shown[0], 360.0), np.rad2deg(deviation))
 
 
 def place(value: Number) -> str:
-    """A place as the specification of SVG has it."""
+    """Return a place as the specification of SVG has it."""
     return f"{short(float(value[0].real), OF_PLACES)} {short(float(value[0].imag), OF_PLACES)}"
 
 

@@ -108,7 +108,7 @@ def _closed_outline(points: Number) -> str:
 
 
 def part_lines(writer: Writer, sketch: MovingSketch, part: MovingPart) -> list[str]:
-    """The elements of a part: moved with its point, and turned about it; the shortest of several ways to say so."""
+    """Write a part that moves with its point and turns about it, in the shortest of several ways."""
     if part.link == FRAME:
         return list(elements(moved(part.shapes, complex(sketch.places(part)[0]))))
     if part.turns:
@@ -174,7 +174,7 @@ def _turned_angles(sketch: MovingSketch, link: str) -> Number:
 
 
 def are_far_apart(timeline: Timeline, values: Number) -> bool:
-    """Whether a smooth line through values at the poses of a timeline, (poses, columns), is much off between them."""
+    """Tell whether a smooth line through values at the poses, (poses, columns), is much off between them."""
     return any(_off(values[leg]) > FAR_APART for leg in timeline.slices if leg.stop - leg.start > 1)
 
 

@@ -33,11 +33,11 @@ class Arrows:
     rates: dict[str, Number]
 
     def sign(self, way: int) -> int:
-        """What they are multiplied by where the motion goes back: velocities turn round, accelerations do not."""
+        """Tell what they are multiplied by where the motion goes back: velocities turn round, accelerations do not."""
         return int(way ** KINDS_OF_VECTOR[self.scale.kind][0])
 
     def shapes(self, k: int, way: int) -> list[Shape]:
-        """The arrows at the k-th assembled pose."""
+        """Return the arrows at the k-th assembled pose."""
         rates = {letter: complex(v[k]) * self.sign(way) for letter, v in self.rates.items() if np.isfinite(v[k])}
         return vector_shapes({letter: complex(self.places[letter][k]) for letter in rates}, rates, self.scale)
 
@@ -63,7 +63,7 @@ class MovingCentre:
 
 
 def with_arrows(sketch: MovingSketch, kinds: Sequence[str], back: bool) -> tuple[MovingSketch, tuple[Arrows, ...]]:
-    """The arrows of some kinds, and the sketch made large enough for them; with a way `back`, for both their senses.
+    """Return arrows of some kinds and the sketch with room for them; with a way `back`, for both senses.
 
     Raises InvalidInput where the motion was not solved for them.
     """
@@ -77,7 +77,7 @@ def with_arrows(sketch: MovingSketch, kinds: Sequence[str], back: bool) -> tuple
 
 
 def places_of(sketch: MovingSketch, letter: str) -> Number:
-    """Where a point is on the picture, (poses,)."""
+    """Tell where a point is on the picture, (poses,)."""
     return np.broadcast_to(sketch.window.at(sketch.scene.places(letter)), (sketch.scene.count,))
 
 
@@ -91,7 +91,7 @@ def _tips(arrows: Arrows, back: bool) -> list[Number]:
 
 
 def moving_centres(sketch: MovingSketch) -> tuple[MovingCentre, ...]:
-    """All instant centres that are ever on the picture, those that are always at one place together."""
+    """Return all instant centres that are ever on the picture, those that are always at one place together."""
     scene, window = sketch.scene, sketch.window
     centres = instant_centres(sketch.motion)
     apart: list[tuple[list[str], Number]] = []
@@ -133,5 +133,5 @@ def _beside(sketch: MovingSketch, centres: Sequence[MovingCentre]) -> tuple[Movi
 
 
 def texts_in(shapes: Sequence[Shape]) -> list[Text]:
-    """The texts among shapes."""
+    """Return the texts among shapes."""
     return [shape for shape in shapes if isinstance(shape, Text)]

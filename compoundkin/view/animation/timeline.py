@@ -96,7 +96,7 @@ class Timeline:
 def timeline_of(
     scene: Scene, motion: Motion, design: int, back: bool | None, seconds: float | None, fps: float | None
 ) -> Timeline:
-    """The timeline of an animation: through all poses, and back where the last of them is not the first one again.
+    """Return the timeline of an animation: through all poses, and back where the last is not the first again.
 
     Poses that cannot be assembled are left out; each interval between them is a way there and back of its own. A motion
     in time is shown as fast as it is, any other one in about four seconds, unless `seconds` says how long.
@@ -153,7 +153,7 @@ def _angles(motion: Motion) -> list[Number]:
 
 
 def times_of(motion: Motion, design: int) -> Number:
-    """The times of all poses of a motion in time, seconds."""
+    """Return the times of all poses of a motion in time, seconds."""
     assert motion.time is not None
     full = np.broadcast_to(np.asarray(motion.time, dtype=float), motion.shape)
     return full.reshape(motion.inputs.designs, motion.inputs.poses)[design]

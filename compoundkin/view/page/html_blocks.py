@@ -43,7 +43,7 @@ def plain_sections(sections: Iterable[Section]) -> Iterator[str]:
 
 
 def plain_table(table: TableBlock, caption: str = "") -> str:
-    """A table whose first column names its rows; in a box of its own that scrolls where it is wider than the page."""
+    """Write a table whose first column names its rows, in a box that scrolls where it is wider than the page."""
     rows = table.shown_rows
     cells = [written(column, [row[k] for row in rows[:MOST_ROWS]]) for k, column in enumerate(table.columns)]
     sides = [RIGHT if column.is_number else LEFT for column in table.columns]
@@ -73,7 +73,7 @@ def _cells(row: Iterable[str], sides: Iterable[str]) -> Iterator[str]:
 
 @singledispatch
 def plain_block(block: Block) -> str:
-    """Any block of a report."""
+    """Return any block of a report."""
     raise TypeError(f"{type(block).__name__} is not a part of a report")
 
 
@@ -117,7 +117,7 @@ class Blocks:
     poses: Mapping[str, Sequence[int]] = field(default_factory=dict)
 
     def section(self, section: Section) -> str:
-        """A section with its heading, its pictures and its blocks.
+        """Return a section with its heading, its pictures and its blocks.
 
         >>> print(Blocks().section(Section("notes", "Notes", (Paragraph("a < b"),))))
         <section id="notes" aria-labelledby="notes-title">
@@ -130,7 +130,7 @@ class Blocks:
         return element("section", f"\n{body}\n", id=section.key, aria_labelledby=f"{section.key}-title")
 
     def about(self, sections: Sequence[Section]) -> str:
-        """What stands in the head of the page: the paragraphs of the section about the whole."""
+        """Write what stands in the head of the page: the paragraphs of the section about the whole."""
         return lines(part for section in sections if section.key == ABOUT for part in self._blocks(section))
 
     def _blocks(self, section: Section) -> Iterator[str]:

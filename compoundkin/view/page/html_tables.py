@@ -40,7 +40,7 @@ class Names:
         return tuple(tuple(link for link, own in self.groups.items() if own == k) for k in range(len(self.titles)))
 
     def about(self, text: str) -> Links:
-        """The links that the words of a cell are about; none where it is about something else.
+        """Return the links that the words of a cell are about; none where it is about something else.
 
         >>> names = Names({"bar": 1, "frame": 0}, {"slot": ("bar", "frame")}, {"G": ("bar",)})
         >>> names.about("|G.velocity|"), names.about("slot"), names.about("none")
@@ -62,7 +62,7 @@ class Names:
         return ()
 
     def colour(self, links: Links) -> int | None:
-        """The number of the colour of some links, where they have one in common."""
+        """Return the number of the colour of some links, where they have one in common."""
         numbers = {self.groups[link] for link in links if link in self.groups}
         if len(numbers) != 1:
             return None
@@ -71,7 +71,7 @@ class Names:
 
 
 def names_of(structure: Structure | None) -> Names:
-    """The names in a structure."""
+    """Return the names in a structure."""
     if structure is None:
         return Names()
     mechanism = structure.mechanism
@@ -108,7 +108,7 @@ class ShownTable:
 
 
 def table_html(shown: ShownTable) -> str:
-    """The table in a box of its own that scrolls, with its buttons."""
+    """Return the table in a box of its own that scrolls, with its buttons."""
     parts = [element("caption", safe(shown.caption), class_="unseen"), _head(shown), _body(shown)]
     grid = element("table", lines(parts), class_="sortable asc n-last", id=shown.key)
     box = element("div", grid, class_="scroll", role="region", aria_label=f"TableBlock: {shown.caption}", tabindex="0")

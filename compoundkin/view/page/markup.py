@@ -20,7 +20,7 @@ _BREAK = re.compile(r"([._])(?=\w)")
 
 
 def exact(values: Number) -> str | float | None:
-    """Numbers as doubles, those of a script; one number where they are all the same, None where none is known.
+    """Return numbers as doubles, those of a script; one number where they are all the same, None where none is known.
 
     >>> exact(np.array([1.0, 2.0]))
     'd:AAAAAAAA8D8AAAAAAAAAQA=='
@@ -31,7 +31,7 @@ def exact(values: Number) -> str | float | None:
 
 
 def brief(values: Number) -> str | float | None:
-    """As `exact`, with seven digits: half as long.
+    """Pack as `exact`, with seven digits: half as long.
 
     >>> brief(np.array([1.0, 2.0]))
     'f:AACAPwAAAEA='
@@ -53,7 +53,7 @@ def _packed(values: Number, form: str, mark: str) -> str | float | None:
 
 
 def safe(text: str) -> str:
-    """Text in which nothing is taken for markup, in elements and in attributes.
+    """Return text in which nothing is taken for markup, in elements and in attributes.
 
     >>> safe('<b> & "c"')
     '&lt;b&gt; &amp; &quot;c&quot;'
@@ -62,7 +62,7 @@ def safe(text: str) -> str:
 
 
 def broken(text: str) -> str:
-    """A name as text that may be broken after its dots and underscores.
+    """Return a name as text that may be broken after its dots and underscores.
 
     >>> broken("bar.angular_velocity")
     'bar.<wbr>angular_<wbr>velocity'
@@ -71,7 +71,7 @@ def broken(text: str) -> str:
 
 
 def element(tag: str, inside: str = "", **attributes: str | None) -> str:
-    """An element; `inside` is markup, attributes are texts, and one that is None is left out.
+    """Return an element; `inside` is markup, attributes are texts, and one that is None is left out.
 
     >>> element("td", "1.0", class_="number", data_sort="1.03")
     '<td class="number" data-sort="1.03">1.0</td>'
@@ -85,12 +85,12 @@ def _written(attributes: dict[str, str | None]) -> str:
 
 
 def lines(parts: Iterable[str]) -> str:
-    """Pieces of markup, one below the other."""
+    """Return pieces of markup, one below the other."""
     return "\n".join(part for part in parts if part)
 
 
 def hidden(text: str) -> str:
-    """Text for screen readers only."""
+    """Return text for screen readers only."""
     return element("span", safe(text), class_="unseen")
 
 

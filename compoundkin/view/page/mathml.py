@@ -23,7 +23,7 @@ class Unread(ValueError):
 
 
 def mathml(latex: str) -> str:
-    r"""A formula as MathML, its terms one after the other so that lines may be broken between them.
+    r"""Return a formula as MathML, its terms one after the other so that lines may be broken between them.
 
     Raises Unread for LaTeX that it does not know.
 
@@ -59,7 +59,7 @@ class _Reader:
         return str(self.tokens[self.at]) if self.at < len(self.tokens) else ""
 
     def atoms(self, end: str) -> Iterator[str]:
-        """All atoms up to an end, each with what is below and above it."""
+        """Return all atoms up to an end, each with what is below and above it."""
         while self.peek() != end:
             atom = self.atom()
             if atom:
@@ -109,7 +109,7 @@ class _Reader:
         return f"<mo>{token}</mo>"
 
     def words(self) -> str:
-        """What stands in braces, as it is, escapes undone."""
+        """Tell what stands in braces, as it is, escapes undone."""
         if self.next() != "{":
             raise Unread("no brace")
         found = ""

@@ -46,12 +46,12 @@ MOST_CELLS = 12_000
 
 
 def figures(sections: Sequence[Section], subject: Subject | None) -> dict[str, str]:
-    """The figures at the heads of the sections of a report, by the sections' keys."""
+    """Return the figures at the heads of the sections of a report, by the sections' keys."""
     return dict(_figures(sections, subject)) if subject is not None and _drawn(subject) else {}
 
 
 def sketch(subject: Subject) -> str:
-    """The kinematic sketch of one pose as a figure; "" where there is none."""
+    """Return the kinematic sketch of one pose as a figure; "" where there is none."""
     if not _drawn(subject):
         return ""
     try:
@@ -64,7 +64,7 @@ def sketch(subject: Subject) -> str:
 
 
 def figure(picture: Picture, caption: str) -> str:
-    """A picture with what is said below it, in a box that scrolls where it would become too small."""
+    """Return a picture with what is said below it, in a box that scrolls where it would become too small."""
     told = {"role": "region", "aria_label": f"Picture: {caption}", "tabindex": "0"}
     box = element("div", picture.inline, class_="picture", style=f"--wide:{picture.width:.0f}px", **told)
     return element("figure", f"{box}\n<figcaption>{safe(caption)}</figcaption>")
@@ -98,7 +98,7 @@ class Whole(Sample):
 def all_poses(
     sections: Sequence[Section], motion: Motion, outputs: Sequence[str], design: int
 ) -> tuple[Sequence[Section], tuple[int, ...]]:
-    """The sections with the outputs at every pose, those of the report shown first; and the poses of the table's rows.
+    """Return the sections with the outputs at every pose, and the poses of the table's rows.
 
     `outputs` are those that the report was made with.
     """
@@ -189,14 +189,14 @@ def _with_viewer(document: Document, moving: Viewer) -> Document:
 
 
 def temporary() -> Path:
-    """A new file for a page that is only looked at."""
+    """Return a new file for a page that is only looked at."""
     handle, name = tempfile.mkstemp(prefix="compoundkin-", suffix=suffix_for("page", "html"))
     os.close(handle)
     return Path(name)
 
 
 def shown_in_browser(path: Path) -> bool:
-    """Whether a browser could be asked to show a file."""
+    """Tell whether a browser could be asked to show a file."""
     try:
         return webbrowser.open(path.resolve().as_uri())
     except (OSError, webbrowser.Error):

@@ -50,7 +50,7 @@ class Viewer:
 
 
 def viewer_of(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> Viewer | None:
-    """As `viewer`, with the outputs that a report has where none are named; None where nothing can move."""
+    """Return `viewer` with the outputs that a report has where none are named; None where nothing can move."""
     try:
         return viewer(motion, design, chosen_outputs(motion, outputs))
     except (InvalidInput, NotAssembled):
@@ -58,7 +58,7 @@ def viewer_of(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> V
 
 
 def viewer(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> Viewer:
-    """The viewer of one design of a motion, with plots of some of its quantities.
+    """Return the viewer of one design of a motion, with plots of some of its quantities.
 
     Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
     """
@@ -68,7 +68,7 @@ def viewer(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> View
 
 
 def player_html(moving: MotionData, data: dict[str, Any]) -> str:
-    """The sketch with its slider and switches."""
+    """Return the sketch with its slider and switches."""
     return element(
         "div",
         lines(

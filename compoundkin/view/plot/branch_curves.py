@@ -58,7 +58,7 @@ class BranchDrawing:
 
     @classmethod
     def of(cls, positions: Positions, quantity: Plotted) -> BranchDrawing:
-        """The drawing of circuits."""
+        """Return the drawing of circuits."""
         found = positions.found
         is_angle = positions.drives[found.driver].is_angle
         unit = DEGREES if is_angle else unit_of(found.structure.mechanism.unit, "length")
@@ -92,7 +92,7 @@ class BranchDrawing:
         return len(self.found.circuits) > len(plot_style.COLOURS)
 
     def look(self, circuit: Circuit, branch: Branch) -> dict[str, Any]:
-        """What the curve of a branch looks like."""
+        """Return what the curve of a branch looks like."""
         own, k = circuit.number == self.own, circuit.branches.index(branch)
         width = ALONE if len(self.found.circuits) == 1 else OWN if own else OTHER
         look = {"color": self.colour(circuit), "linestyle": DASHES[k % len(DASHES)], "linewidth": width}
@@ -100,13 +100,13 @@ class BranchDrawing:
         return {**look, "zorder": 2.0 if own and not self.is_crowd else 2.5 + own, "dash_capstyle": "butt"}
 
     def colour(self, circuit: Circuit) -> str:
-        """The colour of a circuit."""
+        """Return the colour of a circuit."""
         if self.is_crowd:
             return plot_style.COLOURS[0] if circuit.number == self.own else FAINT
         return plot_style.COLOURS[circuit.number - 1]
 
     def panel(self, axes: Any, quantity: Plotted, labels: list[PointLabel]) -> None:
-        """All branches in one panel, their limit positions and change points."""
+        """Draw all branches in one panel, their limit positions and change points."""
         branches = [(circuit, branch) for circuit in self.found.circuits for branch in circuit.branches]
         curves = [curve_of(self.positions, branch, quantity) for _, branch in branches]
         low = seam([curve.y for curve in curves], OF_ANGLES) if quantity.is_angle else None

@@ -38,7 +38,7 @@ class _Values:
     is_angle: bool = True
 
     def derivative(self, _: int) -> Number:
-        """The coordinate itself: there are no others."""
+        """Return the coordinate itself: there are no others."""
         return self.values
 
 
@@ -105,7 +105,7 @@ class Positions:
 
 
 def all_positions(found: Circuits) -> Positions:
-    """Every segment from end to end."""
+    """Return every segment from end to end."""
     segments = found.placing.segments
     count = PLACES * max(1, round(found.period / FULL)) + 1
     rows, phi = np.arange(segments.rows), np.linspace(0.0, np.pi, count)
@@ -115,7 +115,7 @@ def all_positions(found: Circuits) -> Positions:
 
 
 def start_position(found: Circuits) -> Positions | None:
-    """Where solving begins; None where nothing is assembled there."""
+    """Tell where solving begins; None where nothing is assembled there."""
     if found.start is None:
         return None
     return _positions(found, np.array([found.start.visit.row]), np.array([[found.start.inside]]), np.array([NONE]))
@@ -128,7 +128,7 @@ def _positions(found: Circuits, rows: Number, values: Number, sides: Number) -> 
 
 
 def shown(positions: Positions, name: str) -> tuple[Plotted, ...]:
-    """A quantity by its name, (segments, places), angles in degrees; a point as its coordinates.
+    """Return a quantity by its name, (segments, places), angles in degrees; a point as its coordinates.
 
     Raises UnknownName with the nearest name there is, InvalidInput for rates.
     """
@@ -163,7 +163,7 @@ class BranchCurve:
 
 
 def curve_of(positions: Positions, branch: Branch, one: Plotted) -> BranchCurve:
-    """The curve of a branch."""
+    """Return the curve of a branch."""
     found, visits = positions.found, branch.visits
     x = np.concatenate([positions.values[v.row][:: v.sense] + v.periods * found.period for v in visits])
     y = np.concatenate([one.values[v.row][:: v.sense] for v in visits])
@@ -181,7 +181,7 @@ def _joined(angles: Number) -> Number:
 
 
 def seam(curves: Sequence[Number], candidates: Sequence[float]) -> float:
-    """The angle, of some, at which the fewest of several curves are cut; of those, where they take least room.
+    """Return the angle, of some, at which the fewest of several curves are cut; of those, where they take least room.
 
     >>> seam([np.array([-80.0, 80.0])], (0.0, -180.0))
     -180.0
@@ -197,7 +197,7 @@ def seam(curves: Sequence[Number], candidates: Sequence[float]) -> float:
 
 
 def wrapped(first: Number, second: Number, low: float) -> tuple[Number, Number]:
-    """A curve whose first coordinate is brought into the turn that begins at `low`, NaN where it is cut.
+    """Return a curve whose first coordinate is brought into the turn that begins at `low`, NaN where it is cut.
 
     >>> [part.tolist() for part in wrapped(np.array([350.0, 370.0]), np.array([0.0, 1.0]), 0.0)]
     [[350.0, 360.0, nan, 0.0, 10.0], [0.0, 0.5, nan, 0.5, 1.0]]

@@ -32,7 +32,7 @@ RING: Mapping[str, Any] = MappingProxyType(
 
 
 def panels(rows: int, title: str, size: tuple[float, float], columns: int = 1, **options: Any) -> tuple[Any, list[Any]]:
-    """A figure with a title and its axes, row by row."""
+    """Make a figure with a title and its axes, row by row."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -45,13 +45,13 @@ def panels(rows: int, title: str, size: tuple[float, float], columns: int = 1, *
 
 
 def finished(figure: Any, labels: Sequence[PointLabel]) -> Plot:
-    """The picture, its labels placed after everything else has its place."""
+    """Return the picture, its labels placed after everything else has its place."""
     place(figure, labels)
     return Plot(figure)
 
 
 def degree_step(span: float, most: int) -> float | None:
-    """The distance between ticks of degrees; None where the usual ones for decimal numbers suit.
+    """Return the distance between ticks of degrees; None where the usual ones for decimal numbers suit.
 
     >>> degree_step(360.0, 9), degree_step(44.0, 6), degree_step(1.5, 6)
     (45, 10, None)
@@ -71,7 +71,10 @@ def ticks(axis: Any, is_angle: bool, most: int) -> None:
 
 
 def axis_labels(axes: Any, x: Plotted | None, y: Plotted, room: int) -> None:
-    """Names and units, and the ticks that suit them; the unit goes below a name with more than `room` characters."""
+    """Write names and units, and set the ticks that suit them.
+
+    The unit goes below a name with more than `room` characters.
+    """
     if x is not None:
         axes.set_xlabel(x.label)
         ticks(axes.xaxis, x.is_angle, ACROSS)
@@ -104,7 +107,7 @@ def plane(axes: Any, x: str, y: str) -> None:
 
 
 def legend(axes: Any) -> None:
-    """The legend of an axes, above it at the right, if there is more than one thing to tell apart."""
+    """Draw the legend of an axes, above it at the right, if there is more than one thing to tell apart."""
     handles, _ = axes.get_legend_handles_labels()
     if len(handles) > 1:
         columns = min(len(handles), 4)
@@ -112,7 +115,7 @@ def legend(axes: Any) -> None:
 
 
 def designs_legend(figure: Any, axes: Sequence[Any], names: Sequence[str]) -> None:
-    """Which colour is which design: names beside the plot, or a scale where there are many."""
+    """Say which colour is which design: names beside the plot, or a scale where there are many."""
     from matplotlib.colors import LinearSegmentedColormap, Normalize
     from matplotlib.lines import Line2D
 
@@ -131,7 +134,7 @@ def designs_legend(figure: Any, axes: Sequence[Any], names: Sequence[str]) -> No
 
 
 def events_legend(figure: Any, gaps: bool, limits: bool, changes: bool, marks: str = "") -> None:
-    """What the shades, rings, dashes and dots mean, below the plot."""
+    """Say what the shades, rings, dashes and dots mean, below the plot."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -149,25 +152,25 @@ def events_legend(figure: Any, gaps: bool, limits: bool, changes: bool, marks: s
 
 
 def ring_handle(label: str) -> Any:
-    """The ring that marks a pose next to a limit position, for a legend."""
+    """Return the ring that marks a pose next to a limit position, for a legend."""
     from matplotlib.lines import Line2D
 
     return Line2D([], [], **RING, color=INK, label=label)
 
 
 def ring(axes: Any, x: Number, y: Number, colour: Any) -> None:
-    """Rings around poses next to limit positions."""
+    """Draw rings around poses next to limit positions."""
     if len(x):
         axes.plot(x, y, **RING, color=colour, zorder=4)
 
 
 def dot(axes: Any, x: Any, y: Any, colour: Any, size: float = 4.5) -> None:
-    """Dots on a curve."""
+    """Draw dots on a curve."""
     axes.plot(x, y, linestyle="none", marker="o", markersize=size, color=colour, zorder=5, clip_on=False)
 
 
 def arrow(axes: Any, x: Number, y: Number, colour: Any) -> None:
-    """An arrow along a curve, an eighth of its poses after its begin; none where nothing moves."""
+    """Draw an arrow along a curve, an eighth of its poses after its begin; none where nothing moves."""
     known = np.isfinite(x) & np.isfinite(y)
     moves = np.flatnonzero(known[:-1] & known[1:] & ((np.diff(x) != 0) | (np.diff(y) != 0)))
     if len(moves):
@@ -177,12 +180,12 @@ def arrow(axes: Any, x: Number, y: Number, colour: Any) -> None:
 
 
 def note(axes: Any, text: str) -> None:
-    """A remark in small print above an axes, at the left."""
+    """Write a remark in small print above an axes, at the left."""
     axes.set_title(text, loc="left", fontsize=SMALL_PRINT, color=GREY)
 
 
 def design_names(shape: tuple[int, ...], given: Sequence[str]) -> tuple[str, ...]:
-    """What designs are called: as given, or by their indices.
+    """Tell what designs are called: as given, or by their indices.
 
     >>> design_names((2, 5), ()), design_names((1, 2, 5), ())
     (('design 0', 'design 1'), ('design 0, 0', 'design 0, 1'))

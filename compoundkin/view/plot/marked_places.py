@@ -40,7 +40,7 @@ class Events:
     changes: tuple[tuple[int, float], ...]  # design and place of every change point
 
     def beside(self, design: int, poses: int) -> Number:
-        """The last poses before and the first ones after limit positions of a design."""
+        """Return the last poses before and the first ones after limit positions of a design."""
         found = []
         for blank in self.blanks:
             if blank.design == design:
@@ -50,7 +50,7 @@ class Events:
 
 
 def events(motion: Motion) -> Events:
-    """The gaps and change points of a motion.
+    """Return the gaps and change points of a motion.
 
     >>> import warnings
     >>> from compoundkin.files.shipped_mechanisms import load_named
@@ -71,7 +71,7 @@ def events(motion: Motion) -> Events:
 
 
 def at(row: Number, place: float) -> float:
-    """The value of a quantity at a place along the motion, linear between poses as drivers and times are."""
+    """Return the value of a quantity at a place along the motion, linear between poses as drivers and times are."""
     return float(np.interp(place, np.arange(len(row)), row))
 
 
@@ -104,7 +104,7 @@ class Extreme:
 def extremes(
     x: Number, y: Number, grows: bool = False, scale: float = 0.0, vector: Number | None = None
 ) -> tuple[Extreme, ...]:
-    """The highest and the lowest value of a curve (1-D arrays, NaN where there is none); none of a constant.
+    """Return the highest and the lowest value of a curve (1-D arrays, NaN where there is none); none of a constant.
 
     Between poses they are interpolated by five poses, or three. With `grows` a value next to a gap is none, for there a
     rate grows without limit. `scale` is what rounding is relative to, if it is larger than the values. `vector` are the
@@ -150,7 +150,7 @@ class _Curve:
         return np.iscomplexobj(self.y)
 
     def around(self, k: int, half: int) -> _Curve | None:
-        """The poses around a pose, beyond the ends of a closed cycle as well; None where some are not known."""
+        """Return the poses around a pose, beyond the ends of a closed cycle as well; None where some are not known."""
         last = len(self.t) - 1
         index = np.arange(k - half, k + half + 1)
         turns = np.where(index < 0, -1, np.where(index > last, 1, 0))
@@ -167,7 +167,7 @@ class _Curve:
         return bool(abs(self.y[-1] - self.y[0]) <= CLOSED * size)
 
     def vertices(self) -> list[tuple[float, float]]:
-        """The highest and lowest points of the polynomial through all poses, within a pose of the middle one."""
+        """Return the highest and lowest points of the polynomial through all poses, within a pose of the middle one."""
         middle = len(self.t) // 2
         u = (self.t - self.t[middle]) / (np.ptp(self.t) / 2.0)
         of_x, re, im = (_through(u, v) for v in (self.x, self.y.real, self.y.imag))

@@ -65,7 +65,7 @@ def paths(
 
 
 def fixed_points(axes: Any, motion: Motion, on: str, shared: planar.SharedCurves) -> None:
-    """The points of the observing link, as crosses with their letters; those of the first design."""
+    """Draw the points of the observing link, as crosses with their letters; those of the first design."""
     for letter, place in motion.mechanism.geometry.points[on].items():
         z = complex(np.ravel(place)[0])
         axes.plot([z.real], [z.imag], marker="x", markersize=6, color=plot_style.INK, linestyle="none", zorder=6)

@@ -39,7 +39,7 @@ class SharedCurves:
 
 
 def drawing(motion: Motion, designs: Sequence[str], every: int | None) -> SharedCurves:
-    """What the curves of a plot share; raises InvalidInput for wrong names or distances of marks."""
+    """Return what the curves of a plot share; raises InvalidInput for wrong names or distances of marks."""
     x, _ = along(motion, None)
     called = canvas.design_names(motion.shape, designs)
     if every is not None and every < 1:
@@ -49,7 +49,7 @@ def drawing(motion: Motion, designs: Sequence[str], every: int | None) -> Shared
 
 
 def curve(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, name: str) -> None:
-    """One curve (complex, pose by pose) with an arrow, and rings next to limit positions."""
+    """Draw one curve (complex, pose by pose) with an arrow, and rings next to limit positions."""
     axes.plot(z.real, z.imag, color=colour, label=name)
     canvas.arrow(axes, z.real, z.imag, colour)
     beside = shared.happened.beside(d, len(z))
@@ -57,7 +57,7 @@ def curve(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, name:
 
 
 def marks(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, labelled: bool = True) -> None:
-    """Dots at every so many poses, with the value of the driver or the time there; none on large families."""
+    """Draw dots at every so many poses, with the value of the driver or the time there; none on large families."""
     if shared.designs > canvas.LISTED:
         return
     index = np.arange(0, len(z), shared.every)
@@ -77,7 +77,7 @@ def marks(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, label
 
 
 def finish(figure: Any, axes: Sequence[Any], shared: SharedCurves, marked: bool) -> None:
-    """The legends of curves, designs, rings and marks."""
+    """Draw the legends of curves, designs, rings and marks."""
     if shared.designs > 1:
         canvas.designs_legend(figure, axes, shared.called)
     else:

@@ -85,7 +85,7 @@ def styled() -> Iterator[None]:
 
 
 def colours(count: int, designs: int) -> tuple[Any, ...]:
-    """A colour for each of `count` curves, or for each of several designs from dark to light.
+    """Return a colour for each of `count` curves, or for each of several designs from dark to light.
 
     >>> colours(2, 1)
     ('#0072B2', '#D55E00')
@@ -113,7 +113,7 @@ class Plot(Savable):
     figure: Any
 
     def content(self, form: str) -> bytes:
-        """The bytes of a file in the form "png", "svg" or "pdf"; the same every time."""
+        """Return the bytes of a file in the form "png", "svg" or "pdf"; the same every time."""
         written = io.BytesIO()
         with styled():
             self.figure.savefig(written, format=form, metadata=dict(METADATA[form]))

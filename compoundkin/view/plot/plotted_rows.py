@@ -40,7 +40,7 @@ class Plotted(Quantity):
 
 
 def shown(motion: Motion, name: str) -> Plotted:
-    """The quantity of a name; a component or the length of a vector as "G.velocity.x", "G.velocity.length".
+    """Return the quantity of a name; a component or the length of a vector as "G.velocity.x", "G.velocity.length".
 
     Raises UnknownName with the nearest name there is.
 
@@ -55,7 +55,7 @@ def shown(motion: Motion, name: str) -> Plotted:
 
 
 def rate_name(motion: Motion, name: str) -> str:
-    """The name of the time derivative of a quantity; raises UnknownName where it has none that can be named.
+    """Return the name of the time derivative of a quantity; raises UnknownName where it has none that can be named.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.kinematics import solve
@@ -77,7 +77,7 @@ def rate_name(motion: Motion, name: str) -> str:
 
 
 def along(motion: Motion, against: str | None) -> tuple[Plotted, bool]:
-    """What a plot runs along, and whether it is known where the mechanism cannot be assembled.
+    """Tell what a plot runs along, and whether it is known where the mechanism cannot be assembled.
 
     None is the time of a motion in time, else its first driver that moves. Raises UnknownName.
     """
@@ -111,7 +111,7 @@ def _named(motion: Motion, against: str) -> Plotted:
 
 
 def driver(motion: Motion) -> Plotted:
-    """The first driver that moves; the first of all where none does."""
+    """Return the first driver that moves; the first of all where none does."""
     rows = {name: shown(motion, f"{name}.{VALUE}") for name in motion.drives}
     if not rows:
         raise InvalidInput(Problem(DRIVEN, "the mechanism has no driver", f"against={POSE!r}"))
@@ -121,7 +121,7 @@ def driver(motion: Motion) -> Plotted:
 
 
 def all_of(motion: Motion, names: Sequence[str]) -> tuple[Plotted, ...]:
-    """The quantities of names, or what the mechanism states as its outputs where none are given."""
+    """Return the quantities of names, or what the mechanism states as its outputs where none are given."""
     chosen = names or motion.mechanism.outputs
     if not chosen:
         raise InvalidInput(Problem("quantities", "nothing is named", "name some: plot(motion, 'G.velocity')"))

@@ -42,7 +42,7 @@ class PointLabel:
 
 
 def number(value: float, scale: float = 0.0) -> str:
-    """A value in four digits, with a proper minus sign; zero where it is nothing beside the scale.
+    """Return a value in four digits, with a proper minus sign; zero where it is nothing beside the scale.
 
     >>> number(-12.34567), number(12345.6), number(1e-14, 1.0)
     ('−12.35', '12346', '0')

@@ -46,7 +46,7 @@ class CentresSample:
         return tuple(int(k) for k in np.unravel_index(flat, shape)) if shape else ()
 
     def of(self, values: Any) -> Any:
-        """What an array of the motion's shape holds at the pose."""
+        """Tell what an array of the motion's shape holds at the pose."""
         return np.asarray(values)[self.pose]
 
     @cached_property
@@ -73,7 +73,7 @@ class CentresSample:
 
 
 def centres_sections(sample: Sample) -> tuple[Section, ...]:
-    """The sections on the instant centres of a motion's first pose: primary, secondary, angular velocities.
+    """Return the sections on the instant centres of a motion's first pose: primary, secondary, angular velocities.
 
     Raises NotDetermined where nothing moves, InvalidInput for a motion of order 0.
     """
@@ -99,7 +99,7 @@ def centre_blocks(found: Centres) -> tuple[Block, ...]:
 
 
 def derivation_section(structure: Structure) -> Section:
-    """The order in which the circle diagram is completed: the same for all dimensions and poses.
+    """Return the order in which the circle diagram is completed: the same for all dimensions and poses.
 
     Raises NotDetermined where the drivers do not determine the motion.
     """

@@ -31,13 +31,13 @@ MISSING = "The numbers of configurations and of branches do not agree everywhere
 
 
 def configurations_report(found: Configurations) -> Report:
-    """All configurations at the first driver values."""
+    """Return all configurations at the first driver values."""
     outcome = Outcome(True, 1, int(any(True for _ in found)), 0, 0, 0, 0)
     return Report(found.structure.mechanism.title, (configurations_section(found),), outcome, found.structure)
 
 
 def configurations_section(found: Configurations) -> Section:
-    """How many configurations there are, their names, and the angles of the links that are solved."""
+    """Tell how many configurations there are, their names, and the angles of the links that are solved."""
     ones, structure = list(found), found.structure
     links = [link for group in structure.groups for link in group.links]
     heads = (Column("no.", style="each"), Column("configuration"))
@@ -69,7 +69,7 @@ def _with_unit(angle: bool, value: float) -> str:
 
 
 def is_angle(structure: Structure, driver: str) -> bool:
-    """Whether a driver drives an angle."""
+    """Tell whether a driver drives an angle."""
     bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
     return any(d.pair.free_is_angle for b in bodies for d in b.driven if d.drive.name == driver and not d.is_passive)
 
@@ -82,7 +82,7 @@ def circuits_report(found: Circuits) -> Report:
 
 
 def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
-    """What a report of one design says of configurations, circuits and limits, where that takes little time.
+    """Tell what a report of one design says of configurations, circuits and limits, where that takes little time.
 
     With several drivers the first one is moved, the others stay at their first values.
     """
@@ -124,7 +124,7 @@ class _Page:
         self.value = Column(found.driver, "deg" if self.angle else "", "fixed", FLOOR)
 
     def circuits(self) -> Section:
-        """The circuits, and whether all of them are found."""
+        """Return the circuits, and whether all of them are found."""
         heads = (Column("circuit", style="each"), Column("branches", style="each"), Column("limits", style="each"))
         rows = tuple((c.number, len(c.branches), len(c.limits), self._range(c)) for c in self.found.circuits)
         blocks = [Paragraph(" ".join(self._said()))]
@@ -158,7 +158,7 @@ class _Page:
         return float(degrees(value)) if self.angle else value
 
     def branches(self) -> Section:
-        """The branches with the driver's interval and what ends them."""
+        """Return the branches with the driver's interval and what ends them."""
         unit = self.value.unit
         columns = (
             Column("branch", style="each"),
@@ -181,7 +181,7 @@ class _Page:
         return f"{self.found.structure.groups[limit.group].name} ({', '.join(limit.links)})"
 
     def limits(self) -> Iterator[Section]:
-        """The limit positions, each with the group responsible."""
+        """Return the limit positions, each with the group responsible."""
         if self.found.limits:
             circuit = Column("circuit", style="each")
             columns = self.value, Column("which is"), circuit, Column("branches"), Column("group")
@@ -194,7 +194,7 @@ class _Page:
             yield Section("limits", "Limit positions", (Paragraph(text), _table(columns, rows)))
 
     def changes(self) -> Iterator[Section]:
-        """The change points."""
+        """Return the change points."""
         found = [change for circuit in self.found.circuits for change in circuit.changes]
         if found:
             columns = (self.value, Column("circuit", style="each"), Column("branch", style="each"), Column("links"))
@@ -202,7 +202,7 @@ class _Page:
             yield Section("changes", "Change points", (Paragraph(CHANGES), _table(columns, rows)))
 
     def toggles(self) -> Iterator[Section]:
-        """The toggle positions."""
+        """Return the toggle positions."""
         if self.found.toggles:
             columns = (Column("link"), self.value, Column("circuit", style="each"), Column("branch", style="each"))
             rows = tuple((t.link, self._in_unit(t.value), t.circuit, t.branch) for t in self.found.toggles)

@@ -41,7 +41,7 @@ CHOSEN_BY = {
 
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
-    """Each driver with its range, its number of poses and its rates; angles and lengths in tables of their own."""
+    """Report each driver with its range and rates; angles and lengths in tables of their own."""
     steps = driven_pairs(structure)
     kinds: dict[bool, list[tuple[Cell, ...]]] = {}
     for drive in structure.mechanism.drives:
@@ -98,7 +98,7 @@ def _shaped(sample: Sample, value: Any) -> Any:
 
 
 def solving_section(structure: Structure, motion: Motion | None, design: int = 0) -> Section:
-    """The frame with its driven links, then every group."""
+    """Report the frame with its driven links, then every group."""
     known = _letters(structure, structure.ground.links)
     steps = [_ground(structure.ground, known)]
     for k, group in enumerate(structure.groups):

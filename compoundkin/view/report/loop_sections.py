@@ -79,7 +79,7 @@ def equation_count(structure: Structure) -> EquationCount:
 
 
 def loops_section(structure: Structure) -> Section:
-    """The independent loops as chains, and the equations against the unknowns."""
+    """Return the independent loops as chains, and the equations against the unknowns."""
     count = equation_count(structure)
     links, pairs, loops = len(structure.mechanism.links), len(structure.pairs), loop_count(structure)
     euler = FormulaBlock(f"L = p - n + 1 = {pairs} - {links} + 1 = {pairs - links + 1}")
@@ -126,7 +126,7 @@ def _verdict(count: EquationCount) -> tuple[Block, ...]:
 
 
 def equations_section(structure: Structure) -> Section:
-    """The loop equations, the auxiliary ones and those of the drivers; what is unknown, what is known."""
+    """Return the loop equations, the auxiliary ones and those of the drivers; what is unknown, what is known."""
     return Section("equations", "Vector-loop equations", tuple(_blocks(loop_equations(structure))))
 
 

@@ -25,7 +25,7 @@ _LOWER = 2
 
 
 def mobility_section(structure: Structure, motion: Motion | None = None) -> Section:
-    """The mobility sum with its numbers, whether the drivers determine the motion, and what the dimensions say."""
+    """Report the mobility, whether the drivers determine the motion, and what the dimensions say."""
     mobility, found = structure.mobility, mobility_analysis(structure, _pose(motion) if motion else None)
     # that no pose was found of what seems sound says nothing against it
     plain = found.agrees or (found.finite is None and not structure.faults)
@@ -49,7 +49,7 @@ def _pose(motion: Motion) -> dict[str, Pose] | None:
 
 
 def analysis_blocks(found: MobilityAnalysis) -> Iterator[Block]:
-    """The freedoms by the count, at general dimensions and at its own ones, and what follows."""
+    """Return the freedoms by the count, at general dimensions and at its own ones, and what follows."""
     known = "" if found.at_pose is None else str(found.at_pose)
     rows = [("by the count", str(found.gruebler), ""),
             ("at general dimensions", str(found.generic), str(found.redundant_generic))]  # fmt: skip
@@ -77,7 +77,7 @@ def _remarks(found: MobilityAnalysis) -> Iterator[str]:
 
 
 def chain_section(structure: Structure) -> Section:
-    """The kinematic chain: its name, driven link, assortment, variety, symmetry, and the trusses of larger groups."""
+    """Report the kinematic chain: name, driven link, assortment, variety, symmetry, trusses of larger groups."""
     name = structure_name(structure)
     return Section("chain", "Kinematic chain", (StepBlock(name.title, tuple(_facts(structure, name))),))
 

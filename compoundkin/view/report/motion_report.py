@@ -29,7 +29,7 @@ MOST_GAPS = 10
 
 
 def gaps_section(sample: Sample, found: tuple[Gap, ...]) -> Section:
-    """The poses that cannot be assembled: between which driver values, which group, and why."""
+    """Return the poses that cannot be assembled: between which driver values, which group, and why."""
     missing = int(np.count_nonzero(~sample.assembled))
     text = f"{missing:,} of {counted(sample.poses, 'pose')} cannot be assembled."
     alerts = [Alert(gap_sentence(sample, gap)) for gap in found[:MOST_GAPS]]
@@ -38,7 +38,7 @@ def gaps_section(sample: Sample, found: tuple[Gap, ...]) -> Section:
 
 
 def gap_sentence(sample: Sample, gap: Gap) -> str:
-    """One gap in words: the drivers' interval, the group that does not close, and the reason."""
+    """Return one gap in words: the drivers' interval, the group that does not close, and the reason."""
     spans = [_span(driver, gap) for driver in sample.varying]
     where = listed(spans) if spans else "At this pose"
     where = where[:1].upper() + where[1:]
@@ -58,7 +58,7 @@ def _span(driver: Quantity, gap: Gap) -> str:
 
 
 def checks_section(sample: Sample, check: Check) -> Section:
-    """All findings of the checks, each with its worst value and where it is."""
+    """Return all findings of the checks, each with its worst value and where it is."""
     columns = (Column("check"), Column("worst", style="brief"), Column("limit", style="brief"), Column("at"),
                Column("", style="passed"))  # fmt: skip
     rows = tuple((f.name, f.value, f.limit, finding_place(sample, f.pair, f.pose), f.passed) for f in check.findings)
@@ -75,7 +75,7 @@ def checks_section(sample: Sample, check: Check) -> Section:
 
 
 def finding_place(sample: Sample, name: str, pose: tuple[int, ...]) -> str:
-    """The pair or link and the pose at which a residual is worst: "A, crank 35"."""
+    """Return the pair or link and the pose at which a residual is worst: "A, crank 35"."""
     if not name:
         return ""
     motion = sample.motion
@@ -116,7 +116,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
 
 
 def gaps_of(sample: Sample) -> tuple[Gap, ...]:
-    """The gaps of one design."""
+    """Return the gaps of one design."""
     if sample.assembled.all():
         return ()
     axes = sample.motion.shape[:-1]
@@ -125,7 +125,7 @@ def gaps_of(sample: Sample) -> tuple[Gap, ...]:
 
 
 def outcome_of(motion: Motion, check: Check, published: tuple[Comparison, ...] = ()) -> Outcome:
-    """What the findings and the published numbers come to."""
+    """Tell what the findings and the published numbers come to."""
     return Outcome(
         solvable=True,
         poses=int(motion.failed.size),
@@ -144,7 +144,7 @@ def _design_of(sample: Sample) -> str:
 
 
 def motion_in_short(outcome: Outcome) -> str:
-    """The one line that says whether all is well."""
+    """Return the one line that says whether all is well."""
     return f"{'; '.join(_results(outcome))}."
 
 
@@ -189,7 +189,7 @@ def _missing(sample: Sample) -> tuple[Section, ...]:
 
 
 def finding_sentence(sample: Sample, finding: Finding) -> str:
-    """A finding in words: what, how far, and the pair or link, the pose and the group."""
+    """Return a finding in words: what, how far, and the pair or link, the pose and the group."""
     where = finding_place(sample, finding.pair, finding.pose)
     place = ", ".join(part for part in (where, _group(sample.motion.structure, finding.pair)) if part)
     said = f"{finding.name}: {brief(finding.value)}, above its limit {brief(finding.limit)}"

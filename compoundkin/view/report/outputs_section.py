@@ -33,7 +33,7 @@ WAYS = {True: "oscillates about a pin", False: "translates on a slide", None: "h
 
 
 def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
-    """The outputs of a mechanism that names none: its tracer points and driven-by-nothing links, a few of them.
+    """Return the outputs of a mechanism that names none: tracer points and links without a driver, a few.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = link("crank", A=0, B=1), link("rod", B=0, P=2), link("frame", A=0)
@@ -55,12 +55,12 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:
-    """The outputs asked for, else those that the mechanism has by default and the motion was solved for."""
+    """Return the outputs asked for, else those that the mechanism has by default and the motion was solved for."""
     return tuple(outputs or (name for name in default_outputs(motion.mechanism) if order_of(name) <= motion.order))
 
 
 def outputs_section(sample: Sample, outputs: Sequence[str]) -> Section:
-    """The outputs over the cycle, and where each is least and greatest."""
+    """Return the outputs over the cycle, and where each is least and greatest."""
     found = [sample.quantity(name) for name in outputs]
     drivers = [(sample.driver_column(driver), driver.values) for driver in sample.varying]
     # several drivers are columns like any other, and the poses are numbered or have their times
@@ -125,14 +125,14 @@ def _cell(value: Any) -> float | None:
 
 
 def cams_sections(sample: Sample) -> tuple[Section, ...]:
-    """One section for all cams, where there are any."""
+    """Return one section for all cams, where there are any."""
     names = cam_pairs(sample.motion) if sample.motion.order and sample.assembled.any() else ()
     blocks = [block for name in names for block in cam_blocks(sample, cam_analysis(sample.motion, name))]
     return (Section("cams", "Cams", tuple(blocks)),) if blocks else ()
 
 
 def cam_blocks(sample: Sample, found: CamAnalysis) -> Iterator[Block]:
-    """What there is to say of one cam."""
+    """Report one cam: pressure angle, curvature, sliding, warnings."""
     pair = found.pair
     said = f"{pair.name}: {found.follower} {WAYS[found.oscillates]}. The pressure angle is customarily not greater than"
     yield Paragraph(f"{said} {number(float(np.rad2deg(found.allowed_pressure_angle)))} degrees.")
@@ -176,7 +176,7 @@ def _cam_extremes(sample: Sample, what: str, unit: str, values: Any) -> tuple[Ce
 
 
 def equivalent_section(sample: Sample) -> Section | None:
-    """What stands for each higher pair at the first pose with rates, and the groups that result; None without any."""
+    """Report what stands for each higher pair at the first pose with rates; None without any."""
     motion = sample.motion
     regular = np.flatnonzero(sample.of(np.broadcast_to(motion.regular, motion.failed.shape).reshape(motion.shape)))
     if not len(regular):

@@ -57,7 +57,7 @@ class Comparison:
 
 
 def comparisons(structure: Structure) -> tuple[Comparison, ...]:
-    """Every published number, solved at its driver values in the assembly modes that the mechanism says.
+    """Return every published number, solved at its driver values in the assembly modes that the mechanism says.
 
     Raises UnknownName for a published quantity that the mechanism does not have.
 

@@ -34,7 +34,7 @@ Subject: TypeAlias = Structure | Motion
 
 
 def json_text(title: str, sections: Sequence[Section], outcome: Outcome) -> str:
-    """The report as a JSON text: `title`, `outcome`, and `sections` by their keys in reading order.
+    """Return the report as a JSON text: `title`, `outcome`, and `sections` by their keys in reading order.
 
     A table has `columns` (name and unit) and `rows`; what is not assembled is null, a vector is [x, y].
 
@@ -88,7 +88,7 @@ def _cell_as_data(cell: Cell) -> Any:
 
 
 def markdown(title: str, sections: Sequence[Section]) -> str:
-    """The report as Markdown, for GitHub and the like.
+    """Return the report as Markdown, for GitHub and the like.
 
     >>> print(markdown("Crank", [Section("about", "", (Paragraph("a | b"),))]))
     # Crank

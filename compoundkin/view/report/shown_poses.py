@@ -46,7 +46,7 @@ class Sample:
         return full.reshape(self.motion.inputs.designs, self.poses)[self.design]
 
     def quantity(self, name: str) -> Quantity:
-        """A quantity of this design, angles in degrees."""
+        """Return a quantity of this design, angles in degrees."""
         found = quantity(self.motion, name).shown
         return replace(found, values=self.of(found.values))
 
@@ -92,7 +92,7 @@ class Sample:
         return tuple(shown if shown[-1] == self.poses - 1 else [*shown, self.poses - 1])
 
     def driver_column(self, driver: Quantity) -> Column:
-        """The column of a driver in a table."""
+        """Return the column of a driver in a table."""
         return Column(driver.name, driver.unit, "fixed", ROUNDING * float(np.max(np.abs(driver.values), initial=0.0)))
 
     def floor(self, found: Quantity) -> float:

@@ -19,7 +19,7 @@ ROUNDING = 1e-12
 
 
 def links_section(structure: Structure, design: int = 0) -> Section:
-    """The links: what each is called by its number of pairs, its points in its own frame, its pairs."""
+    """Return the links: what each is called by its number of pairs, its points in its own frame, its pairs."""
     pairs, floor = _pairs_by_link(structure), ROUNDING * structure.mechanism.geometry.size
     rows = tuple(
         (name, kind_of_link(count), _points(structure, name, floor, design), ", ".join(pairs[name]))
@@ -60,7 +60,7 @@ def _pairs_by_link(structure: Structure) -> dict[str, list[str]]:
 
 
 def pairs_section(structure: Structure) -> Section:
-    """The pairs: what kind each is, which links it joins and where, and what drives it."""
+    """Return the pairs: what kind each is, which links it joins and where, and what drives it."""
     drivers = {step.pair.name: name for name, step in driven_pairs(structure).items()}
     rows = tuple(
         (pair.name, f"{pair.code}, {pair.title.removesuffix(' pair')}", joined(pair.members),
@@ -72,7 +72,7 @@ def pairs_section(structure: Structure) -> Section:
 
 
 def driven_pairs(structure: Structure) -> dict[str, DrivenPair]:
-    """The driven pair of every driver that has its place in the structure, by the driver's name."""
+    """Return the driven pair of every driver that has its place in the structure, by the driver's name."""
     bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
     return {step.drive.name: step for body in bodies for step in body.driven if not step.is_passive}
 
@@ -85,7 +85,7 @@ def _multiple_pins(structure: Structure) -> Iterator[Block]:
 
 
 def faults_section(structure: Structure) -> Section:
-    """What keeps the structure from being solved, with remedies."""
+    """Tell what keeps the structure from being solved, with remedies."""
     alerts = tuple(Alert(_sentence(fault.text), fault.remedy) for fault in structure.faults)
     return Section("faults", "What stands in the way", (Paragraph("The mechanism cannot be solved as it is."), *alerts))
 
@@ -95,13 +95,13 @@ def _sentence(text: str) -> str:
 
 
 def counted_sections(structure: Structure, design: int = 0, motion: Motion | None = None) -> tuple[Section, ...]:
-    """The parts of a mechanism and what counting them tells."""
+    """Return the parts of a mechanism and what counting them tells."""
     parts = links_section(structure, design), pairs_section(structure)
     return (*parts, mobility_section(structure, motion), chain_section(structure), loops_section(structure))
 
 
 def about_section(structure: Structure, in_short: str, more: str = "") -> Section:
-    """What the mechanism is, in which units, and what the report comes to."""
+    """Tell what the mechanism is, in which units, and what the report comes to."""
     mechanism = structure.mechanism
     said = (
         mechanism.description,
@@ -114,7 +114,7 @@ def about_section(structure: Structure, in_short: str, more: str = "") -> Sectio
 
 
 def structure_in_short(structure: Structure) -> str:
-    """The one line that says what it is made of."""
+    """Return the one line that says what it is made of."""
     links, freedoms = len(structure.mechanism.links), structure.mobility.freedoms
     text = f"In short: {counted(links, 'link')}, mobility {freedoms}"
     if structure.relaxation and not structure.faults:

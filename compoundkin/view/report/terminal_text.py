@@ -24,7 +24,7 @@ STYLES = {"pass": "green", "FAIL": "bold red"}
 
 
 def text(title: str, sections: Sequence[Section], width: int = 80, colour: bool = False) -> str:
-    """The report as text, no line longer than `width`.
+    """Return the report as text, no line longer than `width`.
 
     >>> print(text("Crank", [Section("about", "", (Paragraph("Watch B."),))]))
     Crank

@@ -26,7 +26,7 @@ DERIVATIVES = ("coordinate", VELOCITY, ACCELERATION)
 
 
 def written(column: Column, cells: Iterable[Cell], between: str = ", ") -> list[str]:
-    """The cells of a column as text; `between` the numbers of a cell that holds several.
+    """Return the cells of a column as text; `between` the numbers of a cell that holds several.
 
     >>> written(Column("x", style="fixed"), [1.0, 2.25, None])
     ['1.00', '2.25', '-']
@@ -37,7 +37,7 @@ def written(column: Column, cells: Iterable[Cell], between: str = ", ") -> list[
 
 
 def number(value: float) -> str:
-    """A single number with six significant digits, without trailing zeros.
+    """Return a single number with six significant digits, without trailing zeros.
 
     >>> number(14.0), number(1 / 3), number(-0.0)
     ('14', '0.333333', '0')
@@ -46,7 +46,7 @@ def number(value: float) -> str:
 
 
 def brief(value: float) -> str:
-    """A number of which only the magnitude matters.
+    """Return a number of which only the magnitude matters.
 
     >>> brief(2.13e-14), brief(1e-9), brief(0.0)
     ('2.1e-14', '1e-09', '0')
@@ -95,7 +95,7 @@ def _fixed(values: list[float]) -> Callable[[float], str]:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Names in a row, the last two joined by "and".
+    """Return names in a row, the last two joined by "and".
 
     >>> listed(["crank"]), listed(["crank", "rod", "frame"])
     ('crank', 'crank, rod and frame')
@@ -105,7 +105,7 @@ def listed(names: Iterable[str]) -> str:
 
 
 def counted(number: int, word: str) -> str:
-    """A number of things.
+    """Return a number of things.
 
     >>> counted(1, "pair"), counted(1200, "pose")
     ('1 pair', '1,200 poses')
@@ -114,7 +114,7 @@ def counted(number: int, word: str) -> str:
 
 
 def kind_of_link(pairs: int) -> str:
-    """What a link with so many pairs is called.
+    """Tell what a link with so many pairs is called.
 
     >>> kind_of_link(3), kind_of_link(9)
     ('ternary', 'with 9 pairs')
@@ -154,7 +154,7 @@ class Wording:
 
     @singledispatchmethod
     def law(self, law: Law) -> str:
-        """What a law does, after "it moves"."""
+        """Tell what a law does, after "it moves"."""
         raise NotImplementedError
 
     @law.register

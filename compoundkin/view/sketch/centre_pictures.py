@@ -38,7 +38,7 @@ class ShownCentres:
 
 
 def shown_centres(scene: Scene, window: Window) -> ShownCentres:
-    """The instant centres of the pose shown; raises InvalidInput for a mechanism without a motion."""
+    """Return the instant centres of the pose shown; raises InvalidInput for a mechanism without a motion."""
     if scene.shown is None:
         what = "a mechanism that is shown as drawn has no motion"
         raise InvalidInput(Problem("centres", what, "give it drivers"))
@@ -65,7 +65,7 @@ def shown_centres(scene: Scene, window: Window) -> ShownCentres:
 
 
 def centre_places(scene: Scene) -> list[complex]:
-    """Where the instant centres are, those that are not at infinity."""
+    """Tell where the instant centres are, those that are not at infinity."""
     if scene.shown is None:
         return []
     centres = instant_centres(scene.shown)
@@ -74,7 +74,7 @@ def centre_places(scene: Scene) -> list[complex]:
 
 
 def centre_name(scene: Scene, one: str, two: str) -> str:
-    """The name of a centre by the numbers of its links: 13, or 3,12."""
+    """Return the name of a centre by the numbers of its links: 13, or 3,12."""
     first, second = sorted((scene.numbers[one], scene.numbers[two]))
     return f"{first}{second}" if second < 10 else f"{first},{second}"
 
@@ -115,13 +115,13 @@ def _span(points: list[complex]) -> tuple[complex, complex]:
 
 
 def centre_shapes(found: ShownCentres) -> list[Shape]:
-    """The lines and a dot for each centre."""
+    """Return the lines and a dot for each centre."""
     dots = {(round(p.real), round(p.imag)): p for p in found.places.values()}
     return [*(Polyline(line, "ray") for line in found.lines), *(CircleShape(p, DOT, "centre") for p in dots.values())]
 
 
 def centre_labels(found: ShownCentres) -> list[Label]:
-    """The names of the centres, those at one place together."""
+    """Return the names of the centres, those at one place together."""
     places: list[tuple[list[str], complex]] = []
     for name, place in found.places.items():
         same = next((names for names, other in places if abs(other - place) < TOGETHER), None)
@@ -134,7 +134,7 @@ def centre_labels(found: ShownCentres) -> list[Label]:
 
 
 def circle_diagram(structure: Structure, numbers: Mapping[str, int], size: float | None) -> Picture:
-    """The picture of the circle diagram: primary centres full, secondary ones dashed, the steps beside it in order.
+    """Draw the circle diagram: primary centres full, secondary ones dashed, the steps beside it.
 
     Source: e.g. J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms, section 3.15.
     """

@@ -25,7 +25,7 @@ BULGE = 26.0
 
 
 def graph(structure: Structure, numbers: Mapping[str, int], groups: Mapping[str, int], size: float | None) -> Picture:
-    """The picture of the kinematic graph, each link in the colour of its group; driven pairs are drawn thick."""
+    """Draw the kinematic graph, each link in the colour of its group; driven pairs are drawn thick."""
     names = list(numbers)
     places = dict(zip(names, spread(names, structure.pairs), strict=True))
     window = fitted(Window(1.0, 0j, 0.0, 0.0), np.array(list(places.values())))
@@ -46,7 +46,7 @@ def graph(structure: Structure, numbers: Mapping[str, int], groups: Mapping[str,
 
 
 def node(name: str, at: complex, number: int, group: int) -> Shape:
-    """A link: the frame is square."""
+    """Draw a link as a numbered circle; the frame is square."""
     corner = (1 + 1j) * NODE * 0.9
     style = "pin frame" if name == FRAME else f"pin {style_of('ring', group)}"
     around = tuple(at + corner * turn for turn in (1, 1j, -1, -1j))
@@ -92,7 +92,7 @@ def _label(k: int, pair: Pair, first: complex, middle: complex, second: complex,
 
 
 def spread(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
-    """Places for the links, as far apart as there are pairs between them.
+    """Return places for the links, as far apart as there are pairs between them.
 
     Source: J. de Leeuw, Applications of convex analysis to multidimensional scaling, 1977 (majorization of stress).
     """

@@ -48,7 +48,7 @@ def text_half(text: str, size: float) -> complex:
 
 
 def around(key: str, at: complex, half: complex, clear: float, prefer: complex = 1 - 1j) -> Label:
-    """A label beside a point, from `clear` away on; rather to the side `prefer`."""
+    """Return a label beside a point, from `clear` away on; rather to the side `prefer`."""
     places, costs = [], []
     better = prefer / abs(prefer)
     for ring in RINGS:
@@ -61,7 +61,7 @@ def around(key: str, at: complex, half: complex, clear: float, prefer: complex =
 
 
 def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, height: float) -> dict[str, complex]:
-    """A place for each label, in the order of the labels; with two rounds of second thoughts."""
+    """Return a place for each label, in the order of the labels; with two rounds of second thoughts."""
     lines, rounds = obstacles(shapes)
     fixed = {label.key: _fixed_costs(label, lines, rounds, width, height) for label in labels}
     found: dict[str, complex] = {}
@@ -119,7 +119,7 @@ def _crowding(label: Label, others: Sequence[tuple[complex, complex]]) -> Number
 
 
 def obstacles(shapes: Iterable[Shape]) -> tuple[Number, Number]:
-    """Lines (start, stop) and circles (middle, radius) that labels should not be on, complex (count, 2)."""
+    """Return lines (start, stop) and circles (middle, radius) that labels should not be on, complex (count, 2)."""
     lines, rounds = list(_lines(shapes)), list(_rounds(shapes))
     return np.array(lines, dtype=complex).reshape(-1, 2), np.array(rounds, dtype=complex).reshape(-1, 2)
 

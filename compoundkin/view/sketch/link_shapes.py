@@ -46,7 +46,7 @@ LEANING = 0.35
 
 
 def body(scene: Scene, window: Window, link: str, extra: Places = ()) -> tuple[Shape, ...]:
-    """The shapes of a link but the frame: a bar through its points, or a plate; `extra` points belong to it too."""
+    """Draw a link but the frame: a bar through its points and the `extra` ones, or a plate."""
     if link == FRAME:
         return ()
     group = scene.groups[link]
@@ -59,13 +59,13 @@ def body(scene: Scene, window: Window, link: str, extra: Places = ()) -> tuple[S
 
 
 def skeleton(scene: Scene, window: Window, link: str, extra: Places = ()) -> list[complex]:
-    """The points of the picture between which a link is drawn: the two ends of a bar, or the corners of a plate."""
+    """Return the points between which a link is drawn: the ends of a bar, or the corners of a plate."""
     own = [complex(window.at(scene.at(link, p))) for p in scene.points[link].values()]
     return outline([*own, *extra])
 
 
 def outline(points: Places) -> list[complex]:
-    """The two ends of points on a line, or the corners of the plate around them.
+    """Return the two ends of points on a line, or the corners of the plate around them.
 
     >>> outline([0j, 20 + 0j, 10 + 1j, 10 + 0j])
     [0j, (20+0j)]
@@ -85,7 +85,7 @@ def outline(points: Places) -> list[complex]:
 
 
 def edges(corners: Places) -> list[tuple[complex, complex]]:
-    """The lines between corners, all around."""
+    """Return the lines between corners, all around."""
     return list(pairwise(corners)) + ([(corners[-1], corners[0])] if len(corners) > 2 else [])
 
 
@@ -126,19 +126,19 @@ def pins(painter: Painter) -> Iterator[Laid]:
 
 
 def joints(painter: Painter, letter: str) -> tuple[str, ...]:
-    """The names of the pins at a letter: one less than the links that it joins."""
+    """Return the names of the pins at a letter: one less than the links that it joins."""
     found = [s.pair for s in painter.scene.seen if isinstance(s.mark, Pin) and s.pair.letters[0] == letter]
     return tuple(pair.name for pair in found)
 
 
 def gliding(painter: Painter) -> frozenset[str]:
-    """The letters of points where a mark of their own is drawn."""
+    """Return the letters of points where a mark of their own is drawn."""
     others = [s.pair for s in painter.scene.seen if not isinstance(s.mark, Pin)]
     return frozenset(pair.letters[0] for pair in others)
 
 
 def pivot(painter: Painter, letter: str, at: complex) -> Iterator[Laid]:
-    """A fixed pivot: a triangle on hatched ground, on the side with the fewest bars."""
+    """Draw a fixed pivot: a triangle on hatched ground, on the side with the fewest bars."""
     down = _free_side(painter, letter, at)
     along = 1j * down
     left, right = at + down * PIVOT + along * FOOT, at + down * PIVOT - along * FOOT
@@ -165,7 +165,7 @@ def _free_side(painter: Painter, letter: str, at: complex) -> complex:
 
 
 def drives(painter: Painter) -> Iterator[Laid]:
-    """An arrow at every driven pair, in the sense of its speed."""
+    """Draw an arrow at every driven pair, in the sense of its speed."""
     for step in painter.scene.driven:
         if not painter.shows(step.link):
             continue
@@ -186,7 +186,7 @@ def drives(painter: Painter) -> Iterator[Laid]:
 
 
 def turning(painter: Painter, step: DrivenPair, at: complex, sense: float) -> tuple[Shape, ...]:
-    """A curved arrow around a pin, behind the driven link as it turns."""
+    """Draw a curved arrow around a pin, behind the driven link as it turns."""
     link, letter = step.drive.link, step.pair.letters[0]
     others = [painter.place(link, p) for k, p in painter.scene.points[link].items() if k != letter]
     toward = direction(max((p - at for p in others), key=abs, default=1 + 0j))
@@ -203,7 +203,7 @@ def turning(painter: Painter, step: DrivenPair, at: complex, sense: float) -> tu
 
 
 def pushing(painter: Painter, at: complex, e: complex) -> tuple[Shape, ...]:
-    """A straight arrow beside a block."""
+    """Draw a straight arrow beside a block."""
     across = 1j * e
     side = -1.0 if (np.conjugate(across) * (painter.middle - at)).real > 0 else 1.0
     if abs(across.imag) > 0.5:

@@ -54,7 +54,7 @@ class PicturePart:
 
 
 def in_rows(parts: Sequence[PicturePart], sign: str = "") -> tuple[list[Shape], float, float]:
-    """The parts side by side, in rows, with a sign between them; and the size of them all.
+    """Return the parts side by side, in rows, with a sign between them; and the size of them all.
 
     >>> in_rows([PicturePart((), 300.0, 100.0)] * 4)[1:]
     (1016.0, 245.0)
@@ -88,7 +88,7 @@ class Corner:
 
 
 def chain(loop: Loop) -> str:
-    """The links of a loop in order."""
+    """Return the links of a loop in order."""
     return " - ".join(loop.links)
 
 
@@ -104,14 +104,14 @@ class LoopPanel:
 
 
 def panel_of(k: int, loop: Loop, behind: Sequence[Shape], found: Sequence[Corner], clear: float = 0.0) -> LoopPanel:
-    """The panel of a loop; its corners are circles, or something behind it of a radius, which vectors keep `clear`."""
+    """Return the panel of a loop; vectors keep `clear` of what is behind its corners, else of circles there."""
     vectors = _vectors(k, [corner.at for corner in found], clear or PIN)
     circles = [] if clear else [CircleShape(corner.at, PIN, f"pin {style_of('ring', k)}") for corner in found]
     return LoopPanel(k, loop, tuple(behind), tuple(found), (*vectors, *circles))
 
 
 def parts_of(panels: Sequence[LoopPanel]) -> list[PicturePart]:
-    """The panels with their headings, all of one size."""
+    """Return the panels with their headings, all of one size."""
     points = np.array([p for panel in panels for p in corners([*panel.behind, *panel.vectors])])
     low = complex(points.real.min(), points.imag.min()) - MARGIN * (1 + 1j)
     size = complex(points.real.max(), points.imag.max()) + MARGIN * (1 + 1j) - low

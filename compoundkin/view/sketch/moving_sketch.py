@@ -61,7 +61,7 @@ class MovingSketch:
     parts: tuple[MovingPart, ...]
 
     def places(self, part: MovingPart) -> Number:
-        """Where the point of a part is on the picture, complex (poses,)."""
+        """Tell where the point of a part is on the picture, complex (poses,)."""
         return np.broadcast_to(self.window.at(self.scene.whole[part.link].at(part.at).c[0]), (self.scene.count,))
 
     def turns(self, link: str) -> Number:
@@ -80,7 +80,7 @@ class MovingSketch:
         return tuple((self.places(part), self.turns(part.link)) for part in self.parts)
 
     def shapes(self, k: int) -> list[Shape]:
-        """All shapes at the k-th assembled pose, those of one link together.
+        """Return all shapes at the k-th assembled pose, those of one link together.
 
         >>> from compoundkin.files.shipped_mechanisms import load_named
         >>> from compoundkin.kinematics import solve
@@ -95,7 +95,7 @@ class MovingSketch:
         return found
 
     def rates(self, kind: str) -> dict[str, Number]:
-        """The velocities or accelerations of all points but those of the frame, complex (poses,); "velocity" and so on.
+        """Return the velocities or accelerations of all points but those of the frame, complex (poses,).
 
         Raises InvalidInput where the motion has none.
         """
@@ -109,12 +109,12 @@ class MovingSketch:
         return found
 
     def scale(self, kind: str) -> VectorScale | None:
-        """The scale of vectors, one for all poses, at which the longest of them has room; None where nothing moves."""
+        """Return the one scale of vectors at which the longest has room; None where nothing moves."""
         longest = {k: float(np.max(np.abs(v), initial=0.0, where=np.isfinite(v))) for k, v in self.rates(kind).items()}
         return scale_of(kind, longest, LONGEST * self.window.diagonal, self.scene.mechanism.unit)
 
     def holding(self, points: Number, room: float) -> MovingSketch:
-        """The same sketch in a window that holds some points of its picture too, with room around them."""
+        """Return the same sketch in a window that holds some points of its picture too, with room around them."""
         old, low, high = self.window, 0j, complex(self.window.width, self.window.height)
         if np.size(points):
             low = complex(min(0.0, points.real.min() - room), min(0.0, points.imag.min() - room))
@@ -130,7 +130,7 @@ class MovingSketch:
 def moving_sketch(
     motion: Motion, design: int = 0, *, paths: Sequence[str] = (), labels: Sequence[str] = ("points", "links")
 ) -> MovingSketch:
-    """The sketch of a motion whose parts move with its links; the pose shown first is the one nearest to the drawing.
+    """Return the sketch of a motion whose parts move with its links, first at the pose nearest to the drawing.
 
     `paths` names points whose paths are drawn. Raises NotAssembled where no pose is assembled, InvalidInput where links
     change their dimensions along the motion.

@@ -50,15 +50,15 @@ class Window:
     height: float
 
     def at(self, place: Number) -> Number:
-        """Where a place is on the picture, y downward."""
+        """Tell where a place is on the picture, y downward."""
         return np.conjugate((place - self.corner) * self.scale)
 
     def line(self, places: Number) -> tuple[complex, ...]:
-        """A line through places as points of the picture, those left out that it does not need."""
+        """Return a line through places as points of the picture, those left out that it does not need."""
         return simplified(np.atleast_1d(self.at(places)))
 
     def holds(self, point: complex, room: float = 0.0) -> bool:
-        """Whether a point of the picture is on it, and so far from its edges."""
+        """Tell whether a point of the picture is on it, and so far from its edges."""
         return room <= point.real <= self.width - room and room <= point.imag <= self.height - room
 
     @property
@@ -68,7 +68,7 @@ class Window:
 
 
 def fitted(window: Window, points: Number) -> Window:
-    """The window of the same scale that just holds some points of its picture, with room for letters around them."""
+    """Return the window of the same scale that just holds some points, with room for letters around them."""
     known = np.asarray(points, dtype=complex)
     low = complex(known.real.min(), known.imag.min()) - MARGIN * (1 + 1j)
     high = complex(known.real.max(), known.imag.max()) + MARGIN * (1 + 1j)
@@ -81,7 +81,7 @@ def fitted(window: Window, points: Number) -> Window:
 
 
 def window_of(places: Iterable[Number], bars: Iterable[float]) -> Window:
-    """The window on some places; `bars` are lengths of links, which make it finer where they are many and short."""
+    """Return the window on some places, finer where the lengths of links (`bars`) are many and short."""
     known = np.concatenate([np.ravel(p).astype(complex) for p in places] or [np.zeros(1, complex)])
     known = known[np.isfinite(known)]
     known = known if known.size else np.zeros(1, complex)
@@ -97,7 +97,7 @@ def window_of(places: Iterable[Number], bars: Iterable[float]) -> Window:
 
 
 def simplified(points: Number, deviation: float = DEVIATION) -> tuple[complex, ...]:
-    """The points of a line that it needs to keep within a deviation. Source: Douglas and Peucker, 1973.
+    """Return the points of a line that it needs to keep within a deviation. Source: Douglas and Peucker, 1973.
 
     >>> simplified(np.array([0, 1, 2, 2 + 1j]))
     (0j, (2+0j), (2+1j))
@@ -133,7 +133,7 @@ def thinned(places: Number) -> Number:
 
 
 def smooth(places: Number) -> Number:
-    """A smooth line through places, with points between them. Source: E. Catmull and R. Rom, 1974.
+    """Return a smooth line through places, with points between them. Source: E. Catmull and R. Rom, 1974.
 
     >>> smooth(np.array([0, 1, 2, 3 + 0j])).real.round(3)[:4].tolist()
     [0.0, 0.167, 0.333, 0.5]
@@ -195,7 +195,7 @@ class Picture(Savable):
 
 
 def checked_size(size: Any) -> float | None:
-    """A number of pixels, or None; raises InvalidInput for anything else.
+    """Return a number of pixels, or None; raises InvalidInput for anything else.
 
     >>> checked_size(640)
     640.0

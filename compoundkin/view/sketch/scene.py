@@ -1,4 +1,4 @@
-"""What is to be seen of a mechanism at one pose: where links and points are, and the marks of its pairs."""
+"""The visible parts of a mechanism at one pose: where links and points are, and the marks of its pairs."""
 
 from __future__ import annotations
 
@@ -57,20 +57,20 @@ class Scene:
         return self.structure.mechanism
 
     def at(self, link: str, p: Number) -> complex:
-        """Where a point of a link is at the pose shown."""
+        """Tell where a point of a link is at the pose shown."""
         return complex(self.here[link].at(p).c[0])
 
     def turned(self, link: str, along: Number) -> complex:
-        """A direction on a link, in the world."""
+        """Return a direction on a link, in the world."""
         return complex((self.here[link].u * along).c[0])
 
     def places(self, letter: str) -> Number:
-        """Where a point is along the motion, (poses,)."""
+        """Tell where a point is along the motion, (poses,)."""
         link = self.mechanism.carriers[letter][0]
         return np.atleast_1d(self.whole[link].at(self.points[link][letter]).c[0])
 
     def path(self, letter: str) -> list[Number]:
-        """The path of a point along the motion, in pieces where poses between cannot be assembled."""
+        """Return the path of a point along the motion, in pieces where poses between cannot be assembled."""
         places = self.places(letter)
         if self.known is None or len(places) != len(self.known):
             return [places]
@@ -112,7 +112,7 @@ class Scene:
         return tuple(step for body in bodies for step in body.driven if not step.is_passive)
 
     def ghost(self, k: int) -> Scene:
-        """The same scene at the k-th assembled pose of the motion."""
+        """Return the same scene at the k-th assembled pose of the motion."""
         poses = {name: Pose(pose.z, pose.u).entry((k,)) for name, pose in self.whole.items()}
         return Scene(self.structure, self.whole, poses, self.points, self.ends, known=self.known)
 
@@ -129,25 +129,25 @@ class Scene:
         return all(abs(z[-1] - z[0]) <= SAME_PLACE * size and abs(u[-1] - u[0]) <= SAME_PLACE for z, u in ends)
 
     def rate(self, letter: str, k: int) -> complex:
-        """The k-th derivative of where a point is, at the pose shown."""
+        """Return the k-th derivative of where a point is, at the pose shown."""
         link = self.mechanism.carriers[letter][0]
         return complex(self.here[link].derivative(self.points[link][letter], k))
 
     def driver_value(self, name: str, k: int = 0) -> float:
-        """The value of a driver at the pose shown, or its speed (k = 1)."""
+        """Return the value of a driver at the pose shown, or its speed (k = 1)."""
         if self.shown is None:
             return 1.0 if k else 0.0
         return float(_number(self.shown.inputs.drives[name][k], self.pose))
 
 
 def numbers_of(structure: Structure) -> dict[str, int]:
-    """The numbers of the links: the frame is 1, the others follow as they are written."""
+    """Return the numbers of the links: the frame is 1, the others follow as they are written."""
     others = [name for name in structure.mechanism.links if name != FRAME]
     return {name: k for k, name in enumerate([FRAME, *others], start=1)}
 
 
 def groups_of(structure: Structure) -> dict[str, int]:
-    """Which group each link belongs to: 0 for the frame and driven links, then in solving order."""
+    """Tell which group each link belongs to: 0 for the frame and driven links, then in solving order."""
     found = dict.fromkeys(structure.mechanism.links, 0)
     for k, group in enumerate(structure.groups, start=1):
         found.update(dict.fromkeys(group.links, k))
@@ -155,7 +155,7 @@ def groups_of(structure: Structure) -> dict[str, int]:
 
 
 def scene_of_motion(motion: Motion, shown: Motion, design: int, pose: int) -> Scene:
-    """The scene of a pose of `shown`, with the guides used as in the whole `motion`."""
+    """Return the scene of a pose of `shown`, with the guides used as in the whole `motion`."""
     known = np.flatnonzero(motion.failed[min(design, len(motion.failed) - 1)] == 0)
     at = min(design, shown.inputs.designs - 1), pose
     geometry = motion.mechanism.geometry

@@ -87,7 +87,7 @@ Shape: TypeAlias = Polyline | Polygon | Strokes | CircleShape | ArcShape | Text 
 
 
 def corners(shapes: Iterable[Shape]) -> list[complex]:
-    """Points between which some shapes lie, their texts left out.
+    """Return points between which some shapes lie, their texts left out.
 
     >>> corners([CircleShape(0j, 1.0, "pin")])
     [(-1-1j), (1+1j)]
@@ -112,7 +112,7 @@ def corners(shapes: Iterable[Shape]) -> list[complex]:
 
 
 def leaves(shapes: Iterable[Shape]) -> Iterator[Shape]:
-    """All shapes that are no groups, in the order in which they are drawn.
+    """Return all shapes that are no groups, in the order in which they are drawn.
 
     >>> list(leaves([ShapeGroup((CircleShape(0j, 1.0, "pin"),))]))
     [CircleShape(centre=0j, radius=1.0, style='pin')]
@@ -125,7 +125,7 @@ def leaves(shapes: Iterable[Shape]) -> Iterator[Shape]:
 
 
 def moved(shapes: Iterable[Shape], by: complex, turn: complex = 1 + 0j) -> list[Shape]:
-    """The same shapes, turned about zero and then moved on the picture; texts stay upright.
+    """Turn shapes about zero, then move them on the picture; texts stay upright.
 
     >>> moved([CircleShape(1 + 0j, 1.0, "pin")], 2j, 1j)
     [CircleShape(centre=3j, radius=1.0, style='pin')]
@@ -148,25 +148,25 @@ def _moved(shape: Shape, by: complex, turn: complex) -> Shape:
 
 
 def direction(along: complex) -> complex:
-    """The unit vector of a direction; to the right for none."""
+    """Return the unit vector of a direction; to the right for none."""
     length = abs(along)
     return along / length if length > 0 else 1 + 0j
 
 
 def box(middle: complex, along: complex, length: float, width: float) -> tuple[complex, ...]:
-    """The corners of a rectangle about a middle."""
+    """Return the corners of a rectangle about a middle."""
     e = direction(along)
     a, b = e * length / 2.0, 1j * e * width / 2.0
     return middle - a - b, middle + a - b, middle + a + b, middle - a + b
 
 
 def sheet(width: float, height: float) -> Polygon:
-    """The paper of a picture."""
+    """Return the paper of a picture."""
     return Polygon((0j, complex(width), complex(width, height), complex(0.0, height)), "paper")
 
 
 def hatching(start: complex, stop: complex, side: float) -> Strokes:
-    """A hatching along a line on one of its sides: that of ``1j * side`` as seen along it."""
+    """Draw a hatching along a line on one of its sides: that of ``1j * side`` as seen along it."""
     length, e = abs(stop - start), direction(stop - start)
     count = max(2, round(length / HATCH))
     slant = e * SLANT.real + 1j * e * side * SLANT.imag
@@ -175,14 +175,14 @@ def hatching(start: complex, stop: complex, side: float) -> Strokes:
 
 
 def arrow(start: complex, stop: complex, style: str) -> tuple[Shape, ...]:
-    """A straight arrow; a short one has a smaller head."""
+    """Draw a straight arrow; a short one has a smaller head."""
     length, e = abs(stop - start), direction(stop - start)
     head = min(HEAD, 0.6 * length)
     return Polyline((start, stop - e * head * 0.8), style), arrow_head(stop, e, f"{style}-head", head / HEAD)
 
 
 def arrow_head(tip: complex, along: complex, style: str, size: float = 1.0) -> Polygon:
-    """The head of an arrow."""
+    """Return the head of an arrow."""
     e = direction(along)
     back = tip - e * HEAD * size
     return Polygon((tip, back + 1j * e * HEAD_HALF * size, back - 1j * e * HEAD_HALF * size), style)

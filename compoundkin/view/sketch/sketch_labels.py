@@ -33,7 +33,7 @@ ON_EDGE = 8.0
 
 
 def letters(painter: Painter) -> list[Label]:
-    """A label for every point, away from the middle of the mechanism."""
+    """Return a label for every point, away from the middle of the mechanism."""
     found = []
     for letter, place in painter.scene.letters.items():
         if not any(map(painter.shows, painter.scene.mechanism.carriers[letter])):
@@ -47,7 +47,7 @@ def letters(painter: Painter) -> list[Label]:
 
 
 def numbered(painter: Painter) -> list[Label]:
-    """A label for the number of every link but the frame: on its bar or plate, else beside it."""
+    """Return a label for the number of every link but the frame: on its bar or plate, else beside it."""
     return [_number(painter, name) for name in filter(painter.shows, painter.scene.mechanism.links) if name != FRAME]
 
 
@@ -100,7 +100,7 @@ def _cylinder(painter: Painter, name: str) -> list[complex]:
 
 
 def label_shapes(scene: Scene, found: dict[str, complex]) -> list[Shape]:
-    """The labels as shapes, at their places."""
+    """Return the labels as shapes, at their places."""
     shapes: list[Shape] = []
     for key, at in found.items():
         kind, _, name = key.partition(" ")
@@ -112,7 +112,7 @@ def label_shapes(scene: Scene, found: dict[str, complex]) -> list[Shape]:
 
 
 def badge(scene: Scene, name: str, at: complex) -> Shape:
-    """The number of a link in a circle of its colour."""
+    """Return the number of a link in a circle of its colour."""
     rim = CircleShape(at, NUMBER, f"pin {style_of('ring', scene.groups[name])}")
     return ShapeGroup((rim, Text(at, str(scene.numbers[name]), "number")), links=(name,))
 
@@ -134,7 +134,7 @@ def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
 
 
 def below(lines: Sequence[str], height: float) -> tuple[list[Shape], float]:
-    """Lines of text below a picture of a height, and the height with them."""
+    """Return lines of text below a picture of a height, and the height with them."""
     places = [complex(16.0, height + BELOW + LINE * k) for k in range(len(lines))]
     shapes: list[Shape] = [Text(at, line, "note", "start") for at, line in zip(places, lines, strict=True)]
     return shapes, round(height + (BELOW + LINE * len(lines) if lines else 0.0), 1)

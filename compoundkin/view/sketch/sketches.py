@@ -43,7 +43,7 @@ LABELS = ("points", "links")
 def window_on(
     scene: Scene, more: Sequence[Scene] = (), paths: Sequence[str] = (), wishes: Sequence[complex] = ()
 ) -> Window:
-    """The window that holds a scene, its ghosts and the paths of points; and of the `wishes` those that are not far."""
+    """Return the window that holds a scene, its ghosts and paths, and of the `wishes` those that are not far."""
     places = [place for shown in (scene, *more) for place in _extent(shown)]
     places += [scene.places(letter) for letter in paths]
     plain = Window(1.0, 0j, 0.0, 0.0)
@@ -82,12 +82,12 @@ def _extent(scene: Scene) -> Iterator[Number]:
 
 
 def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:
-    """The shapes of a scene from back to front; without what does not move where it is a ghost."""
+    """Return the shapes of a scene from back to front; without what does not move where it is a ghost."""
     return [laid.shape for laid in in_layers(painter, grounded=grounded)]
 
 
 def in_layers(painter: Painter, *, grounded: bool = True) -> list[Laid]:
-    """As `layered`, each shape with the link that it moves with."""
+    """Return the same as `layered`, each shape with the link that it moves with."""
     laid: list[Laid] = [*marks(painter)]
     for name in filter(painter.shows, painter.scene.mechanism.links):
         shapes = body(painter.scene, painter.window, name)
@@ -98,18 +98,18 @@ def in_layers(painter: Painter, *, grounded: bool = True) -> list[Laid]:
 
 
 def by_links(laid: Iterable[Laid]) -> list[Shape]:
-    """Shapes in their order, those of one link that follow each other as a group of that link."""
+    """Return shapes in their order, those of one link that follow each other as a group of that link."""
     runs = groupby(laid, key=lambda one: one.link)
     return [ShapeGroup(tuple(one.shape for one in run), links=(link,)) for link, run in runs]
 
 
 def ghost(scene: Scene, window: Window) -> ShapeGroup:
-    """A scene drawn faintly."""
+    """Draw a scene faintly."""
     return ShapeGroup(tuple(layered(Painter(scene, window), grounded=False)), "ghost")
 
 
 def path(scene: Scene, window: Window, letter: str) -> list[Shape]:
-    """The path of a point along the motion, on the picture."""
+    """Return the path of a point along the motion, on the picture."""
     return [Polyline(window.line(smooth(thinned(p))), "path") for p in scene.path(letter) if len(p) > 1]
 
 
@@ -175,7 +175,7 @@ def _finished(
 
 
 def asked_paths(scene: Scene, paths: Any) -> tuple[str, ...]:
-    """The letters of points whose paths are asked for; raises UnknownName."""
+    """Return the letters of points whose paths are asked for; raises UnknownName."""
     carriers = scene.mechanism.carriers
     if paths is True:
         return tuple(letter for letter, links in carriers.items() if len(links) == 1 and "frame" not in links)
@@ -195,7 +195,7 @@ def _ghosts(scene: Scene, ghosts: Any) -> list[Scene]:
 
 
 def asked_labels(labels: Any) -> tuple[str, ...]:
-    """What is to be labelled; raises InvalidInput for what cannot be."""
+    """Tell what is to be labelled; raises InvalidInput for what cannot be."""
     if isinstance(labels, bool):
         return LABELS if labels else ()
     names = (labels,) if isinstance(labels, str) else tuple(labels)

@@ -57,23 +57,23 @@ class Painter:
     outer: frozenset[str] = frozenset()  # the letters of the pairs by which those are attached
 
     def shows(self, link: str) -> bool:
-        """Whether a link is drawn."""
+        """Tell whether a link is drawn."""
         return self.only is None or link in self.only
 
     def place(self, link: str, p: Any) -> complex:
-        """Where a point of a link is on the picture."""
+        """Tell where a point of a link is on the picture."""
         return complex(self.window.at(self.scene.at(link, p)))
 
     def line(self, link: str, points: Any) -> tuple[complex, ...]:
-        """A line of a link on the picture."""
+        """Return a line of a link on the picture."""
         return self.window.line(self.scene.here[link].at(points).c[0])
 
     def along(self, link: str, e: Any) -> complex:
-        """A direction of a link on the picture."""
+        """Return a direction of a link on the picture."""
         return direction(np.conjugate(self.scene.turned(link, e)))
 
     def style(self, kind: str, link: str) -> str:
-        """The style of a shape that belongs to a link; the frame has its own."""
+        """Return the style of a shape that belongs to a link; the frame has its own."""
         if link != FRAME:
             return style_of(kind, self.scene.groups[link])
         return {"plate": "frame-face frame", "track": "frame-track"}.get(kind, "frame")
@@ -89,21 +89,21 @@ class Painter:
         return frozenset(step.pair.name for step in self.scene.driven)
 
     def is_cylinder(self, seen: Seen) -> bool:
-        """Whether a slide is drawn as a cylinder: where it is driven between two moving links."""
+        """Tell whether a slide is drawn as a cylinder: where it is driven between two moving links."""
         return FRAME not in seen.members and seen.pair.name in self.driven
 
     def is_rod(self, seen: Seen) -> bool:
-        """Whether a slide is drawn as a rod through a block: where the link with the guide has but one point."""
+        """Tell whether a slide is drawn as a rod through a block: where the link with the guide has but one point."""
         guide, block = (len(self.scene.points[name]) for name in seen.members)
         return seen.members[0] != FRAME and guide == 1 and block > 1
 
     def block_at(self, link: str, middle: complex, along: complex) -> Laid:
-        """A block."""
+        """Draw a block."""
         style = "pin frame" if link == FRAME else f"pin {style_of('ring', self.scene.groups[link])}"
         return Laid(Layer.BLOCK, Polygon(box(middle, along, *BLOCK), style), link)
 
     def stub(self, link: str, foot: complex) -> Iterator[Laid]:
-        """A bar from a place to the nearest point of its link, where it is none of them."""
+        """Draw a bar from a place to the nearest point of its link, where it is none of them."""
         own = [self.place(link, p) for p in self.scene.points[link].values()]
         nearest = min(own, key=lambda p: abs(p - foot), default=foot)
         if link != FRAME and abs(nearest - foot) > PIN:
@@ -111,7 +111,7 @@ class Painter:
 
 
 def sliding(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
-    """A block on its guide; a driven one between moving links is a cylinder with its rod."""
+    """Draw a block on its guide; a driven one between moving links is a cylinder with its rod."""
     guide, block = seen.members
     if not (painter.shows(guide) and painter.shows(block)):
         yield from _half(painter, seen, mark)
@@ -138,14 +138,14 @@ def _half(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
 
 
 def rod_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
-    """The two ends of a rod that runs through a block."""
+    """Return the two ends of a rod that runs through a block."""
     ends = [painter.place(link, mark.block - mark.turn * s) for s in (mark.low, mark.high)]
     e = painter.along(link, mark.turn)
     return _spanned((ends[1] - e * BEYOND, ends[0] + e * BEYOND, painter.place(link, mark.block)), e)
 
 
 def guide_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
-    """The two ends of a guide on a moving link: from where it starts there as far as the block goes."""
+    """Return the two ends of a guide on a moving link: from where it starts there as far as the block goes."""
     e = painter.along(link, mark.along)
     span = min(mark.low, 0.0), max(mark.high, 0.0)
     start, stop = (painter.place(link, mark.at + mark.along * s) for s in span)

@@ -39,7 +39,7 @@ SAME = 1e-9
 
 
 def groups_picture(scene: Scene, size: float | None) -> Picture:
-    """The picture of all parts in solving order, each in its own colour."""
+    """Draw all parts in solving order, each in its own colour."""
     first = window_on(scene)
     whole = Window(
         first.scale * PART_OF_SKETCH, first.corner, first.width * PART_OF_SKETCH, first.height * PART_OF_SKETCH
@@ -58,12 +58,12 @@ def groups_picture(scene: Scene, size: float | None) -> Picture:
 
 
 def heading(group: Group) -> str:
-    """What a group is called: its class and the letters of its pairs."""
+    """Tell what a group is called: its class and the letters of its pairs."""
     return f"class {roman(group.class_)}: {group.name}"
 
 
 def outer_letters(group: Group) -> frozenset[str]:
-    """The points of the pairs by which a group is attached to what stands before it."""
+    """Return the points of the pairs by which a group is attached to what stands before it."""
     return frozenset(letter for pair in group.outer for letter in pair.letters[:1])
 
 
@@ -94,7 +94,7 @@ def _shifted(label: Label, by: complex) -> Label:
 
 
 def loops(scene: Scene, size: float | None) -> Picture:
-    """The picture of all independent loops of a mechanism at a pose, a panel each."""
+    """Draw all independent loops of a mechanism at a pose, a panel each."""
     first = window_on(scene)
     scale = min(SMALLER, _longest(scene.structure) / max(first.width, first.height))
     whole = Window(first.scale * scale, first.corner, first.width * scale, first.height * scale)
@@ -113,7 +113,7 @@ def loops(scene: Scene, size: float | None) -> Picture:
 
 
 def loops_in_graph(structure: Structure, size: float | None) -> Picture:
-    """As `loops`, in the kinematic graph: of a mechanism that is not drawn and cannot be solved."""
+    """Do as `loops`, in the kinematic graph: of a mechanism that is not drawn and cannot be solved."""
     numbers, groups = numbers_of(structure), groups_of(structure)
     spots = np.array(spread(list(numbers), structure.pairs))
     wide, tall = float(np.ptp(spots.real)), float(np.ptp(spots.imag))
@@ -133,7 +133,7 @@ def loops_in_graph(structure: Structure, size: float | None) -> Picture:
 
 
 def polygon(scene: Scene, loop: Loop) -> list[Corner]:
-    """The corners of a loop's polygon at a pose, in the mechanism's plane.
+    """Return the corners of a loop's polygon at a pose, in the mechanism's plane.
 
     On each link a vector leads from pair to pair; across a pair that is no pin, from its point on one link to that on
     the next.

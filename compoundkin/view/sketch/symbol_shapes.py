@@ -25,7 +25,7 @@ ONE = 1.0
 
 
 def marks(painter: Painter) -> Iterator[Laid]:
-    """All marks that are shown, a wheel that several pairs share once."""
+    """Return all marks that are shown, a wheel that several pairs share once."""
     drawn: list[tuple[str, complex, float]] = []
     for seen in painter.scene.seen:
         if not isinstance(seen.mark, Sliding) and not painter.shows(seen.members[seen.mark.member]):

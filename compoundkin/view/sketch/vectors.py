@@ -45,7 +45,7 @@ class VectorScale:
 
 
 def wanted(vectors: str | Sequence[str] | None) -> tuple[str, ...]:
-    """The kinds of vectors asked for; raises InvalidInput for others.
+    """Return the kinds of vectors asked for; raises InvalidInput for others.
 
     >>> wanted("velocity")
     ('velocity',)
@@ -59,7 +59,7 @@ def wanted(vectors: str | Sequence[str] | None) -> tuple[str, ...]:
 
 
 def rates_of(scene: Scene, kind: str) -> dict[str, complex]:
-    """The vectors of all points but those of the frame; raises InvalidInput where the motion has none."""
+    """Return the vectors of all points but those of the frame; raises InvalidInput where the motion has none."""
     order = KINDS_OF_VECTOR[kind][0]
     if scene.shown is None:
         what = "a mechanism that is shown as drawn has no motion"
@@ -71,7 +71,7 @@ def rates_of(scene: Scene, kind: str) -> dict[str, complex]:
 
 
 def scale_of(kind: str, rates: Mapping[str, complex], length: float, unit: str) -> VectorScale | None:
-    """The scale at which the longest vector is at most so long, in picture units; None where nothing moves."""
+    """Return the scale at which the longest vector is at most so long, in picture units; None where nothing moves."""
     largest = max(map(abs, rates.values()), default=0.0)
     if largest <= 0:
         return None
@@ -81,7 +81,7 @@ def scale_of(kind: str, rates: Mapping[str, complex], length: float, unit: str) 
 
 
 def round_below(value: float) -> float:
-    """The greatest of 1, 2, 5 times a power of ten that is no more than a value.
+    """Return the greatest of 1, 2, 5 times a power of ten that is no more than a value.
 
     >>> round_below(37.0), round_below(0.05)
     (20.0, 0.05)
@@ -92,7 +92,7 @@ def round_below(value: float) -> float:
 
 
 def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], scale: VectorScale) -> list[Shape]:
-    """An arrow for each vector that is long enough to be seen."""
+    """Return an arrow for each vector that is long enough to be seen."""
     found: list[Shape] = []
     for letter, rate in rates.items():
         way = complex(np.conjugate(rate)) * scale.per_unit
@@ -103,7 +103,7 @@ def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], s
 
 
 def scale_shapes(scale: VectorScale, height: float) -> list[Shape]:
-    """What states the scale: an arrow of the round amount, at a height of the picture."""
+    """Tell what states the scale: an arrow of the round amount, at a height of the picture."""
     length = scale.amount * scale.per_unit
     line = arrow(complex(16.0, height), complex(16.0 + length, height), scale.kind)
     return [*line, Text(complex(24.0 + length, height), f"{scale.kind}, {scale.text}", "note", "start")]
