@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from functools import cached_property
 from importlib import import_module
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -48,16 +49,30 @@ class ShowsPicture(Shows):
         return made
 
 
-# So many entries of a mapping or a tuple are printed; of more, their number.
-_PRINTED = 4
+# So many entries of a mapping or a tuple are printed; of more, their number. Of parts and of the whole so many letters.
+_PRINTED, _OF_PARTS, _OF_ALL = 4, 80, 400
 
 
 class PrintsShort:
-    """A dataclass that prints its arrays as their shapes, and long mappings and tuples as their lengths."""
+    """A dataclass that prints its arrays as their shapes, what is long as its length or its class."""
+
+    __slots__ = ()
 
     def __repr__(self) -> str:
-        told = (f"{field.name}={short(getattr(self, field.name))}" for field in fields(self))  # type: ignore[arg-type]
-        return f"{type(self).__name__}({', '.join(told)})"
+        told = ""
+        for name in _parts(self):
+            part = f"{', ' if told else ''}{name}={short(getattr(self, name))}"
+            if len(told) + len(part) > _OF_ALL:
+                return f"{type(self).__name__}({told}, ...)"
+            told += part
+        return f"{type(self).__name__}({told})"
+
+
+def _parts(thing: Any) -> list[str]:
+    """What is told of an object: its fields, or where it is no dataclass its members, by their names."""
+    if is_dataclass(thing):
+        return [field.name for field in fields(thing) if field.repr]
+    return [name for name in getattr(thing, "__slots__", None) or vars(thing) if not name.startswith("_")]
 
 
 def short(value: Any) -> str:
@@ -65,13 +80,16 @@ def short(value: Any) -> str:
 
     >>> short(np.zeros((2, 360))), short((1, 2)), short(range(9)), short(tuple(range(9)))
     ('array (2, 360)', '(1, 2)', 'range(0, 9)', '9 values')
+    >>> short(["word"] * 30), short(short)
+    ('list(...)', 'function(...)')
     """
     if isinstance(value, np.ndarray):
         return f"array {value.shape}"
     if isinstance(value, Mapping):
-        inside = ", ".join(f"{key}: {short(one)}" for key, one in value.items())
-        return f"{{{inside}}}" if len(value) <= _PRINTED else f"{len(value)} entries"
+        inside = ", ".join(f"{key}: {short(one)}" for key, one in islice(value.items(), _PRINTED + 1))
+        return f"{{{inside}}}" if len(value) <= _PRINTED and len(inside) < _OF_PARTS else f"{len(value)} entries"
     if type(value) is tuple:
-        inside = ", ".join(map(short, value)) + ("," if len(value) == 1 else "")
-        return f"({inside})" if len(value) <= _PRINTED else f"{len(value)} values"
-    return repr(value)
+        inside = ", ".join(map(short, value[: _PRINTED + 1])) + ("," if len(value) == 1 else "")
+        return f"({inside})" if len(value) <= _PRINTED and len(inside) < _OF_PARTS else f"{len(value)} values"
+    text = repr(value)
+    return text if len(text) <= _OF_PARTS and " at 0x" not in text else f"{type(value).__name__}(...)"

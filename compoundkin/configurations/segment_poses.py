@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arrays import Number, column
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Series, constant
 from compoundkin.configurations.segments import NONE, TOUCHING, Segments
 from compoundkin.kinematics.block import Block
@@ -20,8 +21,8 @@ from compoundkin.kinematics.solving_order import SolvingOrder, run
 from compoundkin.model.pairs.contract import Ends
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, repr=False)
+class Sweep(PrintsShort):
     """A plan, the dimensions of one design, the values of all drivers but one."""
 
     plan: SolvingOrder
@@ -78,8 +79,8 @@ def drawn_angle(plan: SolvingOrder, link: str) -> Number:
     return 0.0 if drawn is None else drawn.angle.c[0]
 
 
-@dataclass(frozen=True)
-class SegmentPoses:
+@dataclass(frozen=True, repr=False)
+class SegmentPoses(PrintsShort):
     """All segments of a mechanism, and what makes poses of them."""
 
     sweep: Sweep

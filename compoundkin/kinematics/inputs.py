@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
@@ -18,8 +19,8 @@ from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
 from compoundkin.model.pairs.contract import Ends
 
 
-@dataclass(frozen=True)
-class Inputs:
+@dataclass(frozen=True, repr=False)
+class Inputs(PrintsShort):
     """All numbers of a solution. Every entry is a number, or an array of shape (1 or designs, 1 or poses).
 
     `ends` are the pairs' dimensions; `drives[name]` the value, speed, acceleration and jerk of a driver.
@@ -96,8 +97,8 @@ class Inputs:
         return replace(self, ends=ends, drives={k: tuple(change(v) for v in vs) for k, vs in self.drives.items()})
 
 
-@dataclass(frozen=True)
-class PoseGrid:
+@dataclass(frozen=True, repr=False)
+class PoseGrid(PrintsShort):
     """How a motion shows its numbers: its shape, the order it was solved to, and which poses do not close."""
 
     shape: tuple[int, ...]

@@ -80,7 +80,7 @@ class Motion(ShowsPicture):
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
         """The motion of every link by its name."""
-        return Named("link", tuple(self.mechanism.links), lambda name: LinkMotion(self.grid, self.poses[name]))
+        return Named("link", tuple(self.mechanism.links), lambda name: LinkMotion(self.grid, self.poses[name], name))
 
     @cached_property
     def pairs(self) -> Mapping[str, PairMotion]:
@@ -148,7 +148,7 @@ class Motion(ShowsPicture):
 
     def _point(self, name: str) -> PointMotion:
         link = self.mechanism.carriers[name][0]
-        return PointMotion(self.grid, self._derivative(link, name))
+        return PointMotion(self.grid, self._derivative(link, name), name)
 
     def _derivative(self, link: str, name: str) -> Any:
         pose = self.poses[link]

@@ -19,8 +19,8 @@ from compoundkin.model.geometry import vector
 class PointMotion:
     """The motion of a point: complex arrays of the motion's shape; `.xy` of each gives (..., 2)."""
 
-    def __init__(self, grid: PoseGrid, derivative: Any) -> None:
-        self._grid = grid
+    def __init__(self, grid: PoseGrid, derivative: Any, name: str = "") -> None:
+        self._grid, self._name = grid, name
         self._derivative = derivative
 
     def derivative(self, k: int) -> Vectors:
@@ -64,12 +64,15 @@ class PointMotion:
         """The length of its velocity."""
         return np.abs(np.asarray(self.velocity))
 
+    def __repr__(self) -> str:
+        return told(self, self._grid, self._name)
+
 
 class LinkMotion:
     """The motion of a link: its angle from the frame's x axis, and that of any of its points."""
 
-    def __init__(self, grid: PoseGrid, pose: Pose) -> None:
-        self._grid = grid
+    def __init__(self, grid: PoseGrid, pose: Pose, name: str = "") -> None:
+        self._grid, self._name = grid, name
         self._pose = pose
 
     @cached_property
@@ -112,6 +115,9 @@ class LinkMotion:
         p = self._grid.fitted(vector("point", point))
         return PointMotion(self._grid, lambda k: self._pose.derivative(p, k))
 
+    def __repr__(self) -> str:
+        return told(self, self._grid, self._name)
+
 
 class PairMotion:
     """The free relative coordinate of a pair: an angle (radians, unwrapped) or a displacement, and its rates."""
@@ -152,6 +158,9 @@ class PairMotion:
         """Its third time derivative."""
         return self.derivative(3)
 
+    def __repr__(self) -> str:
+        return told(self, self._grid, "angle" if self.is_angle else "displacement")
+
 
 class Named(Mapping[str, Any]):
     """Entries made when they are asked for; an unknown name raises UnknownName with the nearest known."""
@@ -175,3 +184,13 @@ class Named(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._names)
+
+    def __repr__(self) -> str:
+        more = f", ... {len(self)} in all" if len(self) > 6 else ""
+        return f"Named({self._kind}: {', '.join(self._names[:6])}{more})"
+
+
+def told(part: object, grid: PoseGrid, name: str) -> str:
+    """Return what is told of a part of a motion in short: its name, shape and order."""
+    named = f"{name}: " if name else ""
+    return f"{type(part).__name__}({named}{grid.shape} poses to order {grid.order})"

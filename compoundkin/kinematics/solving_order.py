@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
@@ -20,7 +21,7 @@ from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import Body, DrivenPair
 
 
-class SolvingOrder:
+class SolvingOrder(PrintsShort):
     """What solves a structure, in order: the driven links of the frame, then the solvers of its groups."""
 
     def __init__(self, structure: Structure) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import approach, recounted
 from compoundkin.kinematics.block import Block
@@ -21,7 +22,7 @@ from compoundkin.kinematics.sampling import CLOSE
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 
 
-class Tracker:
+class Tracker(PrintsShort):
     """Chooses and keeps the configuration of every group of a plan, for given inputs."""
 
     def __init__(

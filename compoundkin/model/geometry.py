@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
@@ -16,8 +17,8 @@ from compoundkin.base.series import Number, constant
 FRAME = "frame"
 
 
-@dataclass(frozen=True)
-class Geometry:
+@dataclass(frozen=True, repr=False)
+class Geometry(PrintsShort):
     """The points of links in their own frames, and the poses that are drawn.
 
     `points[link][name]` is complex, a number or an array; `drawn[link]` is a `Pose` of order 0.

@@ -12,7 +12,7 @@ from tests import catalog
 
 
 @pytest.fixture(scope="module")
-def six_bar() -> ck.Motion:
+def six_bar() -> ck.results.Motion:
     return catalog.motion("six-bar")
 
 
@@ -82,11 +82,11 @@ def test_beyond_the_order_solved_for_is_an_input_error(six_bar: ck.results.Motio
         quantity(six_bar, "G.jerk")
 
 
-def test_a_quantity_shows_itself_in_a_line(six_bar: ck.Motion) -> None:
+def test_a_quantity_shows_itself_in_a_line(six_bar: ck.results.Motion) -> None:
     assert repr(quantity(six_bar, "G.velocity")) == "Quantity('G.velocity', v(G), 73 vectors in mm/s)"
     assert repr(quantity(six_bar, "bar").shown) == "Quantity('bar', θ(bar), 73 values in deg)"
 
 
-def test_the_dimension_of_a_quantity_is_that_of_its_owner(six_bar: ck.Motion) -> None:
+def test_the_dimension_of_a_quantity_is_that_of_its_owner(six_bar: ck.results.Motion) -> None:
     found = {name: quantity(six_bar, name).dimension for name in ("G", "bar.angular_velocity", "slot.rate")}
     assert found == {"G": "length", "bar.angular_velocity": "angle", "slot.rate": "length"}

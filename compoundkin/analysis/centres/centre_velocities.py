@@ -43,8 +43,8 @@ class CentreVectors:
         return np.where(self.spread[c] * POOR <= 1.0, self.units[c], np.nan)
 
 
-@dataclass(frozen=True)
-class Velocities:
+@dataclass(frozen=True, repr=False)
+class Velocities(PrintsShort):
     """What the centres and the drivers' rates say. Arrays of the motion's shape, NaN where they say nothing.
 
     `twists[link]` (3, poses) in own coordinates relative to the frame; `conditioning[link]` is near 0 where rounding

@@ -23,13 +23,14 @@ from compoundkin.analysis.centres.derivation_steps import (
 from compoundkin.analysis.centres.known_centres import KnownCentres
 from compoundkin.analysis.centres.rate_sets import driver_rate_sets
 from compoundkin.analysis.centres.trial_position import trial_position
+from compoundkin.base.display import PrintsShort
 
 # Diagrams kept; each holds a few kilobytes.
 KEPT = 256
 
 
-@dataclass(frozen=True)
-class Derivation:
+@dataclass(frozen=True, repr=False)
+class Derivation(PrintsShort):
     """The order in which the centres of a circle diagram are found.
 
     `body[k]` is the first link of those that move as one with link k; rules speak of bodies. `moves` carry the

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.model.pairs.contract import Line
 
@@ -94,8 +95,8 @@ class OwnCoordinates:
         return out
 
 
-@dataclass(frozen=True)
-class PrimaryCentres:
+@dataclass(frozen=True, repr=False)
+class PrimaryCentres(PrintsShort):
     """The primary centres of a motion. Unit vectors (3, poses or 1), and the lengths they had before.
 
     A driver's rate times the length is the amplitude of its twist on the unit vector; `rates` holds these.

@@ -14,6 +14,7 @@ import numpy as np
 
 from compoundkin.analysis.equations.pair_terms import pair_terms
 from compoundkin.base.arrays import wrapped
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
@@ -45,8 +46,8 @@ STRAIGHT = 1e-9
 MOST_LOOPS = 200
 
 
-@dataclass(frozen=True, eq=False)
-class VectorLoop:
+@dataclass(frozen=True, eq=False, repr=False)
+class VectorLoop(PrintsShort):
     """A closed loop of links: the sum of its vectors is zero, in x and in y."""
 
     loop: Loop
@@ -91,6 +92,10 @@ class LoopEquations:
     def is_solvable(self) -> bool:
         """Whether there are as many equations as unknowns."""
         return self.equations == len(self.unknowns)
+
+    def __repr__(self) -> str:
+        title, loops = self.structure.mechanism.title, len(self.loops)
+        return f"LoopEquations({title!r}: {loops} loops, {self.equations} equations, {len(self.unknowns)} unknowns)"
 
 
 def loop_equations(mechanism: Mechanism | Structure) -> LoopEquations:

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.model.attributes import after_number
 from compoundkin.view.animation.timeline import times_of
@@ -53,8 +54,8 @@ class Gauge:
         return self.start + self.length * (self.values - low) / (span or 1.0)
 
 
-@dataclass(frozen=True, eq=False)
-class Caption:
+@dataclass(frozen=True, eq=False, repr=False)
+class Caption(PrintsShort):
     """The lines below a moving sketch; the first of them change with the pose."""
 
     sketch: MovingSketch

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
@@ -38,8 +39,8 @@ class TimelineLeg:
     way: int = 1
 
 
-@dataclass(frozen=True, eq=False)
-class Timeline:
+@dataclass(frozen=True, eq=False, repr=False)
+class Timeline(PrintsShort):
     """The legs of an animation in their order; `returns` where it ends as it begins, and `seconds` how long it takes.
 
     `hold` is for how long a frame is shown, `frames` the places of the frames in `poses` and `ways`.

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from compoundkin.base.display import PrintsShort
+
 Cell: TypeAlias = str | int | float | bool | tuple[float, ...] | None
 
 # How the cells of a column are written.
@@ -91,8 +93,8 @@ class Alert:
 Block: TypeAlias = Paragraph | FormulaBlock | TableBlock | StepBlock | Alert
 
 
-@dataclass(frozen=True)
-class Section:
+@dataclass(frozen=True, repr=False)
+class Section(PrintsShort):
     """A part of a report; `key` is its name in the JSON report."""
 
     key: str

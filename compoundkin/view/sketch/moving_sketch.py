@@ -9,6 +9,7 @@ from itertools import groupby
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
@@ -45,8 +46,8 @@ class MovingPart:
     is_label: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class MovingSketch:
+@dataclass(frozen=True, eq=False, repr=False)
+class MovingSketch(PrintsShort):
     """The sketch of a motion in one window for all its poses.
 
     `scene` is the pose shown first, `still` what is behind all parts and does not move, `parts` the others from back to

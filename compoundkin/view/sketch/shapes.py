@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 
 HATCH = 6.0  # distance of the strokes of a hatching
@@ -16,24 +17,24 @@ HEAD_HALF = 3.6
 SLANT = np.exp(2.4j)  # direction of a hatching as seen from its line
 
 
-@dataclass(frozen=True)
-class Polyline:
+@dataclass(frozen=True, repr=False)
+class Polyline(PrintsShort):
     """A line through points."""
 
     points: tuple[complex, ...]
     style: str
 
 
-@dataclass(frozen=True)
-class Polygon:
+@dataclass(frozen=True, repr=False)
+class Polygon(PrintsShort):
     """A closed line through points, filled as its style says."""
 
     points: tuple[complex, ...]
     style: str
 
 
-@dataclass(frozen=True)
-class Strokes:
+@dataclass(frozen=True, repr=False)
+class Strokes(PrintsShort):
     """Several lines of one style that belong together, such as a hatching."""
 
     lines: tuple[tuple[complex, ...], ...]
