@@ -56,7 +56,7 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     GIF needs CairoSVG and Pillow, MP4 the program ffmpeg too; SVG needs nothing and moves by itself in a browser. Poses
     that cannot be assembled are left out; stderr says why, and the exit code is 3.
     """
-    from compoundkin.kinematics.solvable import solvable
+    from compoundkin.kinematics.redundant_pairs import solvable
     from compoundkin.view.animation import animate
     from compoundkin.view.animation.animation import ready_for
 

@@ -42,7 +42,7 @@ def command(
     """
     from dataclasses import replace
 
-    from compoundkin.kinematics.solvable import solvable
+    from compoundkin.kinematics.redundant_pairs import solvable
     from compoundkin.view.report import Report, report
     from compoundkin.view.report.centres_section import derivation_section
     from compoundkin.view.report.motion_report import centres_report

@@ -34,7 +34,7 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     where it is worst are named.
     """
     from compoundkin.cli.progress import working
-    from compoundkin.kinematics.solvable import solvable
+    from compoundkin.kinematics.redundant_pairs import solvable
     from compoundkin.view.report import report
     from compoundkin.view.report.motion_report import check_report
 

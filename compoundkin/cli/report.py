@@ -59,7 +59,7 @@ def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, bool]:
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
-    from compoundkin.kinematics.solvable import solvable
+    from compoundkin.kinematics.redundant_pairs import solvable
     from compoundkin.view.report import report
 
     structure, design = solvable(loaded(file)), asked["design"]

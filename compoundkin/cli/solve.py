@@ -36,7 +36,7 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     """
     from compoundkin.files import save
     from compoundkin.files.table_files import csv_text
-    from compoundkin.kinematics.solvable import solvable
+    from compoundkin.kinematics.redundant_pairs import solvable
 
     if path is not None:
         form_of("table", path)

@@ -30,7 +30,7 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
-    from compoundkin.kinematics.solvable import solvable
+    from compoundkin.kinematics.redundant_pairs import solvable
     from compoundkin.view.report import report
 
     with working("taking the mechanism apart"):

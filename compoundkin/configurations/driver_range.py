@@ -15,7 +15,7 @@ from compoundkin.base.arrays import TURN, Number, first_entry, row
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.configurations.segment_poses import Sweep, drawn_angle
 from compoundkin.configurations.segments import Segments, driver_segment
-from compoundkin.kinematics.approach import approach
+from compoundkin.kinematics.approach import approach_path
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.groups import GroupSolver
@@ -160,5 +160,5 @@ def _drawn(plan: SolvingOrder, first: Mapping[str, float]) -> dict[str, float]:
     if not plan.structure.mechanism.sketch:
         return {}
     geometry = plan.structure.mechanism.geometry
-    lead, _, _ = approach(plan, inputs(plan, first, None, None, None), geometry.drawn, geometry.sketch)
-    return {name: float(first_entry(v[0])) for name, v in lead.drives.items()}
+    path, _, _ = approach_path(plan, inputs(plan, first, None, None, None), geometry.drawn, geometry.sketch)
+    return {name: float(first_entry(v[0])) for name, v in path.drives.items()}

@@ -1,30 +1,35 @@
-"""The way from the drawn pose to the motion: where the assembly modes are read off and carried from."""
+"""The approach path from the drawn pose to the motion, from which modes are carried; how far drivers go on a way."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, whole_turns
+from compoundkin.base.arrays import whole_turns
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.sampling import CLOSE, spacings
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.pairs.optional_answers import as_turn_counting
+
+# Samples lie at most so far apart: radians of a driver's angle, or parts of the size of its length.
+SPACING = np.pi / 36.0
+# No step of a driver is cut into more: a block may travel far on a mechanism whose own dimensions are tiny.
+MOST = 1000
+# Two places along the motion nearer than this part of a pose's distance are one: a double root is known to the
+# square root of rounding.
+CLOSE = 1e-6
 
 
-def approach(
+def approach_path(
     plan: SolvingOrder, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> tuple[Inputs, int, float]:
-    """The lead, from the drawn drivers to the motion's pose `at` nearest to them; `at`; and the home of the modes.
+    """Return the way from the drawn drivers to the motion's pose `at` nearest to them; `at`; and the reference.
 
-    The lead is one pose where the drawing shows no driver. The home is the place along the motion to which
-    the modes belong: just before `at` where the lead comes from before, else just after.
+    The approach path is one pose where the drawing shows no driver. The reference is the place along the motion to
+    which the modes belong: just before `at` where the path comes from before, else just after.
     """
-    shown = {name: _drawn_value(plan, given, name, drawn, sketch) for name in plan.driven}
+    shown = {name: drawn_value(plan, given, name, drawn, sketch) for name in plan.driven}
     values = {name: value for name, value in shown.items() if value is not None}
     at = _nearest(plan, given, values) if values else 0
     end = given.cut(slice(None), slice(at, at + 1))
@@ -36,62 +41,11 @@ def approach(
         ways[name] = way
     count = 1 + max((spacings(plan, name, way) for name, way in ways.items()), default=0)
     ramp = np.linspace(-1.0, 0.0, count)[None] if count > 1 else np.zeros((1, 1))
-    lead = end.driven({name: (rest[0] + ways[name] * ramp,) for name, rest in end.drives.items()})
-    return lead.of_poses(count), at, at + _side(given, at, ways) * CLOSE
+    path = end.driven({name: (rest[0] + ways[name] * ramp,) for name, rest in end.drives.items()})
+    return path.of_poses(count), at, at + _side(given, at, ways) * CLOSE
 
 
-def recounted(plan: SolvingOrder, ways: tuple[Inputs, ...], home: Inputs) -> tuple[Inputs, ...]:
-    """The motion and its lead with phases read off a drawing taken on by the turns that drivers have made at home.
-
-    A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
-    """
-    drawn, rounds = _as_drawn(plan, home)
-    turns = dict(_turns_at(plan, _counted_on(plan, drawn, rounds, {})))
-    return tuple(_counted_on(plan, way, rounds, turns) for way in ways)
-
-
-def _as_drawn(plan: SolvingOrder, home: Inputs) -> tuple[Inputs, dict[str, Number]]:
-    """The home with drivers as drawn, in the turn they are in at home; and that turn, by driven pair."""
-    rounds: dict[str, Number] = {}
-    for name, driven in plan.driven.items():
-        value = _drawn_value(plan, home, name, plan.structure.mechanism.geometry.drawn, {})
-        if value is None:
-            continue
-        if driven.pair.free_is_angle:
-            turns = np.round((home.drives[name][0] - value) / TURN)
-            rounds[driven.pair.name] = turns * driven.pair.driven_by(driven.drive.link)
-            value = value + TURN * turns
-        home = home.driven({**home.drives, name: (value,)})
-    return home, rounds
-
-
-def _counted_on(plan: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]) -> Inputs:
-    """A way with the phases of driven pairs taken on by their turns, those of others by the turns of their links."""
-    geometry = plan.structure.mechanism.geometry
-    ends = dict(way.ends)
-    for name, pair in plan.pairs.items():
-        ahead = tuple(turns.get(member, 0.0) for member in pair.members)
-        counting = as_turn_counting(pair)
-        if counting and name in rounds:
-            ends[name] = counting.with_driver_turns(ends[name], geometry, rounds[name])
-        elif counting and any(np.any(turn != 0.0) for turn in ahead):
-            ends[name] = counting.with_link_turns(ends[name], geometry, ahead)
-    return replace(way, ends=ends)
-
-
-def _turns_at(plan: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]:
-    """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
-    poses = plan.structure.mechanism.geometry.drawn
-    start = plan.start(drawn.ends, drawn.series(0), 0, (drawn.designs, 1))
-    for body in plan.bodies:
-        base = body.links[0]
-        for link in (link for link in body.links[1:] if link in poses and base in poses and link in plan.turning):
-            pose = start.world.get(link) or start.local[link]
-            gap = column(poses[base]).angle.c[0] + pose.angle.c[0] - column(poses[link]).angle.c[0]
-            yield link, np.round(gap / TURN)
-
-
-def _drawn_value(
+def drawn_value(
     plan: SolvingOrder, given: Inputs, name: str, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> Number | None:
     """The driver's coordinate as the drawing shows it, a number or (designs, 1); None where it does not."""
@@ -117,9 +71,9 @@ def _nearest(plan: SolvingOrder, given: Inputs, values: Mapping[str, Number]) ->
 
 
 def _side(given: Inputs, at: int, ways: Mapping[str, Number]) -> float:
-    """-1 where the lead reaches the motion's pose `at` in the direction of the motion, else +1."""
-    leads = given.poses > 1 and any(np.any(way != 0.0) for way in ways.values())
-    step = given.at(np.array([float(at)])).drives if leads else {}
+    """-1 where the approach path reaches the motion's pose `at` in the direction of the motion, else +1."""
+    moves = given.poses > 1 and any(np.any(way != 0.0) for way in ways.values())
+    step = given.at(np.array([float(at)])).drives if moves else {}
     along = sum(float(np.sum(np.sign(values[1] * ways[name]))) for name, values in step.items())
     return -1.0 if along > 0.0 else 1.0
 
@@ -136,3 +90,30 @@ def column(pose: Pose) -> Pose:
     """A pose at the first pose of each design."""
     theta = None if pose.theta is None else constant(first_of(pose.theta.c[0]))
     return Pose(constant(first_of(pose.z.c[0])), constant(first_of(pose.u.c[0])), theta)
+
+
+def spacings(plan: SolvingOrder, name: str, way: Number) -> int:
+    """How many spacings the longest of some ways of a driver takes; 0 where it stands still."""
+    return max(0, int(np.ceil(min(_spacings(plan, name, way) - CLOSE, MOST))))
+
+
+def between(plan: SolvingOrder, given: Inputs) -> int:
+    """How many spacings the longest step of a driver from one pose of a motion to the next takes."""
+    return max((spacings(plan, name, steps) for name, steps in _steps(given)), default=0)
+
+
+def pace(plan: SolvingOrder, given: Inputs) -> float:
+    """How many spacings the longest step of a driver from one pose to the next is, as a fraction."""
+    return max((_spacings(plan, name, steps) for name, steps in _steps(given)), default=0.0)
+
+
+def _spacings(plan: SolvingOrder, name: str, way: Number) -> float:
+    size = 1.0 if plan.driven[name].pair.free_is_angle else plan.size
+    return float(np.max(np.abs(way))) / size / SPACING
+
+
+def _steps(given: Inputs) -> Iterator[tuple[str, Number]]:
+    """The steps of every driver that moves."""
+    for name, (value, *_) in given.drives.items():
+        if np.ndim(value) > 1 and np.shape(value)[-1] > 1:
+            yield name, np.diff(value, axis=-1)

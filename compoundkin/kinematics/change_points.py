@@ -17,9 +17,9 @@ from compoundkin.base.arrays import column
 from compoundkin.base.bracketing import least
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
+from compoundkin.kinematics.approach import CLOSE, between
 from compoundkin.kinematics.block import blocks, places
 from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.sampling import CLOSE, between
 from compoundkin.kinematics.tracking import Tracker
 
 # Margins (squared sines) below this between poses five degrees apart may have a zero between them.
@@ -38,15 +38,15 @@ BLOCK = 4096
 
 @dataclass(frozen=True)
 class _Way:
-    """A way that is searched: samples near enough to each other, `unit` places apart, of the lead or the motion."""
+    """The approach path or the motion, searched at samples near enough to each other, `unit` places apart."""
 
     samples: Inputs
     unit: float
-    lead: bool
+    on_approach: bool
 
     def margins(self, tracker: Tracker, part: Inputs, s: Number, designs: Number, upto: int) -> Mapping[int, Number]:
         """The margins of all groups up to one, at samples `s` of a part of the way."""
-        return tracker.run(part, 0, s * self.unit, designs, upto, self.lead).margins
+        return tracker.run(part, 0, s * self.unit, designs, upto, self.on_approach).margins
 
     def blocks(self) -> Iterator[tuple[slice, slice, Inputs, Number, Number]]:
         """The way in blocks: designs, samples, their inputs, places and design indices."""
@@ -55,11 +55,11 @@ class _Way:
 
 
 def near_groups(tracker: Tracker) -> set[int]:
-    """The groups that come near a limit position on the lead, or between the poses of a coarse motion."""
+    """The groups that come near a limit position on the approach path, or between the poses of a coarse motion."""
     found: set[int] = set()
     upto = 1 + max((k for k, solver in enumerate(tracker.plan.solvers) if solver.modes_may_meet), default=-1)
     for way in _ways(tracker) if upto else ():
-        if way.lead or way.unit < 1.0:
+        if way.on_approach or way.unit < 1.0:
             for _, _, part, s, designs in way.blocks():
                 margins = way.margins(tracker, part, s, designs, upto)
                 found |= {k for k, margin in margins.items() if np.any(margin < NEAR)}
@@ -81,7 +81,7 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
     for way, spots in found:
         here = spots.groups == first
         if here.any():
-            flips = tracker.lead_flips if way.lead else tracker.flips
+            flips = tracker.approach_flips if way.on_approach else tracker.flips
             flips[first] = _padded(spots.designs[here], spots.places[here], tracker.given.designs)
     tracker.flips.setdefault(first, np.full((tracker.given.designs, 1), np.inf))
     if tracker.plan.numbered or tracker.turns:
@@ -100,13 +100,13 @@ def _sampled(way: _Way, tracker: Tracker, groups: Sequence[int]) -> dict[int, Nu
 
 
 def _ways(tracker: Tracker) -> Iterator[_Way]:
-    """The lead, and the motion with samples put between poses that are far apart; none of a single pose."""
-    if tracker.lead.poses > 1:
-        yield _Way(tracker.lead, 1.0, lead=True)
+    """The approach path, and the motion with samples put between poses that are far apart; none of a single pose."""
+    if tracker.approach_path.poses > 1:
+        yield _Way(tracker.approach_path, 1.0, on_approach=True)
     given = tracker.given
     if given.poses > 1:
         per_pose = max(1, between(tracker.plan, given))
-        yield _Way(given.refined(per_pose), 1.0 / per_pose, lead=False)
+        yield _Way(given.refined(per_pose), 1.0 / per_pose, on_approach=False)
 
 
 def rates_at(given: Inputs, tracker: Tracker, order: int) -> tuple[Number, Number, Mapping[str, Pose]]:

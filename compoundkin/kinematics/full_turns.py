@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compoundkin.base.arrays import whole_turns
+from compoundkin.base.arrays import TURN, whole_turns
 from compoundkin.base.series import Number
-from compoundkin.kinematics.approach import column
+from compoundkin.kinematics.approach import between, column, drawn_value
 from compoundkin.kinematics.block import blocks, places
 from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.sampling import between
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.pairs.optional_answers import as_turn_counting
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.tracking import Tracker
@@ -27,42 +29,42 @@ BLOCK = 4096
 
 @dataclass(frozen=True)
 class Turns:
-    """A link's angle at samples of the lead and of the motion, (designs, samples), `per_pose` a pose."""
+    """A link's angle at samples of the approach path and of the motion, (designs, samples), `per_pose` a pose."""
 
-    lead: Number
+    approach: Number
     motion: Number
     per_pose: int
 
-    def near(self, designs: Number, s: Number, lead: bool) -> Number:
-        """About the angle at places `s` along the motion, or along the lead to it: right to less than half a turn."""
-        samples = self.lead if lead else self.motion
-        at = np.rint(s * (1 if lead else self.per_pose)).astype(int)
+    def near(self, designs: Number, s: Number, on_approach: bool) -> Number:
+        """Return the angle, right to less than half a turn, at places along the motion or the approach path."""
+        samples = self.approach if on_approach else self.motion
+        at = np.rint(s * (1 if on_approach else self.per_pose)).astype(int)
         return samples[designs, np.clip(at, 0, samples.shape[1] - 1)]
 
 
 def turns_of(tracker: Tracker, k: int, link: str) -> Turns:
-    """Follow the angle of a link of group `k` from home, where it is nearest to the drawn one or between -pi and pi."""
+    """Follow the angle of a link of group `k` from the first pose, where it is nearest to the drawn one or to zero."""
     given = tracker.given
-    on_lead = _angles(tracker, k, link, tracker.lead, 1.0, lead=True)
+    before = _angles(tracker, k, link, tracker.approach_path, 1.0, on_approach=True)
     drawn = tracker.plan.structure.mechanism.geometry.drawn.get(link)
-    first = on_lead[:, 0] if drawn is None else np.ravel(column(drawn).angle.c[0])
-    on_lead = _unwrapped(on_lead, 0, first)
+    first = before[:, 0] if drawn is None else np.ravel(column(drawn).angle.c[0])
+    before = _unwrapped(before, 0, first)
     per_pose = max(1, between(tracker.plan, given))
     for _ in range(DOUBLINGS):
-        angles = _angles(tracker, k, link, given.refined(per_pose), 1.0 / per_pose, lead=False)
-        found = _unwrapped(angles, tracker.at * per_pose, on_lead[:, -1])
+        angles = _angles(tracker, k, link, given.refined(per_pose), 1.0 / per_pose, on_approach=False)
+        found = _unwrapped(angles, tracker.at * per_pose, before[:, -1])
         if np.max(np.abs(np.diff(found, axis=1)), initial=0.0) <= FARTHEST:
             break
         per_pose *= 2
-    return Turns(on_lead, found, per_pose)
+    return Turns(before, found, per_pose)
 
 
-def _angles(tracker: Tracker, k: int, link: str, way: Inputs, unit: float, lead: bool) -> Number:
+def _angles(tracker: Tracker, k: int, link: str, way: Inputs, unit: float, on_approach: bool) -> Number:
     """A link's orientation at every sample of a way, which are `unit` places apart."""
     found = np.empty((way.designs, way.poses))
     for d, m in blocks(way.designs, way.poses, BLOCK):
         s, designs = places(d, m)
-        block = tracker.run(way.cut(d, m), 0, s * unit, designs, k + 1, lead)
+        block = tracker.run(way.cut(d, m), 0, s * unit, designs, k + 1, on_approach)
         found[d, m] = np.angle(block.world[link].u.c[0])
     return found
 
@@ -74,3 +76,54 @@ def _unwrapped(angles: Number, start: int, first: Number) -> Number:
     held = np.take_along_axis(angles, np.where(last < 0, known.argmax(axis=1)[:, None], last), axis=1)
     out = np.unwrap(np.nan_to_num(held), axis=1)
     return out + whole_turns(np.nan_to_num(first - out[:, start]))[:, None]
+
+
+def recounted(plan: SolvingOrder, ways: tuple[Inputs, ...], pose: Inputs) -> tuple[Inputs, ...]:
+    """The motion and its approach path, phases read off a drawing taken on by the turns that drivers have made.
+
+    A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
+    """
+    drawn, rounds = _as_drawn(plan, pose)
+    turns = dict(_turns_at(plan, _counted_on(plan, drawn, rounds, {})))
+    return tuple(_counted_on(plan, way, rounds, turns) for way in ways)
+
+
+def _as_drawn(plan: SolvingOrder, pose: Inputs) -> tuple[Inputs, dict[str, Number]]:
+    """The reference pose with drivers as drawn, in the turn they are in there; and that turn, by driven pair."""
+    rounds: dict[str, Number] = {}
+    for name, driven in plan.driven.items():
+        value = drawn_value(plan, pose, name, plan.structure.mechanism.geometry.drawn, {})
+        if value is None:
+            continue
+        if driven.pair.free_is_angle:
+            turns = np.round((pose.drives[name][0] - value) / TURN)
+            rounds[driven.pair.name] = turns * driven.pair.driven_by(driven.drive.link)
+            value = value + TURN * turns
+        pose = pose.driven({**pose.drives, name: (value,)})
+    return pose, rounds
+
+
+def _counted_on(plan: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]) -> Inputs:
+    """A way with the phases of driven pairs taken on by their turns, those of others by the turns of their links."""
+    geometry = plan.structure.mechanism.geometry
+    ends = dict(way.ends)
+    for name, pair in plan.pairs.items():
+        ahead = tuple(turns.get(member, 0.0) for member in pair.members)
+        counting = as_turn_counting(pair)
+        if counting and name in rounds:
+            ends[name] = counting.with_driver_turns(ends[name], geometry, rounds[name])
+        elif counting and any(np.any(turn != 0.0) for turn in ahead):
+            ends[name] = counting.with_link_turns(ends[name], geometry, ahead)
+    return replace(way, ends=ends)
+
+
+def _turns_at(plan: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]:
+    """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
+    poses = plan.structure.mechanism.geometry.drawn
+    start = plan.start(drawn.ends, drawn.series(0), 0, (drawn.designs, 1))
+    for body in plan.bodies:
+        base = body.links[0]
+        for link in (link for link in body.links[1:] if link in poses and base in poses and link in plan.turning):
+            pose = start.world.get(link) or start.local[link]
+            gap = column(poses[base]).angle.c[0] + pose.angle.c[0] - column(poses[link]).angle.c[0]
+            yield link, np.round(gap / TURN)

@@ -10,10 +10,10 @@ import numpy as np
 
 from compoundkin.base.continuation import StepLengths, Taken, follow
 from compoundkin.base.series import Number
+from compoundkin.kinematics.approach import CLOSE, pace
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.sampling import CLOSE, pace
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.tracking import Tracker
@@ -67,11 +67,11 @@ class GroupPath:
 
 
 def track(tracker: Tracker, k: int, equations: GroupEquations, state: Number) -> tuple[GroupPath, GroupPath]:
-    """Follow group `k` along the lead to the motion, then from there to both ends of the motion."""
-    given, lead, at = tracker.given, tracker.lead, tracker.at
+    """Follow group `k` along the approach path to the motion, then from there to both ends of the motion."""
+    given, approach, at = tracker.given, tracker.approach_path, tracker.at
     alive = np.isfinite(state).all(axis=(1, 2))
-    stops = np.arange(lead.poses, dtype=float)
-    first = _March(tracker, k, equations, lead.at, state, alive, lead=True).go(stops)
+    stops = np.arange(approach.poses, dtype=float)
+    first = _March(tracker, k, equations, approach.at, state, alive, on_approach=True).go(stops)
     state, alive = first.state, first.alive
     ahead = _March(tracker, k, equations, given.at, state, alive).go(np.arange(at, given.poses, dtype=float))
     back = _March(tracker, k, equations, given.before, state, alive).go(np.arange(at, -1, -1, dtype=float))
@@ -105,16 +105,18 @@ class _March:
         along: Callable[[Number], Inputs],
         state: Number,
         alive: Number,
-        lead: bool = False,
+        on_approach: bool = False,
     ) -> None:
-        self.tracker, self.k, self.equations, self.along, self.lead = tracker, k, equations, along, lead
+        self.tracker, self.k, self.equations, self.along, self.on_approach = tracker, k, equations, along, on_approach
         self.state = state
         self.alive = alive
         self.s: list[float] = []
         self.states: list[Number] = []
         self.slopes: list[Number] = []
         self.reached = np.zeros(len(state))
-        self.longest = SPACINGS / max(pace(tracker.plan, tracker.lead if lead else tracker.given), SLOWEST)
+        self.longest = SPACINGS / max(
+            pace(tracker.plan, tracker.approach_path if on_approach else tracker.given), SLOWEST
+        )
 
     def go(self, stops: Number) -> _March:
         """Step from stop to stop; stops that lie within one stride of each other are passed over."""
@@ -156,7 +158,7 @@ class _March:
     def _block(self, s: float) -> Block:
         place = np.array([s])
         designs = np.arange(len(self.state))[:, None]
-        return self.tracker.run(self.along(place), len(MOVES), place[None], designs, self.k, self.lead)
+        return self.tracker.run(self.along(place), len(MOVES), place[None], designs, self.k, self.on_approach)
 
     def _rates(self, state: Number, block: Block) -> tuple[list[Number], Number]:
         """The state's coefficients by s, and on which side of a singularity the configuration is."""

@@ -18,8 +18,7 @@ from compoundkin.kinematics.configuration import Configuration, dimensions_at, n
 from compoundkin.kinematics.driver_values import by_name, inputs, times_of
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
-from compoundkin.kinematics.solvable import relaxed
+from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis, relaxed
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER

@@ -9,16 +9,15 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.kinematics.approach import approach, recounted
+from compoundkin.kinematics.approach import CLOSE, approach_path
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.first_pose import distance, first_state, shown
-from compoundkin.kinematics.full_turns import Turns, turns_of
+from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
 from compoundkin.kinematics.group_paths import GroupPath, track
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.limits import NEAREST
-from compoundkin.kinematics.sampling import CLOSE
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 
 
@@ -48,20 +47,22 @@ class Tracker(PrintsShort):
         self.shown_by = "configuration" if start else "hint" if hint else "drawing"
         self.signs: dict[int, Number] = {}
         self.paths: dict[int, GroupPath] = {}
-        self.leads: dict[int, GroupPath] = {}
+        self.approach_paths: dict[int, GroupPath] = {}
         # the angles of links, full turns counted, that pairs ask for and no driver tells
         self.turns: dict[str, Turns] = {}
         self.chosen_by: dict[int, str] = {}
-        # where along the lead and the motion each group passes through a change point, (designs, count), padded
-        self.lead_flips: dict[int, Number] = {}
+        # where along the approach path and the motion each group passes a change point, (designs, count), padded
+        self.approach_flips: dict[int, Number] = {}
         self.flips: dict[int, Number] = {}
         if from_first:
             self.drawn = {}
         sketch = {} if hint or from_first else geometry.sketch
-        self.lead, self.at, self.home = approach(plan, given, self.drawn, start.points if start else sketch)
+        self.approach_path, self.at, self.reference = approach_path(
+            plan, given, self.drawn, start.points if start else sketch
+        )
         if plan.turning and geometry.drawn:
-            home = self.lead.cut(slice(None), slice(0, 1))
-            self.given, self.lead = recounted(plan, (given, self.lead), home)
+            first = self.approach_path.cut(slice(None), slice(0, 1))
+            self.given, self.approach_path = recounted(plan, (given, self.approach_path), first)
         self.fixed = signs
         if self.sketch or plan.numbered or plan.turning:
             self.choose()
@@ -77,7 +78,7 @@ class Tracker(PrintsShort):
         s: Number,
         designs: Number,
         upto: int | None = None,
-        lead: bool = False,
+        on_approach: bool = False,
         doubles: Mapping[int, Number] | None = None,
     ) -> Block:
         """Solve a block of inputs, up to a group.
@@ -88,25 +89,25 @@ class Tracker(PrintsShort):
         """
         block = self.plan.start(part.ends, part.series(order), order, np.broadcast_shapes(s.shape, designs.shape))
         block.doubles = doubles or {}
-        return run(self.plan, block, _Kept(self, designs, s, lead), upto)
+        return run(self.plan, block, _Kept(self, designs, s, on_approach), upto)
 
-    def sign(self, k: int, designs: Number, s: Number, lead: bool = False) -> Number:
+    def sign(self, k: int, designs: Number, s: Number, on_approach: bool = False) -> Number:
         """Return the sign of a dyad's mode: it changes wherever the dyad passes a change point."""
         sign = self.signs[k]
         sign = sign if np.ndim(sign) == 0 else sign[designs, 0]
-        if k in self.lead_flips:
-            flips = self.lead_flips[k][designs]
-            sign = sign * _parity(flips < (s[..., None] if lead else self.lead.poses - 1 - CLOSE))
-        if k in self.flips and not lead:
+        if k in self.approach_flips:
+            flips = self.approach_flips[k][designs]
+            sign = sign * _parity(flips < (s[..., None] if on_approach else self.approach_path.poses - 1 - CLOSE))
+        if k in self.flips and not on_approach:
             flips = self.flips[k][designs]
-            sign = sign * _parity(flips < s[..., None]) * _parity(flips < self.home)
+            sign = sign * _parity(flips < s[..., None]) * _parity(flips < self.reference)
         return sign
 
     def choose(self) -> None:
         """Pass through the groups at the drawn pose, choosing; track those without a closed form."""
         self.turns = {}
-        home = self.lead.cut(slice(None), slice(0, 1))
-        run(self.plan, self.plan.start(home.ends, home.series(0), 0, (self.given.designs, 1), NEAREST), _First(self))
+        first = self.approach_path.cut(slice(None), slice(0, 1))
+        run(self.plan, self.plan.start(first.ends, first.series(0), 0, (self.given.designs, 1), NEAREST), _First(self))
 
 
 @dataclass(frozen=True)
@@ -116,19 +117,19 @@ class _Kept:
     tracker: Tracker
     designs: Number
     s: Number
-    lead: bool
+    on_approach: bool
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the tracked state, or the sign."""
         if solver.equations is not None:
-            paths = self.tracker.leads if self.lead else self.tracker.paths
+            paths = self.tracker.approach_paths if self.on_approach else self.tracker.paths
             return paths[solver.index].seeds(self.designs, self.s)
-        return self.tracker.sign(solver.index, self.designs, self.s, self.lead)
+        return self.tracker.sign(solver.index, self.designs, self.s, self.on_approach)
 
     def angle(self, solver: GroupSolver, link: str) -> Number | None:
         """Return what was counted along the way."""
         turns = self.tracker.turns.get(link)
-        return None if turns is None else turns.near(self.designs, self.s, self.lead)
+        return None if turns is None else turns.near(self.designs, self.s, self.on_approach)
 
 
 @dataclass(frozen=True)
@@ -146,13 +147,13 @@ class _First:
         number = tracker.fixed.get(k)
         state, by = first_state(tracker.plan, solver, block, tracker.sketch, number)
         tracker.chosen_by[k] = tracker.shown_by if by == "drawing" else by
-        tracker.leads[k], tracker.paths[k] = track(tracker, k, solver.equations, state)
+        tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, solver.equations, state)
         return state
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
         """Count the turns of a link from here on."""
         turns = self.tracker.turns[link] = turns_of(self.tracker, solver.index, link)
-        return turns.lead[:, :1]
+        return turns.approach[:, :1]
 
     def _sign(self, block: Block, solver: GroupSolver) -> tuple[Number, str]:
         """Return the mode whose points lie nearest to the drawn ones, and what chose it."""

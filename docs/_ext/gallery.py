@@ -11,7 +11,7 @@ from sphinx.application import Sphinx
 
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
-from compoundkin.kinematics.solvable import solvable
+from compoundkin.kinematics.redundant_pairs import solvable
 from compoundkin.structure import roman
 from compoundkin.synthesis.chains import structure_name
 from compoundkin.view.sketch.shown_pose import solved_over

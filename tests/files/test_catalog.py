@@ -20,7 +20,7 @@ from compoundkin.analysis.checks import verify
 from compoundkin.base.errors import InvalidInput, UnknownName
 from compoundkin.files import dumps, load, loads, schema, shipped_mechanisms
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.solvable import solvable
+from compoundkin.kinematics.redundant_pairs import solvable
 from compoundkin.model.elements import Expectation
 from compoundkin.model.mechanism import Mechanism
 

@@ -17,8 +17,7 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
-from compoundkin.kinematics.groups.contract import GroupSolver
-from compoundkin.kinematics.groups.mounted_body import side_of
+from compoundkin.kinematics.groups.contract import GroupSolver, side_of
 from compoundkin.kinematics.limits import Root, clipped_root
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import lower_equivalent

@@ -15,9 +15,8 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
-from compoundkin.kinematics.groups.contract import GroupSolver
+from compoundkin.kinematics.groups.contract import GroupSolver, MountedBody
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
-from compoundkin.kinematics.groups.mounted_body import MountedBody
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, lower_equivalent
 from compoundkin.model.pairs.profiled import Profiled, as_profiled

@@ -11,14 +11,16 @@ from compoundkin.base.linear import inverted
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
-from compoundkin.kinematics.groups.contract import GroupSolver
-from compoundkin.kinematics.groups.mounted_body import FLAT, MountedBody
+from compoundkin.kinematics.groups.contract import GroupSolver, MountedBody
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends, table
 from compoundkin.model.pairs.geared import as_geared
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, as_turn_counting
 from compoundkin.structure.parts import Body, Group
 
+# A higher pair whose closure a coordinate changes by less than this (length by length, or angle) does not determine
+# it: rounding of a right angle between a rack and its pinion's guide, or of the ratio with which a train locks.
+FLAT = 1e-13
 UNIT = Series((0.0, 1.0))
 
 

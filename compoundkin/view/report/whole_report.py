@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.solvable import relaxed, solvable
+from compoundkin.kinematics.redundant_pairs import relaxed, solvable
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
 from compoundkin.view.report.groups_section import drivers_section, solving_section

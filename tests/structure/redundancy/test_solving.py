@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import compoundkin as ck
-from compoundkin.kinematics.solvable import solvable
+from compoundkin.kinematics.redundant_pairs import solvable
 from compoundkin.structure import decompose
 from tests.structure.redundancy.special import bars, cranks, guides, wedge, with_parallel_crank
 

@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.analysis.equations import latex, loop_equations, text
 from compoundkin.files import shipped_mechanisms
-from compoundkin.kinematics.solvable import solvable
+from compoundkin.kinematics.redundant_pairs import solvable
 from compoundkin.view.page.mathml import Unread, mathml
 from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section
 from compoundkin.view.report.report_forms import Report

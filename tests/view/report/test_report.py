@@ -5,7 +5,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named, names
-from compoundkin.kinematics.solvable import solvable
+from compoundkin.kinematics.redundant_pairs import solvable
 from compoundkin.view.report import Report, report
 from compoundkin.view.report.loop_sections import equation_count
 from compoundkin.view.report.report_data import Alert, FormulaBlock, Paragraph, StepBlock, TableBlock
