@@ -84,7 +84,7 @@ def convolved(a: Sequence[Number], b: Sequence[Number], product: Callable[[Numbe
 
 
 def folded(a: Sequence[Number], b: Sequence[Number], k: int, product: Callable[[Number, Number], Number]) -> Number:
-    """Return the k-th coefficient of a product in which a[i] b[j] and a[j] b[i] are the same."""
+    """Return the k-th coefficient of a product where a[i] b[j] equals a[j] b[i]."""
     half = (k + 1) // 2
     if k == 0:
         return product(a[0], b[0])
@@ -115,7 +115,7 @@ def whole_turns(angle: Number, turn: Number = TURN) -> Number:
 
 
 def turns_above(angle: Number, low: Number, turn: Number = TURN) -> Number:
-    """Return the multiple of a turn by which an angle lies above the turn that begins at `low`.
+    """Return the turns by which an angle lies above the one that begins at `low`.
 
     >>> turns_above(np.array([-10.0, 350.0, 370.0]), 0.0, 360.0).tolist()
     [-360.0, 0.0, 360.0]
@@ -124,7 +124,7 @@ def turns_above(angle: Number, low: Number, turn: Number = TURN) -> Number:
 
 
 def unwrapped(angle: Number) -> Number:
-    """Make an angle continuous along the last axis where it is known, over gaps of NaN too.
+    """Make an angle continuous along the last axis, over gaps of NaN too.
 
     >>> unwrapped(np.array([3.0, np.nan, -3.0])).round(3).tolist()
     [3.0, nan, 3.283]
@@ -166,7 +166,7 @@ def first_entry(value: Number) -> Number:
 
 
 def column(value: Number, designs: int) -> Number:
-    """Return one number for each design, of a value that broadcasts with designs at one pose.
+    """Return one number for each design at one pose, of a value that broadcasts with them.
 
     >>> column(2.0, 3).tolist()
     [2.0, 2.0, 2.0]
@@ -175,7 +175,7 @@ def column(value: Number, designs: int) -> Number:
 
 
 def row(value: Number, poses: int) -> Number:
-    """Return one number for each pose, of a value that broadcasts with the poses of one design.
+    """Return one number for each pose of one design, of a value that broadcasts with them.
 
     >>> row(np.array([[1.0]]), 2).tolist()
     [1.0, 1.0]

@@ -14,7 +14,7 @@ GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 def bisected(
     holds: Callable[[Number], Number], inside: Number, outside: Number, halvings: int, enough: float = 0.0
 ) -> tuple[Number, Number]:
-    """Narrow brackets, at whose first end something `holds` and at the second not, by so many halvings.
+    """Halve brackets so often, keeping something that `holds` at their first ends only.
 
     They end sooner where all are narrower than the part `enough` of their first end.
 
@@ -100,7 +100,7 @@ def greatest(
     last_step: float,
     steps: int,
 ) -> Number:
-    """Find where functions are greatest, each from its own start between its own two `bounds` (low, start, high).
+    """Find where functions are greatest, each within its own `bounds` (low, start, high).
 
     `rise(s, which)` gives the first and second derivatives of the functions `which` (indices). Newton's steps that
     leave the bounds, climb down or do not halve the step before are replaced by bisection, so that a maximum or a

@@ -14,9 +14,9 @@ from compoundkin.base.series import Series
 
 
 def composed(coefficients: Sequence[Number], s: Series) -> Series:
-    """Return the series C(s(t)) from the Taylor coefficients of C at the leading coefficient of s, by Horner's rule.
+    """Return the series C(s(t)) by Horner's rule.
 
-    Needs as many coefficients as `s` has; more are not used.
+    `coefficients` are those of C at the leading coefficient of s; as many as `s` has are used.
 
     >>> composed((4.0, 4.0, 1.0), Series((2.0, 1.0, 0.0))).c  # the square of 2 + t
     (4.0, 4.0, 1.0)
@@ -30,7 +30,7 @@ def composed(coefficients: Sequence[Number], s: Series) -> Series:
 
 
 def implicit(start: Number, order: int, slope: Number, residual: Callable[[Series], Series]) -> Series:
-    """Return the series s with this leading coefficient that makes `residual(s)` zero, one coefficient after the other.
+    """Return the series with this leading coefficient that makes `residual` zero, order by order.
 
     `slope` is the derivative of the residual by s at `start`; the coefficients are not finite where it is zero.
 

@@ -84,7 +84,7 @@ def runge_kutta(slope: Callable[[Number, Number], Number], x: Number, t: Number,
 
 
 def corrected_across(system: System, guess: Number, across: Number, converged: float, steps: int) -> NewtonResult:
-    """Solve systems of one equation too few (d - 1 of d) in the hyperplanes across a direction through guesses."""
+    """Solve systems of d - 1 equations for d unknowns, in hyperplanes across a direction through guesses."""
 
     def closed(y: Number) -> tuple[Number, Number]:
         residual, matrix = system(y)
@@ -95,7 +95,7 @@ def corrected_across(system: System, guess: Number, across: Number, converged: f
 
 
 def tangent(matrix: Number, along: Number) -> tuple[Number, Number]:
-    """Return the unit null vectors of matrices (paths, d - 1, d) along a direction, and their sides of a singularity.
+    """Return unit null vectors of matrices (paths, d - 1, d) along a direction, and sides of a singularity.
 
     >>> tangent(np.array([[[0.0, 2.0]]]), np.array([[-1.0, 0.0]]))[0].tolist()
     [[-1.0, 0.0]]

@@ -74,7 +74,7 @@ class UnassembledPoses(UserWarning):
 
 
 def nearest(name: str, known: Sequence[str]) -> str:
-    """The remedy for an unknown name: the closest known one, or the list of what there is.
+    """Return the remedy for an unknown name: the closest known one, or the list of what there is.
 
     >>> nearest("crnk", ["crank", "rod"])
     "did you mean 'crank'?"

@@ -32,7 +32,7 @@ class Inverse:
             self._entries = [[inverse[..., i, j] for j in range(size)] for i in range(size)]
 
     def times(self, right: Sequence[Number]) -> list[Number]:
-        """The solutions for one right-hand side, each unknown an array of its own."""
+        """Return the solutions for one right-hand side, each unknown an array of its own."""
         found = []
         for row in self._entries:
             total = row[0] * right[0]
@@ -43,7 +43,7 @@ class Inverse:
 
 
 def _cramer(m: list[list[Number]]) -> tuple[list[list[Number]], Number]:
-    """The inverse and the determinant of 3 x 3 matrices of arrays."""
+    """Return the inverse and the determinant of 3 x 3 matrices of arrays."""
     (a, b, c), (d, e, f), (g, h, i) = m
     ei, di, dh = e * i - f * h, d * i - f * g, d * h - e * g
     determinant = np.asarray(a * ei - b * di + c * dh)
@@ -58,7 +58,7 @@ def _cramer(m: list[list[Number]]) -> tuple[list[list[Number]], Number]:
 
 
 def stacked(rows: Sequence[Row], size: int) -> Number:
-    """The matrices (..., rows, size) of some rows.
+    """Return the matrices (..., rows, size) of some rows.
 
     >>> stacked([{0: 1.0}, {1: np.array([2.0, 3.0])}], 2).tolist()
     [[[1.0, 0.0], [0.0, 2.0]], [[1.0, 0.0], [0.0, 3.0]]]
@@ -84,7 +84,7 @@ def solve(matrix: Number, right: Number) -> Number:
 
 
 def inverted(matrix: Number) -> Number:
-    """The inverses of a batch of matrices, NaN for a singular one."""
+    """Return the inverses of a batch of matrices, NaN for a singular one."""
     try:
         return np.linalg.inv(matrix)
     except np.linalg.LinAlgError:

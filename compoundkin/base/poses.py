@@ -79,7 +79,7 @@ class Pose(PrintsShort):
         return Pose(self.z, self.u, theta + whole_turns(near - theta.c[0]))
 
     def entry(self, at: tuple[int, ...]) -> Pose:
-        """Return one pose of an array of them, at an index of whatever shape it broadcasts with.
+        """Return one pose of an array of them, at an index it broadcasts with.
 
         >>> Pose.of(constant(1j).c[0], 1 + 0j).entry((3, 1)).z.c
         (1j,)
@@ -114,7 +114,7 @@ class Pose(PrintsShort):
         return Pose(self.at(inner.z), self.u * inner.u, self.angle + inner.angle if known else None)
 
     def trimmed(self, order: int) -> Pose:
-        """The pose to an order at most."""
+        """Cut the pose to an order at most."""
         if self.z.order <= order and self.u.order <= order:
             return self
         theta = None if self.theta is None else Series(self.theta.c[: order + 1])

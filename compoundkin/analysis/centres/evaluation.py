@@ -13,7 +13,7 @@ import numpy as np
 from compoundkin.analysis.centres.circle_diagram import Couple, couple
 from compoundkin.analysis.centres.derivation import Derivation
 from compoundkin.analysis.centres.derivation_steps import Given, LineCrossing, SolvedCentre, Trial
-from compoundkin.analysis.centres.homogeneous import apart, cross, dot, norm
+from compoundkin.analysis.centres.homogeneous import cross, dot, norm, sine_between
 from compoundkin.analysis.centres.rate_transport import TransportedRates, measured, transport
 from compoundkin.base.series import Number
 
@@ -79,7 +79,7 @@ class Evaluation:
         for i, j in trial.found:
             twists = (carried.relative(i, j) * values).sum(axis=1)
             exact = twists[:, 0] / norm(twists[:, 0])
-            moved = np.max(apart(exact[:, None], twists[:, 1:]), axis=0)
+            moved = np.max(sine_between(exact[:, None], twists[:, 1:]), axis=0)
             self.keep((i, j), exact, np.hypot(1.0, measured(moved)))
 
     def _values(self, trial: Trial, carried: TransportedRates) -> Number:

@@ -48,10 +48,10 @@ def norm(a: Number) -> Number:
     return np.sqrt(dot(a, a))
 
 
-def apart(a: Number, b: Number) -> Number:
+def sine_between(a: Number, b: Number) -> Number:
     """Return the sine of the angle between two homogeneous vectors of any length. 0 where they are the same place.
 
-    >>> float(apart(np.array([1.0, 0.0, 1.0]), np.array([-2.0, 0.0, -2.0])))
+    >>> float(sine_between(np.array([1.0, 0.0, 1.0]), np.array([-2.0, 0.0, -2.0])))
     0.0
     """
     return norm(cross(a, b)) / (norm(a) * norm(b))

@@ -82,7 +82,7 @@ class Function(Curve):
 
 
 def _merged(a: Number, b: Number) -> Number:
-    """The values of `a` with those of `b` between them."""
+    """Merge the values of `a` with those of `b` between them."""
     merged = np.empty(a.size + b.size, dtype=a.dtype)
     merged[::2], merged[1::2] = a, b
     return merged

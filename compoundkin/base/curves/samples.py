@@ -47,7 +47,7 @@ class Samples:
         return 0.5 * float(np.sum((np.conj(self.points) * after).imag))
 
     def length(self, speed: Callable[[Number], Number]) -> float:
-        """Measure the arc of a curve whose derivative by the parameter is as long as `speed` says."""
+        """Measure the arc of a curve whose derivative is as long as `speed` says."""
         starts = self.s if self.closed else self.s[:-1]
         nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
         places = starts[:, None] + 0.5 * self.step * (nodes + 1.0)

@@ -26,7 +26,7 @@ class Crossing(NamedTuple):
 
 
 def crossings(samples: Samples, expansion: Callable[[Number, int], tuple[Number, ...]]) -> tuple[Crossing, ...]:
-    """Find every crossing of a curve with itself, in the order of the parameters, found on its sampled polygon.
+    """Find every crossing of a curve with itself, in the order of the parameters.
 
     Loops smaller than the distance of two samples are not seen.
     """
@@ -67,7 +67,7 @@ def _meeting(starts: Number, sides: Number, closed: bool) -> tuple[Number, Numbe
 
 
 def _overlapping(starts: Number, sides: Number) -> tuple[Number, Number]:
-    """Find the pairs of sides (the earlier first) whose boxes overlap, sorted along the longer side of the whole."""
+    """Find the pairs of sides (the earlier first) whose boxes overlap."""
     ends = starts + sides
     if np.ptp(starts.imag) > np.ptp(starts.real):
         starts, ends = starts * -1j, ends * -1j

@@ -57,7 +57,7 @@ class Pieces:
 
 
 def interpolated(s: Number, points: Number, degree: int, closed: bool) -> Pieces:
-    """Return the spline of odd degree through points at increasing parameters, as smooth as the degree allows.
+    """Return the smoothest spline of odd degree through points at increasing parameters.
 
     A closed one has its first point again at the end, and is periodic; an open one is fixed at its ends by leaving out
     knots (not-a-knot). Source: C. de Boor, A Practical Guide to Splines, revised ed., chapters IV and XIII.

@@ -100,7 +100,7 @@ def _touching(
 
 
 def held(curve: Searched, s: Number, ahead: Number) -> Number:
-    """Tell where a search ended at an end of the curve, what it looks for lying this far ahead (a pure number)."""
+    """Tell where a search ended at an end of the curve, its aim this far ahead (a pure number)."""
     if curve.closed:
         return np.zeros(np.shape(s), dtype=bool)[()]
     return ((s <= curve.low) & (ahead < -BEYOND)) | ((s >= curve.high) & (ahead > BEYOND))

@@ -80,7 +80,7 @@ def _sign(power: int) -> int:
 
 
 def pencil(loops: RotationEquations, suppressed: int) -> tuple[Number, Number]:
-    """Return the matrices P and Q (..., N, N), N = C(2 l, l), rows and columns first of the large sets."""
+    """Return the matrices P and Q (..., N, N), N = C(2 l, l); the large sets come first."""
     kept = [k for k in range(loops.rotations) if k != suppressed]
     own = sets(loops.count)
     f, g = loops.columns[..., 0][..., kept, :], loops.columns[..., 1][..., kept, :]

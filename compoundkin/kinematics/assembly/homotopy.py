@@ -135,7 +135,7 @@ def _forms(loops: RotationEquations, x: Number, y: Number) -> Number:
 
 
 def _start(start: list[Number], patches: list[Number], kept: tuple[int, ...]) -> Number:
-    """Return where the first factors of the equations `kept` and the second ones of the others are zero."""
+    """Solve for zero first factors of the equations `kept`, second ones of the others."""
     others = [k for k in range(len(start[0])) if k not in kept]
     right = np.zeros(len(kept) + 1)
     right[-1] = 1

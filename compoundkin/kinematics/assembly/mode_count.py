@@ -59,7 +59,7 @@ def laman_number(edges: Iterable[tuple[int, int]]) -> int:
 
 
 def intersections(n: int, first: Rank, second: Rank) -> int:
-    """Count how often a generic linear space meets the inverse of another, from the ranks of their coordinates.
+    """Count how often a generic linear space meets the inverse of another, by the ranks of coordinates.
 
     `n` coordinates; the ranks of all of them must add up to n + 1, else the count is zero.
     """

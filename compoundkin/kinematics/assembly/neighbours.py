@@ -43,7 +43,7 @@ def distinct(x: Number) -> Number:
 
 
 def packed(x: Number, kept: Number) -> Number:
-    """Put the kept rows of every pose first, in their order, cut to the most that any pose has."""
+    """Put the kept rows of every pose first, cut to the most that any has."""
     order = np.argsort(~kept, axis=-1, kind="stable")
     most = int(kept.sum(axis=-1).max(initial=0))
     out = np.take_along_axis(np.where(kept[..., None], x, np.nan), order[..., None], axis=1)

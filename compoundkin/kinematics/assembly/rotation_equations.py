@@ -133,7 +133,7 @@ def residual(loops: RotationEquations, x: Number) -> Number:
 
 
 def terms(loops: RotationEquations, x: Number) -> Number:
-    """Return the sums of the absolute values of the equations' terms, with which a residual is compared."""
+    """Return the sums of the equations' absolute terms, with which a residual is compared."""
     a, c = np.abs(loops.columns), np.abs(loops.constant)
     f = c[:, None, :, 0] + np.abs(x) @ a[..., 0]
     g = c[:, None, :, 1] + np.abs(conjugates(loops, x)) @ a[..., 1]
@@ -165,7 +165,7 @@ def relative(step: Number, x: Number) -> Number:
 
 
 def polish(loops: RotationEquations, x: Number, steps: int = STEPS) -> Number:
-    """Find the solutions that starts lead to by Newton's method, NaN for starts that lead to none."""
+    """Find the solutions that starts lead to by Newton's method, or NaN."""
     with np.errstate(all="ignore"):
         found = newton(lambda x: (residual(loops, x), jacobian(loops, x)), x, CONVERGED, steps, relative)
         good = (found.last <= CONVERGED) & holds(loops, found.x)

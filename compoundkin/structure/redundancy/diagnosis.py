@@ -163,7 +163,7 @@ def _made(structure: Structure, picked: Sequence[Candidate], pose: Relaxation) -
 def _cost(
     made: Structure, picked: Sequence[Candidate], order: Sequence[Candidate], closed: Collection[str]
 ) -> tuple[int, ...]:
-    """Weigh what is left undecomposed or may fail, how hard the groups are, and how early what is left out stands."""
+    """Weigh what is left undecomposed or may fail, how hard the groups are, and what is left out."""
     places = list(dict.fromkeys(one.place for one in order))
     early = sum(len(places) - places.index(one.place) for one in picked)
     oblique = sum(not one.is_aligned for one in picked)

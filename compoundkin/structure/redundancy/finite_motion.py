@@ -112,7 +112,7 @@ class PassiveFreedom:
 
 
 def passive_freedoms(equations: ConstraintEquations, state: Array) -> Iterator[PassiveFreedom]:
-    """Find the freedoms of single links while the drivers stand still, of links on two pairs or more.
+    """Find freedoms of single links on two pairs or more while the drivers stand still.
 
     A link on one pair only is no passive part: it is left free.
     """

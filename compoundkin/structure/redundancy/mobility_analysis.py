@@ -131,10 +131,11 @@ class MobilityAnalysis(Shows):
 
 
 def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose] | None = None) -> MobilityAnalysis:
-    """Find the mobility by count, for general dimensions and at the assembled pose, and what is redundant or passive.
+    """Find the mobility by count, for general dimensions and at the assembled pose.
 
-    The pose is that of `poses`, of order 0, by the links' names; else the drawn one, made exact; without a drawing, one
-    at the drivers' first values. Lengths of several designs are those of the first.
+    It tells as well what is redundant or passive. The pose is that of `poses`, of order 0, by the links' names; else
+    the drawn one, made exact; without a drawing, one at the drivers' first values. Lengths of several designs are those of
+    the first.
 
     Source: the count is that of Chebyshev and Gruebler; the others are the nullity of the constraint Jacobian.
 

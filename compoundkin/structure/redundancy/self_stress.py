@@ -75,7 +75,7 @@ def candidates(equations: ConstraintEquations, state: Array, stress: Array, bodi
 
 
 def _of_pins(equations: ConstraintEquations, state: Array, stress: Array, bodies: Composites) -> Iterator[Candidate]:
-    """Take a body off a pin, but for a slot in the direction of another of its points, or of the other link's."""
+    """Take a body off a pin, or leave it in a slot there."""
     poses = equations.poses(state)
     forces = _forces(equations, stress)
     for letter, names in equations.mechanism.pins.items():

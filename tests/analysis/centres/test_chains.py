@@ -12,7 +12,7 @@ from compoundkin.analysis.centres import instant_centres
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.analysis.centres.derivation_steps import Trial
 from compoundkin.analysis.centres.evaluation import Evaluation
-from compoundkin.analysis.centres.homogeneous import apart
+from compoundkin.analysis.centres.homogeneous import sine_between
 from compoundkin.analysis.centres.recomputation import recompute
 from compoundkin.analysis.centres.twist_loops import null_twists
 from tests.analysis.centres.chains import DOUBLE_BUTTERFLY, SINGLE_FLIER, chains, diagram, random_mechanism, solved
@@ -86,7 +86,7 @@ def test_against_the_null_vector_at_many_random_geometries(graph: nx.Graph) -> N
         # a link that all but rests beside the fastest, or a pose that is all but singular, proves nothing
         firm = (found.spread[i, j] < 1e6) & (np.sqrt((relative**2).sum(axis=0)) > 1e-4) & (gap > 1e-5)
         compared += int(np.broadcast_to(firm, MANY).sum())
-        assert np.max(apart(point, relative), where=firm, initial=0.0) < EXACT
+        assert np.max(sine_between(point, relative), where=firm, initial=0.0) < EXACT
     assert compared > 0.98 * MANY * len(found.points)
 
 
@@ -101,7 +101,7 @@ def test_the_conditioning_tells_the_error(graph: nx.Graph) -> None:
     one.run(None)
     other.run(None)
     for c, point in one.points.items():
-        ratio = apart(point, other.points[c]) / (1e-9 * one.spread[c])
+        ratio = sine_between(point, other.points[c]) / (1e-9 * one.spread[c])
         assert np.percentile(ratio[one.spread[c] < 1e5] if one.spread[c].size > 1 else ratio, 95) < 10.0
 
 

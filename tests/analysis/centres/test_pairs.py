@@ -8,7 +8,7 @@ import pytest
 from compoundkin.analysis.centres.circle_diagram import Diagram, DrivenCentre, Primary
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.analysis.centres.evaluation import Evaluation
-from compoundkin.analysis.centres.homogeneous import apart, dot
+from compoundkin.analysis.centres.homogeneous import dot, sine_between
 from compoundkin.analysis.centres.twist_loops import null_twists
 from compoundkin.model.pairs import KINDS, Pair
 from compoundkin.model.pairs.contract import Line, Point
@@ -60,7 +60,7 @@ def confirmed(diagram: Diagram) -> Evaluation:
     for (i, j), point in found.points.items():
         firm = (gap > 1e-3) & (found.spread[i, j] < 1e4)
         assert firm.mean() > 0.6
-        assert np.max(apart(point, twists[j] - twists[i]), where=firm, initial=0.0) < 1e-9
+        assert np.max(sine_between(point, twists[j] - twists[i]), where=firm, initial=0.0) < 1e-9
     return found
 
 

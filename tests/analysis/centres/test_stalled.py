@@ -13,7 +13,7 @@ from compoundkin.analysis.centres import Status, derivation, instant_centres
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.analysis.centres.derivation_steps import Trial
 from compoundkin.analysis.centres.evaluation import Evaluation
-from compoundkin.analysis.centres.homogeneous import apart
+from compoundkin.analysis.centres.homogeneous import sine_between
 from compoundkin.analysis.centres.rate_sets import RateSets
 from compoundkin.analysis.centres.twist_loops import null_twists
 from tests.analysis.centres.chains import DOUBLE_BUTTERFLY, SINGLE_FLIER, diagram, random_mechanism, solved
@@ -43,7 +43,7 @@ def test_several_trial_values(graph6: str, values: int, monkeypatch: pytest.Monk
     for i, j in trial.found:
         firm = (gap > 1e-3) & (found.spread[i, j] < 1e4)
         assert firm.mean() > 0.8
-        assert np.max(apart(found.points[i, j], twists[j] - twists[i]), where=firm, initial=0.0) < 1e-9
+        assert np.max(sine_between(found.points[i, j], twists[j] - twists[i]), where=firm, initial=0.0) < 1e-9
 
 
 def test_what_nothing_else_gives_comes_from_the_solved_velocities(monkeypatch: pytest.MonkeyPatch) -> None:
