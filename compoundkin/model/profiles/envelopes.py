@@ -16,13 +16,11 @@ from math import acos, asin, hypot, sqrt
 
 import numpy as np
 
-from compoundkin.base.arrays import dot
+from compoundkin.base.arrays import TURN, dot
 from compoundkin.base.composition import composed, differentiated
 from compoundkin.base.curves import Analytic
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.model.laws.motion_programs import Program
-
-FULL_TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
@@ -42,7 +40,7 @@ class Lift:
     def breaks(self) -> tuple[float, ...]:
         """The cam's angles at which a law begins and derivatives may jump."""
         sense = -1.0 if self.clockwise else 1.0
-        return tuple((self.start + sense * piece.start) % FULL_TURN for piece in self.program.pieces)
+        return tuple((self.start + sense * piece.start) % TURN for piece in self.program.pieces)
 
 
 class FollowerGuide(ABC):
@@ -177,7 +175,7 @@ class Envelope:
         return dot(along, -1j * normal.c[0]) / np.abs(normal.turning().c[0])
 
     def _curve(self, function: Callable[[Series], Series]) -> Analytic:
-        return Analytic(function, 0.0, FULL_TURN, True, self.lift.breaks)
+        return Analytic(function, 0.0, TURN, True, self.lift.breaks)
 
     def _facing(self, s: Series) -> tuple[Series, Series]:
         normal, distance = self.guide.facing(self.coordinate(s))

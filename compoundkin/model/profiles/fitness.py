@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from compoundkin.base.arrays import TURN
 from compoundkin.base.bracketing import bisected
 from compoundkin.base.curves.samples import spans
 from compoundkin.base.errors import Problem, nearest
 from compoundkin.model.laws.motion_programs import Program
-from compoundkin.model.profiles.envelopes import FULL_TURN, Oscillating, reach
+from compoundkin.model.profiles.envelopes import Oscillating, reach
 
 if TYPE_CHECKING:
     from compoundkin.model.profiles.synthesised import Synthesised
@@ -89,7 +90,7 @@ def _misplaced(made: Synthesised) -> Iterator[Problem]:
 def _program(made: Synthesised) -> Iterator[Problem]:
     program = made.program
     turn = program.period
-    if abs(turn - FULL_TURN) > ROUNDING:
+    if abs(turn - TURN) > ROUNDING:
         what = f"the spans add up to {np.rad2deg(turn):.6g} degrees, not to a turn of 360"
         remedy = "change a dwell; spans are degrees in a file, radians in Python: rise(10, over=deg(90))"
         yield Problem("program", what, remedy)
@@ -176,8 +177,8 @@ def undercut_spans(made: Synthesised) -> tuple[Span, ...]:
     if made.follower != "flat":
         return envelope.pitch().undercut(made.roller) if made.roller else ()
     faced = envelope.faced()
-    turns_on = spans(faced.samples, 0.0, FULL_TURN, lambda s: -envelope.turning(s))
-    return turns_on or spans(faced.samples, 0.0, FULL_TURN, envelope.radius)
+    turns_on = spans(faced.samples, 0.0, TURN, lambda s: -envelope.turning(s))
+    return turns_on or spans(faced.samples, 0.0, TURN, envelope.radius)
 
 
 def least_base(made: Synthesised) -> float | None:

@@ -134,8 +134,8 @@ def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose
     """Find the mobility by count, for general dimensions and at the assembled pose.
 
     It tells as well what is redundant or passive. The pose is that of `poses`, of order 0, by the links' names; else
-    the drawn one, made exact; without a drawing, one at the drivers' first values. Lengths of several designs are those of
-    the first.
+    the drawn one, made exact; without a drawing, one at the drivers' first values. Lengths of several designs are those
+    of the first.
 
     Source: the count is that of Chebyshev and Gruebler; the others are the nullity of the constraint Jacobian.
 
