@@ -92,8 +92,9 @@ class Pair(ABC):
         yield from name_problems(self, links, where, self.wording)
 
     def completed(self, links: Mapping[str, tuple[str, ...]]) -> Pair:
-        """The pair with the points that its words leave to be understood: the only ones of their links."""
-        return replace(self, **only_points(self, links))
+        """The pair with the points that its words leave to be understood: itself where they leave none."""
+        found = only_points(self, links)
+        return replace(self, **found) if found else self
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
         """What is wrong with its dimensions: teeth that do not fit, a profile that crosses itself."""
