@@ -27,10 +27,6 @@ from tests.view.test_notebooks import NOTEBOOKS, assert_it_ran
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = sorted(path.relative_to(DOCS) for path in (*DOCS.glob("*.md"), *DOCS.glob("notebooks/*.ipynb")))
-# Public modules beside the package itself.
-MODULES = ("plots", "coupler", "chains", "catalog", "advantage", "errors")
-# Names in modules without a list of their own that are for the package itself.
-HELPERS = ("nearest",)
 # What a browser fetches by itself, by the tags and attributes that say so.
 FETCHED = {
     ("script", "src"),
@@ -145,14 +141,10 @@ def every_public_name_is_described(site: Site) -> None:
 
 
 def public_names() -> Iterator[str]:
-    """All of the package's, and those of its public modules that the package itself does not have."""
+    """All of the package's, and those of its named modules."""
     yield from (f"compoundkin.{name}" for name in ck.__all__)
-    for part in MODULES:
-        module = import_module(f"compoundkin.{part}")
-        own = [name for name, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__]
-        for name in getattr(module, "__all__", [name for name in own if not name.startswith("_")]):
-            if getattr(ck, name, None) is not getattr(module, name) and name not in HELPERS:
-                yield f"{module.__name__}.{name}"
+    for part in ck._MODULES:
+        yield from (f"compoundkin.{part}.{name}" for name in getattr(ck, part).__all__)
 
 
 def the_gallery_is_whole(site: Site) -> None:
