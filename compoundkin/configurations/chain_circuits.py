@@ -21,7 +21,7 @@ STILL = 1e-9
 
 
 def built(placing: SegmentPoses, chains: tuple[SegmentChain, ...], period: float) -> tuple[Circuit, ...]:
-    """The circuits, numbered in the order of their first segments."""
+    """Return the circuits, numbered in the order of their first segments."""
     segments = placing.segments
     places = _places(segments)
     rows, sides = (np.array(part, dtype=int) for part in zip(*places, strict=True))
@@ -36,7 +36,7 @@ def built(placing: SegmentPoses, chains: tuple[SegmentChain, ...], period: float
 
 
 def _places(segments: Segments) -> list[tuple[int, int]]:
-    """The middles of all segments, and those of their ends that are limit positions or change points."""
+    """Return the middles of all segments, and those of their ends that are limit positions or change points."""
     ends = np.isin(segments.kind, (LIMIT, CHANGE)).tolist()
     return [(row, side) for row in range(segments.rows) for side in (NONE, 0, 1) if side == NONE or ends[row][side]]
 
@@ -58,7 +58,7 @@ class _Maker:
         self.parts = chain.branches()
 
     def circuit(self) -> Circuit:
-        """The circuit."""
+        """Return the circuit."""
         limits = self._limits()
         branches = tuple(self._branch(i, limits) for i in range(len(self.parts)))
         travel = sum(v.sense * self._length(v) for v in self.chain.visits)
@@ -69,7 +69,7 @@ class _Maker:
         return Circuit(self.number, branches, *around, self.chain.closed)
 
     def _span(self, visits: Iterable[Visit]) -> tuple[float, float]:
-        """The least and greatest driver value of some segments, periods counted."""
+        """Return the least and greatest driver value of some segments, periods counted."""
         segments = self.placing.segments
         ends = [(segments.low[v.row] + v.periods * self.period, segments.high[v.row] + v.periods * self.period)
                 for v in visits]  # fmt: skip
@@ -80,7 +80,7 @@ class _Maker:
         return float(segments.high[visit.row] - segments.low[visit.row])
 
     def _limits(self) -> dict[tuple[int, int], Limit]:
-        """The limit positions by the index of the branch before, and side; between each branch and the next."""
+        """Return the limit positions by the index of the branch before, and side; between each branch and the next."""
         found = {}
         segments, count = self.placing.segments, len(self.parts)
         for i, part in enumerate(self.parts):
@@ -98,7 +98,7 @@ class _Maker:
         return found
 
     def _value(self, s: float) -> float:
-        """A driver's value, an angle between -pi and pi."""
+        """Return a driver's value, an angle between -pi and pi."""
         return float(wrapped(s)) if self.period else float(s)
 
     def _branch(self, i: int, limits: dict[tuple[int, int], Limit]) -> Branch:
@@ -137,7 +137,7 @@ class _Maker:
 
 
 def toggles_of(placing: SegmentPoses, circuits: tuple[Circuit, ...]) -> tuple[Toggle, ...]:
-    """All toggle positions, by circuit and branch, in the order in which the circuit passes them."""
+    """Return all toggle positions, by circuit and branch, in the order in which the circuit passes them."""
     found: dict[int, list[tuple[float, Toggle]]] = {}
     with np.errstate(all="ignore"):
         for link, pair in _on_frame(placing):
@@ -150,7 +150,7 @@ def toggles_of(placing: SegmentPoses, circuits: tuple[Circuit, ...]) -> tuple[To
 
 
 def _on_frame(placing: SegmentPoses) -> Iterator[tuple[str, Pair]]:
-    """Links that a pair of one freedom joins to the frame, no driver being in it."""
+    """Yield links that a pair of one freedom joins to the frame, no driver being in it."""
     ground = placing.sweep.plan.structure.ground.links[0]
     driven = {d.pair.name for d in placing.sweep.plan.driven.values()}
     for name, pair in placing.sweep.plan.pairs.items():
@@ -185,7 +185,7 @@ def _of_link(
 
 
 def _rate(placing: SegmentPoses, pair: Pair, rows: Number, phi: Number) -> Number:
-    """The derivative of a pair's coordinate by the angle along segments, (rows, columns)."""
+    """Return the derivative of a pair's coordinate by the angle along segments, (rows, columns)."""
     segments = placing.segments
     block = placing.sweep.run(segments, rows, segments.at(rows, phi), segments.rate(rows, phi))
     poses = tuple(block.world[name] for name in pair.members)

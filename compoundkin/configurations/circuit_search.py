@@ -74,14 +74,14 @@ class Circuits(Shows):
         return toggles_of(self.placing, self.circuits)
 
     def at(self, configuration: Configuration) -> CircuitPlace:
-        """The circuit and branch that a configuration lies on.
+        """Return the circuit and branch that a configuration lies on.
 
         Raises InvalidInput for a configuration that is of another mechanism or at other values of the other drivers.
         """
         return located(self.placing, self.circuits, self.period, configuration)
 
     def path(self, start: Configuration | int, end: Configuration | int, poses: int = 200) -> Route:
-        """The shorter way along a circuit from one configuration, or the middle of a branch, to another.
+        """Return the shorter way along a circuit from one configuration, or the middle of a branch, to another.
 
         Raises InvalidInput where they lie on different circuits.
         """
@@ -110,7 +110,7 @@ def circuits(
     between: Sequence[float] | None = None,
     design: int = 0,
 ) -> Circuits:
-    """All circuits of a mechanism as one driver takes all its values.
+    """Return all circuits of a mechanism as one driver takes all its values.
 
     `values` are those of the other drivers (radians or lengths; as drawn, or the first of their own, if left out),
     `between` the range of the driver where it shall not be a full turn, or all lengths within reach. Of dimensions that
@@ -151,7 +151,7 @@ def circuits(
 
 
 def _of_design(given: Inputs, design: int) -> Inputs:
-    """The numbers of one design at its first pose; raises InvalidInput for one that there is not."""
+    """Return the numbers of one design at its first pose; raises InvalidInput for one that there is not."""
     if not 0 <= design < given.designs:
         what = f"there is no design {design}"
         raise InvalidInput(Problem("design", what, f"they are 0 to {given.designs - 1}"))
@@ -172,7 +172,7 @@ def _driver(plan: SolvingOrder, driver: str | None) -> str:
 
 
 def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tuple[Segments, float, int, bool]:
-    """All segments, the driver's period, how many arcs were lost, whether the counts agree."""
+    """Return all segments, the driver's period, how many arcs were lost, whether the counts agree."""
     start, period = range_of(sweep, between, value)
     turns = max(1, round(period / TURN))
     for fineness in FINENESS:
@@ -184,7 +184,7 @@ def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tupl
 
 
 def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, int]:
-    """All groups, one after another."""
+    """Return all groups, one after another."""
     lost = 0
     for k, solver in enumerate(sweep.plan.solvers):
         if not segments.rows:
@@ -201,7 +201,7 @@ def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, 
 
 
 def _with_redundant(sweep: Sweep, segments: Segments) -> Segments:
-    """The segments on which redundant pairs are closed too."""
+    """Return the segments on which redundant pairs are closed too."""
     if not sweep.plan.structure.redundant or not segments.rows:
         return segments
     rows = np.arange(segments.rows)
@@ -211,7 +211,7 @@ def _with_redundant(sweep: Sweep, segments: Segments) -> Segments:
 
 
 def _counts_agree(sweep: Sweep, segments: Segments, low: float, high: float) -> bool:
-    """Whether at fresh driver values as many segments cross as there are real configurations."""
+    """Tell whether at fresh driver values as many segments cross as there are real configurations."""
     values = low + (high - low) * np.mod(GOLDEN * np.arange(1, FRESH + 1), 1.0)
     drives: dict[str, tuple[Number, ...]] = {name: (value,) for name, value in sweep.fixed.items()}
     given = Inputs((FRESH,), sweep.ends, {**drives, sweep.driver: (values[None],)})

@@ -84,12 +84,12 @@ class _Margins:
         return np.broadcast_to(np.where(np.isnan(margin), -1.0, margin), s.shape)
 
     def at_ends(self) -> Number:
-        """Where the margin is zero at an end already, (rows, 2)."""
+        """Return where the margin is zero at an end already, (rows, 2)."""
         return np.abs(self.samples[:, [0, -1]]) < TOUCHING
 
 
 def _events(margins: _Margins) -> list[list[Event]]:
-    """The zeros of the margin on every segment, in order."""
+    """Return the zeros of the margin on every segment, in order."""
     m, phi = margins.samples, margins.phi
     good = m >= 0
     good[:, [0, -1]] = np.where(margins.at_ends(), good[:, [1, -2]], good[:, [0, -1]])
@@ -136,7 +136,7 @@ def _centred(margins: _Margins, rows: Number, place: Number) -> Number:
 
 
 def _zeros(margins: _Margins, rows: Number, low: Number, high: Number) -> Number:
-    """The zero of the margin in every bracket, from the side where the group is assembled."""
+    """Return the zero of the margin in every bracket, from the side where the group is assembled."""
     if not len(rows):
         return np.zeros(0)
     rising = margins(rows, high) >= 0
@@ -145,7 +145,7 @@ def _zeros(margins: _Margins, rows: Number, low: Number, high: Number) -> Number
 
 
 def _cuts(margins: _Margins, events: list[list[Event]], modes: tuple[int, ...]) -> Iterator[Cut]:
-    """The parts of the segments between zeros where the group is assembled, once for each mode."""
+    """Return the parts of the segments between zeros where the group is assembled, once for each mode."""
     parts = []
     for row, found in enumerate(events):
         marks = [None, *found, None]
@@ -159,7 +159,7 @@ def _cuts(margins: _Margins, events: list[list[Event]], modes: tuple[int, ...]) 
 
 
 def _glued(segments: Segments, k: int, cuts: list[Cut], at_limit: Number) -> Segments:
-    """The lifted segments, their ends glued."""
+    """Return the lifted segments, their ends glued."""
     parent = np.array([cut.parent for cut in cuts], dtype=int)
     first, last = (np.array([getattr(cut, name) for cut in cuts]) for name in ("first", "last"))
     low, high = (segments.at(parent, phi[:, None])[:, 0] for phi in (first, last))

@@ -121,13 +121,13 @@ class _Turned:
 
 
 def _apart(sweep: Sweep, one: Number, other: Number) -> Number:
-    """The largest difference of any body, at each value."""
+    """Return the largest difference of any body, at each value."""
     size = np.tile([sweep.plan.size, 1.0], len(one) // 2)[:, None]
     return np.max(np.nan_to_num(np.abs(one - other) / size), axis=0, initial=0.0)
 
 
 def starting_values(plan: SolvingOrder, values: Mapping[str, Any], moved: str) -> dict[str, float]:
-    """One value of each driver: that given, else where it is drawn, else the first of its own.
+    """Return one value of each driver: that given, else where it is drawn, else the first of its own.
 
     Raises InvalidInput for names that are no driver's, and values that are no single number.
     """
@@ -156,7 +156,7 @@ def _number(name: str, value: Any) -> float:
 
 
 def _drawn(plan: SolvingOrder, first: Mapping[str, float]) -> dict[str, float]:
-    """Where the drivers are drawn; nothing where nothing is drawn."""
+    """Return where the drivers are drawn; nothing where nothing is drawn."""
     if not plan.structure.mechanism.sketch:
         return {}
     geometry = plan.structure.mechanism.geometry

@@ -171,7 +171,7 @@ def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] |
 
 
 def _nothing(plan: SolvingOrder, given: Inputs) -> Problem:
-    """Why there is no configuration: where the nearest one is."""
+    """Say why there is no configuration: where the nearest one is."""
     found = [
         (gap, name, value) for name in given.drives for gap, value in [_nearest(plan, given, name)] if gap < np.inf
     ]

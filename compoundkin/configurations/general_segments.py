@@ -44,7 +44,7 @@ def lifted(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> tuple
 
 
 def _walked(roadmap: Roadmap, start: Port, seen: set[tuple[int, int, int]]) -> tuple[int, Number, list[int], bool]:
-    """The curve from a port: its row, states, the indices of turning points, and whether it is closed."""
+    """Return the curve from a port: its row, states, the indices of turning points, and whether it is closed."""
     states, turns = [roadmap.state(start)], list[int]()
     seen.add(start[:3])
     port = start
@@ -63,7 +63,7 @@ def _walked(roadmap: Roadmap, start: Port, seen: set[tuple[int, int, int]]) -> t
 
 
 def _whole_turns(reached: Number, known: Number) -> Number:
-    """What takes the angles of a known state to those with which it was reached."""
+    """Return what takes the angles of a known state to those with which it was reached."""
     gap = reached - known
     out = np.zeros_like(gap)
     out[2:-1:3] = whole_turns(gap[2:-1:3])
@@ -71,7 +71,7 @@ def _whole_turns(reached: Number, known: Number) -> Number:
 
 
 def _add(pieces: list[CurvePiece], row: int, y: Number, turns: list[int], closed: bool) -> None:
-    """The pieces of a curve; those of a closed one from its first turning point on."""
+    """Return the pieces of a curve; those of a closed one from its first turning point on."""
     if len(y) < 2:
         return  # both arcs of a configuration were lost: there is no curve
     first = len(pieces)
@@ -90,7 +90,7 @@ def _add(pieces: list[CurvePiece], row: int, y: Number, turns: list[int], closed
 
 
 def _glued(closure: SegmentClosure, pieces: list[CurvePiece]) -> Segments:
-    """The lifted segments, their ends glued."""
+    """Return the lifted segments, their ends glued."""
     segments, k = closure.segments, closure.k
     order = sorted(range(len(pieces)), key=lambda i: (pieces[i].row, *np.round(pieces[i].y[0, 2:-1:3], 6), i))
     new = {old: i for i, old in enumerate(order)} | {NONE: NONE}
@@ -115,13 +115,13 @@ def _glued(closure: SegmentClosure, pieces: list[CurvePiece]) -> Segments:
 
 
 def _is_inside(piece: CurvePiece, side: int) -> bool:
-    """Whether it ends where its parent does not: an arc was lost there."""
+    """Tell whether it ends where its parent does not: an arc was lost there."""
     phi = piece.y[-side, -1]
     return bool(phi != (np.pi if side else 0.0))
 
 
 def _nearest(pieces: list[CurvePiece], piece: CurvePiece, own: int, row: int, side: int) -> int:
-    """The piece of the partner's segment that begins or ends with the same state."""
+    """Return the piece of the partner's segment that begins or ends with the same state."""
     found, least = NONE, np.inf
     for i, other in enumerate(pieces):
         if other.row == row and not _is_inside(other, side) and (other.before, other.after)[side] == NONE:
@@ -132,7 +132,7 @@ def _nearest(pieces: list[CurvePiece], piece: CurvePiece, own: int, row: int, si
 
 
 def _curve(closure: SegmentClosure, piece: CurvePiece, low: float, high: float) -> SegmentCurve:
-    """The states over the piece's own angle."""
+    """Return the states over the piece's own angle."""
     cosine = np.cos(piece.y[:, -1])
     part = 2.0 * (cosine[0] - cosine) / (cosine[0] - cosine[-1])
     nodes = np.maximum.accumulate(np.arccos(np.clip(1.0 - part, -1.0, 1.0)))

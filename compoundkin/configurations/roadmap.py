@@ -60,16 +60,16 @@ class Roadmap:
         return np.append(state * self.closure.weights, self.slices[j])
 
     def is_outer(self, port: Port) -> bool:
-        """Whether it leads out of the segment."""
+        """Tell whether it leads out of the segment."""
         return port.slice == (len(self.slices) - 1 if port.ahead > 0 else 0)
 
     def ports(self, ahead: int) -> list[Port]:
-        """All ports in one direction that lead to no arc yet."""
+        """Return all ports in one direction that lead to no arc yet."""
         every = (Port(row, j, c, ahead) for (row, j), found in self.known.items() for c in range(len(found)))
         return [port for port in every if port not in self.ends and not self.is_outer(port)]
 
     def state(self, port: Port) -> Number:
-        """The state at a port."""
+        """Return the state at a port."""
         return self.known[port.row, port.slice][port.number]
 
     def _join(self) -> None:
@@ -120,7 +120,7 @@ class Roadmap:
         self.arcs[port], self.arcs[goal] = (arc, False), (arc, True)
 
     def _number(self, row: int, j: int, y: Number) -> int:
-        """Which configuration of a slice a state is; a new one where none is near."""
+        """Return which configuration of a slice a state is; a new one where none is near."""
         found = self.known[row, j]
         if found:
             gaps = state_distance(np.array(found)[:, :-1], y[:-1], 1.0)

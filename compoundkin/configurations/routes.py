@@ -37,7 +37,7 @@ class Route:
     dimensions: Mapping[str, Mapping[str, complex]] = field(repr=False)
 
     def point(self, name: str) -> Number:
-        """Where a point is, complex (poses,); raises UnknownName."""
+        """Return where a point is, complex (poses,); raises UnknownName."""
         for link, points in self.dimensions.items():
             if name in points:
                 return np.broadcast_to(self.links[link].at(points[name]).c[0], self.values.shape)
@@ -56,7 +56,7 @@ class RouteLeg:
 def route(
     placing: SegmentPoses, circuit: Circuit, period: float, first: CircuitPlace, last: CircuitPlace, poses: int
 ) -> Route:
-    """The shorter of both ways around."""
+    """Return the shorter of both ways around."""
     ways = [way for sense in (1, -1) if (way := _legs(placing, circuit, first, last, sense)) is not None]
     count = max(2, poses)
     found = [_sampled(placing, circuit, period, way, count) for way in ways]
@@ -114,7 +114,7 @@ def _sampled(placing: SegmentPoses, circuit: Circuit, period: float, legs: list[
 
 
 def _leg(placing: SegmentPoses, leg: RouteLeg, count: int) -> tuple[Number, dict[str, tuple[Number, Number]]]:
-    """Driver values along a leg, and the origin and orientation of every link."""
+    """Return driver values along a leg, and the origin and orientation of every link."""
     phi = np.linspace(leg.start, leg.end, count)
     rows = np.array([leg.visit.row])
     sides = np.where(phi == 0.0, 0, np.where(phi == np.pi, 1, NONE))
@@ -130,13 +130,13 @@ def _joined(parts: list[tuple[Number, dict[str, tuple[Number, Number]]]], name: 
 
 
 def _steps(links: Mapping[str, tuple[Number, Number]], size: float) -> Number:
-    """How far all links move from pose to pose."""
+    """Return how far all links move from pose to pose."""
     squares = [np.abs(np.diff(z) / size) ** 2 + np.abs(np.angle(u[1:] / u[:-1])) ** 2 for z, u in links.values()]
     return np.sqrt(np.sum(squares, axis=0))
 
 
 def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration) -> CircuitPlace:
-    """The place of a configuration; raises InvalidInput where it lies on none of the circuits."""
+    """Return the place of a configuration; raises InvalidInput where it lies on none of the circuits."""
     sweep, segments = placing.sweep, placing.segments
     if one.structure.mechanism != sweep.plan.structure.mechanism:
         raise InvalidInput(Problem("configuration", "it is one of another mechanism"))

@@ -63,17 +63,17 @@ class SegmentClosure:
         return found, np.concatenate([matrix * (1.0 / self.weights), by_angle[..., None]], axis=-1)
 
     def block(self, rows: Number, phi: Number, rate: Number | None, sides: Number | None = None) -> Block:
-        """What the group is attached to, at angles (rows, columns)."""
+        """Return what the group is attached to, at angles (rows, columns)."""
         return self.sweep.run(self.segments, rows, self.segments.at(rows, phi), rate, sides, self.k)
 
     def blocks(self, phi: Number) -> Block:
-        """What it is attached to on all segments, at angles from one end to the other."""
+        """Return what it is attached to on all segments, at angles from one end to the other."""
         sides = np.full(len(phi), NONE)
         sides[0], sides[-1] = 0, 1
         return self.block(np.arange(self.segments.rows), phi[None], None, sides)
 
     def _assembled(self, y: Number, block: Block) -> tuple[Number, Number, Number]:
-        """Residuals, their derivatives by the angle, and by x, y, theta of the bodies."""
+        """Return residuals, their derivatives by the angle, and by x, y, theta of the bodies."""
         own = self.own
         bodies = self.bodies(y)
         count, n = len(y), 3 * own.n
@@ -96,7 +96,7 @@ class SegmentClosure:
         return found, by_angle, matrix
 
     def bodies(self, y: Number) -> list[Pose]:
-        """The poses of the bodies, each (paths, 1)."""
+        """Return the poses of the bodies, each (paths, 1)."""
         size = self.sweep.plan.size
         out = []
         for k in range(self.own.n):

@@ -92,7 +92,7 @@ class SegmentPoses(PrintsShort):
         return self.sweep.run(self.segments, rows, s[:, None], sides=None if sides is None else sides[:, None])
 
     def configurations(self, rows: Number, s: Number, sides: Number | None = None) -> list[Configuration]:
-        """Each segment's configuration at one driver value each."""
+        """Return each segment's configuration at one driver value each."""
         if not len(rows):
             return []
         sides = np.full(len(rows), NONE) if sides is None else sides
@@ -109,7 +109,7 @@ class SegmentPoses(PrintsShort):
         return found
 
     def _modes(self, block: Block, rows: Number, s: Number, sides: Number) -> list[dict[int, str]]:
-        """The signs and numbers of the groups with several configurations."""
+        """Return the signs and numbers of the groups with several configurations."""
         found: list[dict[int, str]] = [{} for _ in rows]
         for k, solver in enumerate(self.sweep.plan.solvers):
             if solver.modes == 0:
@@ -126,7 +126,7 @@ class SegmentPoses(PrintsShort):
         return found
 
     def _numbers(self, k: int, solver: GroupSolver, rows: Number, s: Number, sides: Number) -> list[str]:
-        """The number of a group's configuration among all that are real there."""
+        """Return the number of a group's configuration among all that are real there."""
         size = self.sweep.plan.size
         block = self.sweep.run(self.segments, rows, s[:, None], sides=sides[:, None], upto=k)
         every = solver.every(block).states
@@ -139,7 +139,7 @@ class SegmentPoses(PrintsShort):
 
 
 def gap_between(one: Configuration, block: Block, rows: int, size: float) -> Number:
-    """How far each of `rows` segments is from a configuration: parts of the size, radians; the farthest link."""
+    """Return how far each of `rows` segments is from a configuration: parts of the size, radians; the farthest link."""
     found = np.zeros(rows)
     for name, pose in one.poses.items():
         z = column(block.world[name].z.c[0] - pose.z.c[0], rows)

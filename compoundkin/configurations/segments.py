@@ -36,7 +36,7 @@ class SegmentCurve:
     states: Number
 
     def seeds(self, s: Number) -> Number:
-        """About the states at driver values `s` (any shape): cubic between the nodes."""
+        """Return, nearly, the states at driver values `s` (any shape): cubic between the nodes."""
         middle, half = (self.low + self.high) / 2.0, (self.high - self.low) / 2.0
         phi = np.arccos(np.clip((middle - s) / half, -1.0, 1.0))
         i = np.clip(np.searchsorted(self.nodes, phi, side="right") - 1, 0, len(self.nodes) - 2)
@@ -83,7 +83,7 @@ class Segments:
         return np.where(cosine > 0, low + half * (1.0 - cosine), high - half * (1.0 + cosine))
 
     def rate(self, rows: Number, phi: Number) -> Number:
-        """The derivative of the driver's value by the angle."""
+        """Return the derivative of the driver's value by the angle."""
         return ((self.high - self.low)[rows][:, None]) * np.sin(phi) / 2.0
 
     def sign(self, k: int, rows: Number, sides: Number | None) -> Number:
@@ -97,13 +97,13 @@ class Segments:
         return np.where(self.is_limit(k, rows, sides), 0.0, sign)
 
     def is_limit(self, k: int, rows: Number, sides: Number) -> Number:
-        """Where the given sides are limit positions or change points of a group."""
+        """Return where the given sides are limit positions or change points of a group."""
         own = (self.group[rows] == k) & np.isin(self.kind[rows], (LIMIT, CHANGE))
         wide = np.broadcast_to(sides, (len(rows), np.shape(sides)[-1]))
         return (wide != NONE) & np.take_along_axis(own, np.maximum(wide, 0), axis=1)
 
     def kept(self, good: Number) -> Segments:
-        """Those rows only; ends glued to others end there."""
+        """Return those rows only; ends glued to others end there."""
         rows = np.flatnonzero(good)
         new = np.full(self.rows + 1, NONE)
         new[rows] = np.arange(len(rows))
@@ -113,12 +113,12 @@ class Segments:
                        new[self.partner[rows]], self.side[rows])  # fmt: skip
 
     def seeds(self, k: int, rows: Number, s: Number) -> Number:
-        """About the states of a group without modes, (rows, columns, 3 n)."""
+        """Return, nearly, the states of a group without modes, (rows, columns, 3 n)."""
         return np.stack([self.curves[k][row].seeds(values) for row, values in zip(rows, s, strict=True)])
 
 
 def driver_segment(low: float, high: float, periodic: bool) -> Segments:
-    """The segment of the drivers alone."""
+    """Return the segment of the drivers alone."""
     one = np.zeros((1, 2), dtype=int)
     kind = one + (SEAM if periodic else RANGE)
     partner = one if periodic else one + NONE
@@ -154,7 +154,7 @@ class SegmentChain:
     periods: int = 0
 
     def branches(self) -> tuple[tuple[Visit, ...], ...]:
-        """The visits between turning points, each branch in the order of the chain."""
+        """Return the visits between turning points, each branch in the order of the chain."""
         cuts = [k for k, (a, b) in enumerate(self._steps()) if a.sense != b.sense]
         if not cuts:
             return (self.visits,)
@@ -167,7 +167,7 @@ class SegmentChain:
         return tuple([parts[-1], *parts[:-1]] if self.closed else parts)
 
     def _visit(self, k: int) -> Visit:
-        """The k-th visit, counted on around the circuit."""
+        """Return the k-th visit, counted on around the circuit."""
         around, k = divmod(k, len(self.visits))
         visit = self.visits[k]
         return replace(visit, periods=visit.periods + around * self.periods)
@@ -178,7 +178,7 @@ class SegmentChain:
 
 
 def chains_of(segments: Segments) -> tuple[SegmentChain, ...]:
-    """All circuits, in the order of their first segments."""
+    """Return all circuits, in the order of their first segments."""
     seen = np.zeros(segments.rows, dtype=bool)
     found = []
     for row in range(segments.rows):
@@ -190,7 +190,7 @@ def chains_of(segments: Segments) -> tuple[SegmentChain, ...]:
 
 
 def _around(segments: Segments, row: int) -> SegmentChain:
-    """The chain through a segment: forward; where that ends, backward too, and then from there."""
+    """Return the chain through a segment: forward; where that ends, backward too, and then from there."""
     ahead, after = _walk(segments, Visit(row, 1, 0))
     if after is not None:
         return SegmentChain(tuple(ahead), True, after.periods)
@@ -201,7 +201,7 @@ def _around(segments: Segments, row: int) -> SegmentChain:
 
 
 def _walk(segments: Segments, start: Visit) -> tuple[list[Visit], Visit | None]:
-    """The visits from one on, and the one with which they begin again; None where they end."""
+    """Return the visits from one on, and the one with which they begin again; None where they end."""
     visits = [start]
     while True:
         here = visits[-1]
@@ -212,7 +212,7 @@ def _walk(segments: Segments, start: Visit) -> tuple[list[Visit], Visit | None]:
 
 
 def following(segments: Segments, visit: Visit) -> Visit | None:
-    """The visit after one, None where its segment ends."""
+    """Return the visit after one, None where its segment ends."""
     partner, side = int(segments.partner[visit.row, visit.left]), int(segments.side[visit.row, visit.left])
     if partner == NONE:
         return None

@@ -48,7 +48,7 @@ def approach_path(
 def drawn_value(
     plan: SolvingOrder, given: Inputs, name: str, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> Number | None:
-    """The driver's coordinate as the drawing shows it, a number or (designs, 1); None where it does not."""
+    """Return the driver's coordinate as the drawing shows it, a number or (designs, 1); None where it does not."""
     driven = plan.driven[name]
     pair = driven.pair
     if any(link not in drawn for link in pair.members):
@@ -60,7 +60,7 @@ def drawn_value(
 
 
 def _nearest(plan: SolvingOrder, given: Inputs, values: Mapping[str, Number]) -> int:
-    """The index of the pose whose drivers are nearest to the drawn ones, over all designs."""
+    """Return the index of the pose whose drivers are nearest to the drawn ones, over all designs."""
     total: Number = np.zeros((1, 1))
     for name, value in values.items():
         gap = np.abs(given.drives[name][0] - value)
@@ -79,7 +79,7 @@ def _side(given: Inputs, at: int, ways: Mapping[str, Number]) -> float:
 
 
 def first_of(value: Number) -> Number:
-    """A dimension at the first pose of each design: a number, or an array (designs, 1)."""
+    """Return a dimension at the first pose of each design: a number, or an array (designs, 1)."""
     if np.ndim(value) == 0:
         return value
     array = np.asarray(value)
@@ -87,23 +87,23 @@ def first_of(value: Number) -> Number:
 
 
 def column(pose: Pose) -> Pose:
-    """A pose at the first pose of each design."""
+    """Return a pose at the first pose of each design."""
     theta = None if pose.theta is None else constant(first_of(pose.theta.c[0]))
     return Pose(constant(first_of(pose.z.c[0])), constant(first_of(pose.u.c[0])), theta)
 
 
 def spacings(plan: SolvingOrder, name: str, way: Number) -> int:
-    """How many spacings the longest of some ways of a driver takes; 0 where it stands still."""
+    """Return how many spacings the longest of some ways of a driver takes; 0 where it stands still."""
     return max(0, int(np.ceil(min(_spacings(plan, name, way) - CLOSE, MOST))))
 
 
 def between(plan: SolvingOrder, given: Inputs) -> int:
-    """How many spacings the longest step of a driver from one pose of a motion to the next takes."""
+    """Return how many spacings the longest step of a driver from one pose of a motion to the next takes."""
     return max((spacings(plan, name, steps) for name, steps in _steps(given)), default=0)
 
 
 def pace(plan: SolvingOrder, given: Inputs) -> float:
-    """How many spacings the longest step of a driver from one pose to the next is, as a fraction."""
+    """Return how many spacings the longest step of a driver from one pose to the next is, as a fraction."""
     return max((_spacings(plan, name, steps) for name, steps in _steps(given)), default=0.0)
 
 
@@ -113,7 +113,7 @@ def _spacings(plan: SolvingOrder, name: str, way: Number) -> float:
 
 
 def _steps(given: Inputs) -> Iterator[tuple[str, Number]]:
-    """The steps of every driver that moves."""
+    """Return the steps of every driver that moves."""
     for name, (value, *_) in given.drives.items():
         if np.ndim(value) > 1 and np.shape(value)[-1] > 1:
             yield name, np.diff(value, axis=-1)

@@ -75,7 +75,7 @@ class Block:
 
 
 def rates(values: tuple[Number, ...], order: int) -> Series:
-    """A driver's series from its value and rates (value, speed, acceleration, jerk).
+    """Return a driver's series from its value and rates (value, speed, acceleration, jerk).
 
     >>> rates((1.0, 2.0, 6.0, 0.0), 2).c
     (1.0, 2.0, 3.0)
@@ -85,7 +85,7 @@ def rates(values: tuple[Number, ...], order: int) -> Series:
 
 
 def places(designs: slice, poses: slice) -> tuple[Number, Number]:
-    """The places along the motion (a row) and the design indices (a column) of a block.
+    """Return the places along the motion (a row) and the design indices (a column) of a block.
 
     >>> [array.shape for array in places(slice(0, 2), slice(4, 7))]
     [(1, 3), (2, 1)]
@@ -139,7 +139,7 @@ class JoinedBlocks:
                     found[k] = self._with(found[k], c, designs, poses)
 
     def poses(self) -> dict[str, Pose]:
-        """The links' poses over all blocks."""
+        """Return the links' poses over all blocks."""
 
         def gathered(link: str, name: str) -> Series:
             return Series(tuple(self._found[link, name]))
@@ -153,7 +153,7 @@ class JoinedBlocks:
         }
 
     def _with(self, whole: Number, part: Number, designs: slice, poses: slice) -> Number:
-        """A coefficient with the part of a block put in; None where there is none yet."""
+        """Return a coefficient with the part of a block put in; None where there is none yet."""
         if np.ndim(part) == 0 and (whole is None or np.ndim(whole) == 0):
             return part
         shape = np.broadcast_shapes(np.shape(whole), self._needed(np.shape(part), designs, poses))
@@ -166,6 +166,6 @@ class JoinedBlocks:
         return whole
 
     def _needed(self, part: tuple[int, ...], designs: slice, poses: slice) -> tuple[int, ...]:
-        """The shape over all blocks; a block of one row does not show that all rows are equal."""
+        """Return the shape over all blocks; a block of one row does not show that all rows are equal."""
         block = (designs.stop - designs.start, poses.stop - poses.start)
         return tuple(n if p > 1 or b == 1 else 1 for n, p, b in zip(self.shape, part, block, strict=bool(part)))

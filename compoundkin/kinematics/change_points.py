@@ -45,11 +45,11 @@ class _Way:
     on_approach: bool
 
     def margins(self, tracker: Tracker, part: Inputs, s: Number, designs: Number, upto: int) -> Mapping[int, Number]:
-        """The margins of all groups up to one, at samples `s` of a part of the way."""
+        """Return the margins of all groups up to one, at samples `s` of a part of the way."""
         return tracker.run(part, 0, s * self.unit, designs, upto, self.on_approach).margins
 
     def blocks(self) -> Iterator[tuple[slice, slice, Inputs, Number, Number]]:
-        """The way in blocks: designs, samples, their inputs, places and design indices."""
+        """Return the way in blocks: designs, samples, their inputs, places and design indices."""
         for d, m in blocks(self.samples.designs, self.samples.poses, BLOCK):
             yield d, m, self.samples.cut(d, m), *places(d, m)
 
@@ -90,7 +90,7 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
 
 
 def _sampled(way: _Way, tracker: Tracker, groups: Sequence[int]) -> dict[int, Number]:
-    """The margins of some groups at all samples of a way; right as far as the first group that changes."""
+    """Return the margins of some groups at all samples of a way; right as far as the first group that changes."""
     found = {k: np.empty((way.samples.designs, way.samples.poses)) for k in groups}
     for d, m, part, s, designs in way.blocks():
         margins = way.margins(tracker, part, s, designs, groups[-1] + 1)
@@ -110,7 +110,7 @@ def _ways(tracker: Tracker) -> Iterator[_Way]:
 
 
 def rates_at(given: Inputs, tracker: Tracker, order: int) -> tuple[Number, Number, Mapping[str, Pose]]:
-    """The poses that are change points themselves, solved through the double root: designs, indices, poses."""
+    """Return the poses that are change points themselves, solved through the double root: designs, indices, poses."""
     spots: dict[tuple[int, int], dict[int, bool]] = {}
     for k, flips in tracker.flips.items():
         place: Number = np.round(flips)
@@ -147,7 +147,7 @@ class _Spots(NamedTuple):
     places: Number
 
     def where(self, which: Number) -> _Spots:
-        """Some of them."""
+        """Return some of them."""
         return _Spots(self.groups[which], self.designs[which], self.places[which])
 
 
@@ -166,7 +166,7 @@ def _touching(way: _Way, tracker: Tracker, groups: Sequence[int]) -> _Spots:
 
 
 def _lowest(margin: Number) -> tuple[Number, Number]:
-    """Designs and samples at which a margin is least and may have a zero beside them."""
+    """Return designs and samples at which a margin is least and may have a zero beside them."""
     padded = np.pad(margin, ((0, 0), (1, 1)), constant_values=np.inf)
     here, before, after = margin, padded[:, :-2], padded[:, 2:]
     lowest = (here < NEAR) & (here >= -TOUCHING) & (here <= before) & (here < after) & (before >= 0) & (after >= 0)
@@ -197,7 +197,7 @@ def _minimum(way: _Way, tracker: Tracker, spots: _Spots) -> tuple[Number, Number
 
 
 def _margins(way: _Way, tracker: Tracker, spots: _Spots, s: Number) -> Number:
-    """The margin of each spot's group at a place beside it."""
+    """Return the margin of each spot's group at a place beside it."""
     upto = int(spots.groups.max()) + 1
     found = way.margins(tracker, way.samples.pick(spots.designs, s), s[:, None], spots.designs[:, None], upto)
     own = np.empty(len(s))

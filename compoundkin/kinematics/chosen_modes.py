@@ -14,7 +14,7 @@ from compoundkin.model.geometry import vector
 
 
 def signs_of(plan: SolvingOrder, modes: Mapping[str, int] | str | Configuration | None = None) -> dict[int, int]:
-    """The modes chosen by sign, by group; those of the call go before those of the mechanism."""
+    """Return the modes chosen by sign, by group; those of the call go before those of the mechanism."""
     mechanism = plan.structure.mechanism
     if isinstance(modes, Configuration):
         return {}
@@ -42,7 +42,7 @@ def _by_group(plan: SolvingOrder, modes: Mapping[str, int]) -> dict[int, int]:
 
 
 def read_name(plan: SolvingOrder, name: str) -> dict[int, int]:
-    """The signs and numbers that a name gives to groups; raises InvalidInput for parts that name none."""
+    """Return the signs and numbers that a name gives to groups; raises InvalidInput for parts that name none."""
     return dict(_read(plan, part.strip()) for part in name.split(BETWEEN.strip())) if name.strip() != ONLY else {}
 
 
@@ -69,7 +69,7 @@ def _mode(modes: int, text: str) -> int | None:
 
 
 def read_hint(plan: SolvingOrder, hint: Mapping[str, object] | None) -> dict[str, Number]:
-    """A hint as planar vectors; raises InvalidInput for points that the mechanism does not have."""
+    """Return a hint as planar vectors; raises InvalidInput for points that the mechanism does not have."""
     letters = plan.structure.mechanism.carriers
     wrong = [
         Problem(f"hint.{k}", f"there is no point {k!r}", nearest(k, list(letters)))

@@ -35,7 +35,7 @@ def inputs(
     times: Number | None = None,
     order: int = RATES - 1,
 ) -> Inputs:
-    """The inputs of a solution, in time where `times` are given (see `timing`).
+    """Return the inputs of a solution, in time where `times` are given (see `timing`).
 
     Raises InvalidInput for unknown drivers or shapes that do not fit.
     """
@@ -53,7 +53,7 @@ def inputs(
 
 
 def by_name(mechanism: Mechanism, values: Any) -> Mapping[str, Any] | None:
-    """The values of the drivers by name, those of the only one also without; raises InvalidInput."""
+    """Return the values of the drivers by name, those of the only one also without; raises InvalidInput."""
     if values is None or isinstance(values, Mapping):
         return values
     if len(mechanism.drives) != 1:
@@ -78,7 +78,7 @@ def _driver(
 
 
 def _unsaid(plan: SolvingOrder, drive: Drive) -> Number:
-    """The values of a driver that is given none: a full turn."""
+    """Return the values of a driver that is given none: a full turn."""
     if not plan.driven[drive.name].pair.free_is_angle:
         raise InvalidInput(
             Problem(f"drives.{drive.name}", "it has no values", f"solve(..., {{{drive.name!r}: lengths}})")
@@ -142,7 +142,7 @@ def _shape(plan: SolvingOrder, drives: Mapping[str, tuple[Number, ...]]) -> tupl
 
 
 def times_of(mechanism: Mechanism, values: Mapping[str, Any] | None, time: Any) -> Number | None:
-    """The times of a motion; None where the drivers' values are given instead.
+    """Return the times of a motion; None where the drivers' values are given instead.
 
     They are `time`, else those that the mechanism states, else 73 over the range on which all laws agree. Raises
     InvalidInput for times that are not numbers, and where laws need times that nothing tells.
@@ -189,7 +189,7 @@ def _agreed(laws: Mapping[str, Law]) -> Number:
 def timed(
     drive: Drive, given: tuple[Number, ...], times: Number, asked: Mapping[str, bool], order: int
 ) -> tuple[Number, ...]:
-    """Value, speed, acceleration and jerk of a driver at times.
+    """Return value, speed, acceleration and jerk of a driver at times.
 
     `given` are those without a law, from which the driver moves as a polynomial in time; `asked` tells which of
     them the call gives. Raises InvalidInput where a driver has a law and is given them as well, or where they vary

@@ -37,13 +37,13 @@ Letters = list[tuple[str, str]]
 
 
 def shown(plan: SolvingOrder, solver: GroupSolver, sketch: Mapping[str, Number]) -> Letters:
-    """The letters a sketch shows on the links of a group, each with its link."""
+    """Return the letters a sketch shows on the links of a group, each with its link."""
     links = plan.structure.mechanism.links
     return [(link, letter) for link in solver.group.links for letter in links[link].points if letter in sketch]
 
 
 def distance(plan: SolvingOrder, letters: Letters, sketch: Mapping[str, Number], block: Block) -> Number:
-    """The summed squared distances of a group's points from where they are drawn."""
+    """Return the summed squared distances of a group's points from where they are drawn."""
     points = plan.structure.mechanism.geometry.points
     total: Number = 0.0
     for link, letter in letters:

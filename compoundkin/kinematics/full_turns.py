@@ -60,7 +60,7 @@ def turns_of(tracker: Tracker, k: int, link: str) -> Turns:
 
 
 def _angles(tracker: Tracker, k: int, link: str, way: Inputs, unit: float, on_approach: bool) -> Number:
-    """A link's orientation at every sample of a way, which are `unit` places apart."""
+    """Return a link's orientation at every sample of a way, which are `unit` places apart."""
     found = np.empty((way.designs, way.poses))
     for d, m in blocks(way.designs, way.poses, BLOCK):
         s, designs = places(d, m)
@@ -70,7 +70,7 @@ def _angles(tracker: Tracker, k: int, link: str, way: Inputs, unit: float, on_ap
 
 
 def _unwrapped(angles: Number, start: int, first: Number) -> Number:
-    """Angles made continuous, over gaps too, and at the sample `start` nearest to `first`."""
+    """Make angles continuous, over gaps too, and at the sample `start` nearest to `first`."""
     known = np.isfinite(angles)
     last = np.maximum.accumulate(np.where(known, np.arange(angles.shape[1]), -1), axis=1)
     held = np.take_along_axis(angles, np.where(last < 0, known.argmax(axis=1)[:, None], last), axis=1)
@@ -79,7 +79,7 @@ def _unwrapped(angles: Number, start: int, first: Number) -> Number:
 
 
 def recounted(plan: SolvingOrder, ways: tuple[Inputs, ...], pose: Inputs) -> tuple[Inputs, ...]:
-    """The motion and its approach path, phases read off a drawing taken on by the turns that drivers have made.
+    """Return the motion and its approach path, phases read off a drawing taken on by the turns that drivers have made.
 
     A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
     """
@@ -89,7 +89,7 @@ def recounted(plan: SolvingOrder, ways: tuple[Inputs, ...], pose: Inputs) -> tup
 
 
 def _as_drawn(plan: SolvingOrder, pose: Inputs) -> tuple[Inputs, dict[str, Number]]:
-    """The reference pose with drivers as drawn, in the turn they are in there; and that turn, by driven pair."""
+    """Return the reference pose with drivers as drawn, in the turn they are in there; and that turn, by driven pair."""
     rounds: dict[str, Number] = {}
     for name, driven in plan.driven.items():
         value = drawn_value(plan, pose, name, plan.structure.mechanism.geometry.drawn, {})

@@ -37,7 +37,7 @@ class Gap:
 
 
 def gaps(motion: Motion) -> tuple[Gap, ...]:
-    """All gaps of a motion, design by design, in the order of the motion.
+    """Return all gaps of a motion, design by design, in the order of the motion.
 
     >>> import warnings
     >>> from compoundkin.model.mechanism import Mechanism
@@ -85,7 +85,7 @@ def gaps(motion: Motion) -> tuple[Gap, ...]:
 
 
 def _runs(failed: Number) -> Number:
-    """Rows (design, first, last) of the runs of True along the last axis."""
+    """Return rows (design, first, last) of the runs of True along the last axis."""
     edge: Number = np.diff(np.pad(failed, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     design, first = np.nonzero(edge == 1)
     last = np.nonzero(edge == -1)[1] - 1
@@ -93,7 +93,7 @@ def _runs(failed: Number) -> Number:
 
 
 def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[str, Number]:
-    """The driver values between an assembled pose and its neighbour that is not, by bisection."""
+    """Return the driver values between an assembled pose and its neighbour that is not, by bisection."""
     inside = (good >= 0) & (good < motion.inputs.poses)
     near: Number = bad + np.where(inside, good - bad, 0.0)
 

@@ -49,7 +49,7 @@ class GroupPath:
     reach: Number
 
     def seeds(self, designs: Number, s: Number) -> Number:
-        """Cubic interpolation for design indices and places `s` (broadcast together): NaN beyond reach."""
+        """Interpolate by cubics for design indices and places `s` (broadcast together): NaN beyond reach."""
         low, high = self.reach[designs, 0], self.reach[designs, 1]
         if len(self.s) == 1:
             out = self.states[designs, np.zeros(np.shape(s), dtype=int)]
@@ -149,7 +149,7 @@ class _March:
         return Taken(np.array([length]), np.array([is_good]), np.array([self.goal == len(self.stops)]))
 
     def _stride(self, rates: list[Number]) -> float:
-        """How far the prediction is good: by the farthest move that each of its terms may make."""
+        """Return how far the prediction is good: by the farthest move that each of its terms may make."""
         weights = self.equations.weights
         sizes = (float(np.max(np.abs(c[self.alive] * weights), initial=0.0)) for c in rates)
         return min(((most / c) ** (1.0 / k) for k, (most, c) in enumerate(zip(MOVES, sizes, strict=True), 1) if c > 0),
@@ -161,14 +161,14 @@ class _March:
         return self.tracker.run(self.along(place), len(MOVES), place[None], designs, self.k, self.on_approach)
 
     def _rates(self, state: Number, block: Block) -> tuple[list[Number], Number]:
-        """The state's coefficients by s, and on which side of a singularity the configuration is."""
+        """Return the state's coefficients by s, and on which side of a singularity the configuration is."""
         rates, side = self.equations.rates(state, block, len(MOVES))
         return rates, np.broadcast_to(side, state.shape[:2])
 
     def _step(
         self, here: float, h: float, rates: list[Number], side: Number
     ) -> tuple[Number, list[Number], Number, Number]:
-        """One step: the state there, its rates and side, and for which designs it is a neighbour."""
+        """Return one step: the state there, its rates and side, and for which designs it is a neighbour."""
         guess = self.state + sum(c * h**k for k, c in enumerate(rates, 1))
         block = self._block(here + h)
         found = self.equations.newton(guess, block)
@@ -184,7 +184,7 @@ class _March:
         return state, new_rates, new_side, good & near & (new_side == side).reshape(len(self.state))
 
     def path(self, begin: Number) -> GroupPath:
-        """What was tracked; `begin` is where each design's reach starts."""
+        """Return what was tracked; `begin` is where each design's reach starts."""
         return GroupPath(
             np.array(self.s),
             np.concatenate(self.states, axis=1),

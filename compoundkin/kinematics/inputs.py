@@ -41,11 +41,11 @@ class Inputs(PrintsShort):
         return self.shape[-1] if self.shape else 1
 
     def cut(self, designs: slice, poses: slice) -> Inputs:
-        """A rectangle of designs and poses."""
+        """Return a rectangle of designs and poses."""
         return self._each(lambda v: _cut(v, designs, poses))
 
     def at(self, s: Number) -> Inputs:
-        """All designs at places `s` (1-D) along the motion, fractional ones in between poses.
+        """Return all designs at places `s` (1-D) along the motion, fractional ones in between poses.
 
         The drivers' speeds are then the slopes with respect to `s`.
         """
@@ -62,27 +62,27 @@ class Inputs(PrintsShort):
         return replace(between, drives=slopes)
 
     def refined(self, per_pose: int) -> Inputs:
-        """The motion with samples between its poses, `per_pose` a pose."""
+        """Return the motion with samples between its poses, `per_pose` a pose."""
         if per_pose == 1 or self.poses == 1:
             return self
         count = (self.poses - 1) * per_pose + 1
         return self.at(np.linspace(0.0, self.poses - 1.0, count)).of_poses(count)
 
     def pick(self, designs: Number, s: Number) -> Inputs:
-        """One pose of each of the given designs, at its own place `s`: a column of poses."""
+        """Return one pose of each of the given designs, at its own place `s`: a column of poses."""
         i = np.clip(np.floor(s).astype(int), 0, max(self.poses - 2, 0))
         return self._each(lambda v: _picked(v, designs, i, s - i))
 
     def driven(self, drives: Mapping[str, tuple[Number, ...]]) -> Inputs:
-        """The same dimensions with other driver values."""
+        """Return the same dimensions with other driver values."""
         return replace(self, drives=drives)
 
     def of_poses(self, count: int) -> Inputs:
-        """The same numbers, as a motion of `count` poses."""
+        """Return the same numbers, as a motion of `count` poses."""
         return replace(self, shape=(*self.shape[:-1], count))
 
     def series(self, order: int) -> dict[str, Series]:
-        """The drivers as series."""
+        """Return the drivers as series."""
         return {name: rates(values, order) for name, values in self.drives.items()}
 
     @cached_property
@@ -141,7 +141,7 @@ def mapped(end: End, change: Any) -> End:
 
 
 def fit(shape: tuple[int, ...]) -> Callable[[Number], Number]:
-    """Brings a value into the form (1 or designs, 1 or poses); numbers stay numbers."""
+    """Bring a value into the form (1 or designs, 1 or poses); numbers stay numbers."""
     designs = prod(shape[:-1])
 
     def fitted(value: Number) -> Number:

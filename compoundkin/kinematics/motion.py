@@ -114,7 +114,7 @@ class Motion(ShowsPicture):
         return way("plot")(self, *names, **options)
 
     def animate(self, **options: Any) -> Any:
-        """An animation to be saved as GIF, MP4 or SVG: `compoundkin.animate` of this motion."""
+        """Return an animation to be saved as GIF, MP4 or SVG: `compoundkin.animate` of this motion."""
         return way("animation")(self, **options)
 
     @property
@@ -122,7 +122,7 @@ class Motion(ShowsPicture):
         return self.tracker.plan
 
     def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:
-        """The motion with some of its poses put in the place of what was solved there."""
+        """Return the motion with some of its poses put in the place of what was solved there."""
         if not len(designs):
             return self
         shape = (self.inputs.designs, self.inputs.poses)

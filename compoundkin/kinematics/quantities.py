@@ -162,7 +162,7 @@ def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
 
 
 def _whole(motion: HasQuantities, name: str) -> Quantity:
-    """A quantity that is no part of another."""
+    """Return a quantity that is no part of another."""
     owner, dot, word = name.rpartition(".") if "." in name else (name, "", "")
     found = [owner_of(motion, kind, owner) for kind in CATALOGUE if owner in getattr(motion, kind)]
     if not found:

@@ -24,7 +24,7 @@ class PointMotion:
         self._derivative = derivative
 
     def derivative(self, k: int) -> Vectors:
-        """The k-th time derivative of the position; raises InvalidInput beyond the order solved for."""
+        """Return the k-th time derivative of the position; raises InvalidInput beyond the order solved for."""
         self._grid.require(k)
         found: Vectors = self._grid.known(self._derivative(k)).astype(complex, copy=False).view(Vectors)
         return found
@@ -111,7 +111,7 @@ class LinkMotion:
         return PointMotion(self._grid, self._pose.z.derivative)
 
     def at(self, point: Any) -> PointMotion:
-        """The motion of any point given in its frame, complex or (x, y)."""
+        """Return the motion of any point given in its frame, complex or (x, y)."""
         p = self._grid.fitted(vector("point", point))
         return PointMotion(self._grid, lambda k: self._pose.derivative(p, k))
 
@@ -132,7 +132,7 @@ class PairMotion:
         self.is_angle = is_angle
 
     def derivative(self, k: int) -> Number:
-        """The k-th time derivative; raises InvalidInput beyond the order solved for."""
+        """Return the k-th time derivative; raises InvalidInput beyond the order solved for."""
         self._grid.require(k)
         value = self.coordinate.derivative(k)
         value = self._grid.shaped(value) if self._prescribed else self._grid.known(value)

@@ -98,7 +98,7 @@ def solve(
 
 
 def plan_of(mechanism: Mechanism | Structure) -> SolvingOrder:
-    """The plan of a mechanism, made once and kept with it."""
+    """Return the plan of a mechanism, made once and kept with it."""
     if not isinstance(mechanism, Mechanism | Structure):
         raise InvalidInput(Problem("mechanism", f"{mechanism!r} is not a mechanism", "load() one from a file"))
     owner = mechanism.mechanism if isinstance(mechanism, Structure) else mechanism
@@ -115,7 +115,7 @@ def plan_of(mechanism: Mechanism | Structure) -> SolvingOrder:
 
 
 def _start(plan: SolvingOrder, modes: Any) -> Configuration | None:
-    """The configuration that is given; raises InvalidInput for one of another mechanism."""
+    """Return the configuration that is given; raises InvalidInput for one of another mechanism."""
     if not isinstance(modes, Configuration):
         return None
     if list(modes.structure.mechanism.links) != list(plan.structure.mechanism.links):
@@ -154,7 +154,7 @@ def _near(block: Block) -> set[int]:
 
 
 def starting_configuration(plan: SolvingOrder, values: Mapping[str, float], design: int) -> Configuration | None:
-    """The configuration in which `solve` begins at these values; None where it does not close there."""
+    """Return the configuration in which `solve` begins at these values; None where it does not close there."""
     given = inputs(plan, values, None, None, None)
     try:
         tracker = Tracker(plan, given, signs_of(plan), {})
@@ -167,7 +167,7 @@ def starting_configuration(plan: SolvingOrder, values: Mapping[str, float], desi
 
 
 def first_configuration(motion: Motion, design: int) -> Configuration | None:
-    """The configuration of the first assembled pose of a motion, without its modes; None where it has none."""
+    """Return the configuration of the first assembled pose of a motion, without its modes; None where it has none."""
     known = np.flatnonzero(motion.failed[design] == 0)
     if not known.size:
         return None

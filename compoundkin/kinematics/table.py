@@ -123,7 +123,7 @@ def table_of(motion: AtPoses, *names: str) -> Table:
 
 
 def _chosen(motion: AtPoses, names: Sequence[str]) -> Iterator[Quantity]:
-    """The drivers' values and what is named."""
+    """Return the drivers' values and what is named."""
     found = [quantity(motion, name) for name in names]
     yield from (owner_of(motion, "drives", name).read(VALUE) for name in motion.drives)
     yield from found
@@ -134,7 +134,7 @@ def _flat(found: Quantity, shape: tuple[int, ...]) -> Quantity:
 
 
 def _designs(shape: tuple[int, ...]) -> Iterator[Quantity]:
-    """The index columns of the designs: one for each axis before the last."""
+    """Return the index columns of the designs: one for each axis before the last."""
     axes = len(shape) - 1
     for axis in range(axes):
         yield Quantity(DESIGN if axes == 1 else f"{DESIGN}{axis}", "", np.indices(shape)[axis].reshape(-1))
@@ -146,7 +146,7 @@ def _time(motion: AtPoses) -> Iterator[Quantity]:
 
 
 def _everything(motion: AtPoses) -> Iterator[Quantity]:
-    """All derivatives of all there is; where a pin and a driver have one name, the value is the driver's."""
+    """Return all derivatives of all there is; where a pin and a driver have one name, the value is the driver's."""
     for kind, words in TABULATED.items():
         for name in getattr(motion, kind):
             first = int(kind == "pairs" and name in motion.drives)

@@ -115,7 +115,7 @@ class Side:
 
 
 def side_of(pair: Pair, body: Body) -> Side:
-    """A body's part in a pair."""
+    """Return a body's part in a pair."""
     return Side(pair, 0 if pair.members[0] in body.links else 1)
 
 
@@ -129,7 +129,7 @@ class MountedBody:
         self.body = body
 
     def placed(self, block: Block, coordinate: Series) -> Pose:
-        """The body's pose."""
+        """Return the body's pose."""
         side = self.side
         relative = self.lower.placed(block.ends[side.pair.name], coordinate)
         link = block.world[side.other].compose(relative if side.own else relative.inverse())
@@ -137,16 +137,16 @@ class MountedBody:
         return link if local is None else link.compose(local.inverse())
 
     def poses(self, block: Block, coordinate: Series) -> Poses:
-        """The poses of the higher pair's members."""
+        """Return the poses of the higher pair's members."""
         own = block.links_of(self.body, self.placed(block, coordinate))
         return tuple(own[name] if name in own else block.world[name] for name in self.higher.members)
 
     def leading(self, block: Block) -> Block:
-        """What it needs of a block, without derivatives."""
+        """Return what it needs of a block, without derivatives."""
         return block.leading([self.side.other, *self.higher.members])
 
     def freedom(self, block: Block) -> Freedom:
-        """How the body moves as the coordinate grows."""
+        """Return how the body moves as the coordinate grows."""
         pose = self.placed(block, Series((0.0, 1.0)))
         along = pose.z.c[1] if len(pose.z.c) > 1 else 0j
         if not self.side.pair.free_is_angle:

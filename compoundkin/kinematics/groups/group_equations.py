@@ -76,7 +76,7 @@ class GroupEquations:
         return np.tile([1.0 / self.size, 1.0 / self.size, 1.0], len(self.kept))
 
     def state(self, bodies: list[Pose]) -> Number:
-        """The state of all bodies' poses, at their leading coefficients."""
+        """Return the state of all bodies' poses, at their leading coefficients."""
         kept = [bodies[k] for k in self.kept]
         parts = [v for b in kept for v in (b.z.c[0].real, b.z.c[0].imag, b.angle.c[0])]
         return np.stack(np.broadcast_arrays(*parts), axis=-1)
@@ -102,7 +102,7 @@ class GroupEquations:
         return Solution(np.stack(np.broadcast_arrays(*found), axis=-1), closed, moved)
 
     def series(self, state: Number, block: Block, order: int) -> list[Pose]:
-        """All bodies' poses to the given order, from a closed state."""
+        """Return all bodies' poses to the given order, from a closed state."""
         kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
         if order:
             inverse = Inverse(self._rows(kept, block.leading()), self.width)
@@ -112,7 +112,7 @@ class GroupEquations:
         return [found[k] for k in range(self.n)]
 
     def rates(self, state: Number, block: Block, order: int) -> tuple[list[Number], Number]:
-        """The state's coefficients 1 to `order`, each (..., width), in a block of that order; and its side.
+        """Return the state's coefficients 1 to `order`, each (..., width), in a block of that order; and its side.
 
         The side is the sign of the determinant of the equations: it changes across a singularity.
         """
@@ -126,24 +126,24 @@ class GroupEquations:
         return found, np.sign(inverse.determinant)
 
     def matrix(self, state: Number, block: Block) -> Number:
-        """The matrix of all equations at a state, (..., width, width)."""
+        """Return the matrix of all equations at a state, (..., width, width)."""
         kept = self._kept_poses(list(np.moveaxis(state, -1, 0)))
         return stacked(self._rows(kept, block.leading()), self.width)
 
     def _next(self, kept: Mapping[int, Pose], inverse: Inverse, block: Block, k: int) -> list[Number]:
-        """The k-th coefficients of the state, from poses known to the one before."""
+        """Return the k-th coefficients of the state, from poses known to the one before."""
         trial = {j: _turned((*b.z.c, 0j), (*b.angle.c, np.zeros_like(b.angle.c[0]))) for j, b in kept.items()}
         return inverse.times([-r for r in self._residual(trial, block, k)])
 
     def _grown(self, kept: Mapping[int, Pose], step: list[Number]) -> dict[int, Pose]:
-        """The poses with one more coefficient."""
+        """Return the poses with one more coefficient."""
         return {
             j: _turned((*b.z.c, step[3 * i] + 1j * step[3 * i + 1]), (*b.angle.c, step[3 * i + 2]))
             for i, (j, b) in enumerate(kept.items())
         }
 
     def _kept_poses(self, values: list[Number]) -> dict[int, Pose]:
-        """The poses of the kept bodies, of order 0, from the numbers of a state."""
+        """Return the poses of the kept bodies, of order 0, from the numbers of a state."""
         found = {}
         for i, body in enumerate(self.kept):
             x, y, theta = values[3 * i : 3 * i + 3]
@@ -152,7 +152,7 @@ class GroupEquations:
         return found
 
     def _residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> list[Number]:
-        """The k-th coefficients of all equations: those of the bars, then the other pairs' closures."""
+        """Return the k-th coefficients of all equations: those of the bars, then the other pairs' closures."""
         found = [bar.residual(bodies, block, k) for bar in self.bars]
         for number in self.others:
             pair = self.pairs[number]
@@ -161,7 +161,7 @@ class GroupEquations:
         return found
 
     def _rows(self, bodies: Mapping[int, Pose], block: Block) -> list[Row]:
-        """The Jacobian of all equations by the state."""
+        """Return the Jacobian of all equations by the state."""
         first = {body: 3 * i for i, body in enumerate(self.kept)}
         rows = [bar.row(first, bodies, block) for bar in self.bars]
         for number in self.others:
@@ -186,7 +186,7 @@ class GroupEquations:
             yield row
 
     def _links(self, number: int, bodies: Mapping[int, Pose], block: Block, k: int) -> Poses:
-        """The poses of a pair's members, to order k at most."""
+        """Return the poses of a pair's members, to order k at most."""
         return tuple(member.pose(bodies, block, k) for member in self.members[number])
 
     def _properly_assembled(self, bodies: Mapping[int, Pose], block: Block) -> Number:
@@ -199,6 +199,6 @@ class GroupEquations:
 
 
 def _turned(z: tuple[Number, ...], theta: tuple[Number, ...]) -> Pose:
-    """The pose of an origin and an angle."""
+    """Return the pose of an origin and an angle."""
     angle = Series(theta)
     return Pose(Series(z), angle.turn(), angle)

@@ -43,17 +43,17 @@ class PRP(DyadSolver):
     def explain(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
-        """The guides are parallel."""
+        """Say that the guides are parallel."""
         return f"the guides of {names[0]} and {names[2]} are parallel, so that {names[1]} is not fixed"
 
 
 def _line(attachment: OuterPair, pin: End) -> tuple[Series, Series]:
-    """A point of the line on which the inner pin runs, and the orientation of the block that carries it."""
+    """Return a point of the line on which the inner pin runs, and the orientation of the block that carries it."""
     u = attachment.world.along * attachment.local.along.conj()
     return Pose(as_series(attachment.world.point), u).at(pin.point - attachment.local.point), u
 
 
 def separated(sine: Series) -> tuple[Series, Number]:
-    """The sine, NaN where the guides are parallel; and the margin."""
+    """Return the sine, NaN where the guides are parallel; and the margin."""
     margin = np.abs(sine.c[0]) - PARALLEL
     return Series((np.where(margin >= 0, sine.c[0], np.nan), *sine.c[1:])), margin

@@ -41,5 +41,5 @@ class RPP(DyadSolver):
     def explain(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
-        """The guides are parallel."""
+        """Say that the guides are parallel."""
         return f"the guides of {names[1]} and {names[2]} are parallel, so that the position along them is not fixed"

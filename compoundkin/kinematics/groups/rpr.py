@@ -42,7 +42,7 @@ class RPR(DyadSolver):
     def explain(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
-        """The pins are nearer to each other than their eccentricity."""
+        """Say that the pins are nearer to each other than their eccentricity."""
         line, across = _distances(first, inner, second)
         if element(np.abs(line.c[0]) - np.abs(across.c[0]), at) >= 0:
             pins = f"{names[0]} and {names[2]} coincide"
@@ -54,7 +54,7 @@ class RPR(DyadSolver):
 
 
 def _distances(first: OuterPair, inner: tuple[End, End], second: OuterPair) -> tuple[Series, Series]:
-    """The vector between the outer pins, and their distance across the guide."""
+    """Return the vector between the outer pins, and their distance across the guide."""
     line = as_series(second.world.point) - first.world.point
     here = as_series(first.local.point - inner[0].point) * inner[0].along.conj()
     there = as_series(second.local.point - inner[1].point) * inner[1].along.conj()

@@ -41,7 +41,7 @@ class RRP(DyadSolver):
     def explain(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
-        """The rod does not reach the line of its other pin."""
+        """Say that the rod does not reach the line of its other pin."""
         rod, start, guide, _ = _line(first, inner, second)
         distance = np.abs(guide.cross(start).c[0])
         return (

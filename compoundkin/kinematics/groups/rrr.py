@@ -43,7 +43,7 @@ class RRR(DyadSolver):
     def explain(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
-        """Too far apart or too near."""
+        """Say that the pins are too far apart or too near."""
         a, b, line = (np.abs(s.c[0]) for s in _sides(first, inner, second))
         outer, pin, other = names
         between = f"|{outer}{other}| = {text(line, at)}"
