@@ -5,9 +5,14 @@ from __future__ import annotations
 import ast
 import re
 
-from tests.architecture_page import PAGE
+from tests.architecture_page import PAGE, pages
 from tests.source import FILES, ROOT, tree, where
 from tests.test_architecture import only_shrinks
+
+
+def test_its_tables_are_up_to_date() -> None:
+    """If not: run `python -m tests.architecture_page`."""
+    only_shrinks(path.name for path, text in pages().items() if path.read_text(encoding="utf-8") != text)
 
 
 def test_it_is_one_page() -> None:
