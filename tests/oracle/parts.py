@@ -279,7 +279,8 @@ def _gap(gap: Any) -> dict[str, Any]:
 
 
 def _pair(pair: Any) -> dict[str, Any]:
-    return _of(pair, "name", "code", "members", "letters", "held", "is_simple", "is_drivable", "free_is_angle")
+    told = _of(pair, "name", "code", "members", "letters", "held", "is_simple", "free_is_angle")
+    return {**told, "is_drivable": program.is_drivable(pair)}
 
 
 def _body(body: Any) -> dict[str, Any]:

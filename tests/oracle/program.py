@@ -43,6 +43,13 @@ def structure_of(mechanism: Any) -> Any:
     return ck.decompose(mechanism)
 
 
+def is_drivable(pair: Any) -> bool:
+    """Whether a driver may prescribe what a pair leaves free."""
+    from compoundkin.model.pairs.optional_answers import as_drivable
+
+    return as_drivable(pair) is not None
+
+
 def name_of(structure: Any) -> Any:
     """What a mechanism is called by its graph, frame and drivers."""
     return ck.chains.structure_name(structure)
