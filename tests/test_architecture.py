@@ -305,9 +305,6 @@ STILL_LONG_FUNCTIONS = {
     "kinematics/tracking.py: __init__",
 }
 STILL_LONG = {
-    "analysis/equations/loop_equations.py",
-    "model/pairs/cam.py",
     "model/pairs/face.py",
-    "model/pairs/geared.py",
     "model/pairs/loop_terms.py",
 }

@@ -14,7 +14,7 @@ from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.model.pairs.profiled import Profiled, as_profiled
+from compoundkin.model.pairs.contact import Profiled, as_profiled
 from compoundkin.model.profiles import Synthesised
 
 # Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and

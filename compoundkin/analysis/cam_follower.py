@@ -8,7 +8,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, as_series
 from compoundkin.kinematics import Motion
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.profiled import Profiled
+from compoundkin.model.pairs.contact import Profiled
 
 # Slower than this part of the fastest, a velocity has no direction but that of rounding.
 RESTS = 1e-9

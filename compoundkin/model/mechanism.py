@@ -15,7 +15,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Link, Mode
 from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
-from compoundkin.model.pairs.profiled import as_profiled
+from compoundkin.model.pairs.contact import as_profiled
 from compoundkin.model.validation import problems_of
 from compoundkin.model.written import Written
 

@@ -15,7 +15,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block, places
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.model.attributes import OF_POINTS
-from compoundkin.model.pairs.profiled import as_profiled
+from compoundkin.model.pairs.contact import as_profiled
 
 # Central differences on eight neighbours: their error is of eighth, eighth and sixth order in the step.
 OFFSETS = np.arange(-4, 5)

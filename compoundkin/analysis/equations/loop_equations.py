@@ -5,14 +5,13 @@ Sources: R. L. Norton, Design of Machinery, chapter 4; E. Soylemez, Mechanisms, 
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
 
-from compoundkin.analysis.equations.pair_terms import pair_terms
+from compoundkin.analysis.equations.pair_terms import pair_terms, shortest_way
 from compoundkin.base.arrays import wrapped
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
@@ -122,14 +121,12 @@ def loop_equations(mechanism: Mechanism | Structure) -> LoopEquations:
         raise InvalidInput(Problem("structure", what, f"take a part with {MOST_LOOPS} loops at most"))
     walk = _Walk(terms, NO_LENGTH * geometry.size)
     loops = tuple(VectorLoop(loop, tuple(walk.around(loop))) for loop in found)
-    auxiliary = [equation for pair in pairs for equation in terms[pair.name].equations]
-    auxiliary += _beside(structure, pairs, walk)
-    spun = {spin.link for spin in structure.passive}
-    links = [name for name in structure.mechanism.links if name != FRAME and name not in spun]
-    unknowns = [Unknown("angle", name) for name in links]
+    crossed = (equation for pair in pairs for equation in terms[pair.name].equations)
+    known = {FRAME, *(spin.link for spin in structure.passive)}
+    unknowns = [Unknown("angle", name) for name in structure.mechanism.links if name not in known]
     unknowns += [unknown for own in terms.values() for unknown in own.unknowns]
-    drivers = tuple(_drivers(structure, terms))
-    return LoopEquations(structure, loops, tuple(auxiliary), drivers, tuple(unknowns), walk.lengths)
+    auxiliary, drivers = (*crossed, *_beside(structure, pairs, walk)), tuple(_drivers(structure, terms))
+    return LoopEquations(structure, loops, auxiliary, drivers, tuple(unknowns), walk.lengths)
 
 
 class _Walk:
@@ -141,23 +138,21 @@ class _Walk:
 
     def around(self, loop: Loop) -> Iterator[Term]:
         """The vectors of a loop."""
-        last = loop.pairs[-1]
-        point, label = self._side(last, loop.links[0])
-        for link, pair in zip(loop.links, loop.pairs, strict=True):
-            yield from self._on(link, point, label, *self._side(pair, link))
-            first = link == pair.members[0]
-            yield from self._arms(pair, first)
-            point, label = self._side(pair, pair.members[1] if first else pair.members[0])
+        yield from self._through(loop.links, loop.pairs, self._side(loop.pairs[-1], loop.links[0]))
 
     def along(self, links: Sequence[str], pairs: Sequence[Pair], start: Side, end: Side) -> Iterator[Term]:
         """The vectors of an open way, from a point of its first link to one of its last."""
-        point, label = start
+        last = yield from self._through(links, pairs, start)
+        yield from self._on(links[-1], *last, *end)
+
+    def _through(self, links: Sequence[str], pairs: Sequence[Pair], side: Side) -> Generator[Term, None, Side]:
+        """The vectors through pairs one after another; the side at which the last one is left."""
         for link, pair in zip(links, pairs, strict=False):
-            yield from self._on(link, point, label, *self._side(pair, link))
+            yield from self._on(link, *side, *self._side(pair, link))
             first = link == pair.members[0]
             yield from self._arms(pair, first)
-            point, label = self._side(pair, pair.members[1] if first else pair.members[0])
-        yield from self._on(links[-1], point, label, *end)
+            side = self._side(pair, pair.members[1] if first else pair.members[0])
+        return side
 
     def _side(self, pair: Pair, link: str) -> Side:
         own = self.terms[pair.name]
@@ -182,9 +177,8 @@ class _Walk:
             # against the link's axis: the vector between the points named the other way round, taken away
             sign, angle, symbol = -1, 0.0 * angle, _symbol(last, first)
         symbol = self._named(symbol, link, np.abs(line))
-        yield Vector(
-            symbol, Sum(np.abs(line)), angle_of(link).plus(np.where(np.abs(angle) < STRAIGHT, 0.0, angle)), sign
-        )
+        turned = angle_of(link).plus(np.where(np.abs(angle) < STRAIGHT, 0.0, angle))
+        yield Vector(symbol, Sum(np.abs(line)), turned, sign)
 
     def _named(self, symbol: str, link: str, length: Number) -> str:
         """A symbol that means one length."""
@@ -208,32 +202,12 @@ def _beside(structure: Structure, pairs: Sequence[Pair], walk: _Walk) -> Iterato
     for pair, own in found:
         if isinstance(own, Implicit):
             start, *ends = ((at, f"{pair.name} on {name}") for at, name in zip(own.points, pair.members, strict=True))
-            ways = (_way(pairs, pair.members[0], name) for name in pair.members[1:])
+            ways = (shortest_way(pairs, pair.members[0], name) for name in pair.members[1:])
             paths = (walk.along(*way, start, end) for way, end in zip(ways, ends, strict=True))
             yield replace(own, ways=tuple(map(tuple, paths)))
         elif own.along is not None:
             start, end = zip(walk.terms[pair.name].points, walk.terms[pair.name].labels, strict=True)
-            yield replace(own, path=tuple(walk.along(*_way(pairs, *pair.members[:2]), start, end)))
-
-
-def _way(pairs: Sequence[Pair], start: str, end: str) -> tuple[list[str], list[Pair]]:
-    """The links and pairs of a shortest way from a link to another."""
-    came: dict[str, tuple[str, Pair]] = {}
-    queue = deque([start])
-    while queue and end not in came:
-        link = queue.popleft()
-        for pair in pairs:
-            if link in pair.members[:2]:
-                other = pair.members[1] if link == pair.members[0] else pair.members[0]
-                if other != start and other not in came:
-                    came[other] = link, pair
-                    queue.append(other)
-    links, way = [end], []
-    while links[-1] != start and links[-1] in came:
-        link, pair = came[links[-1]]
-        links.append(link)
-        way.append(pair)
-    return links[::-1], way[::-1]
+            yield replace(own, path=tuple(walk.along(*shortest_way(pairs, *pair.members[:2]), start, end)))
 
 
 def _drivers(structure: Structure, terms: Mapping[str, LoopTerms]) -> Iterator[DriverEquation]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -110,3 +111,23 @@ def _functions(
 
     yield from ((residual(k), None) for k in range(pair.held))
     yield from ((lambda poses: pair.coordinate(ends, poses).c[0], unknown) for unknown in driven)
+
+
+def shortest_way(pairs: Sequence[Pair], start: str, end: str) -> tuple[list[str], list[Pair]]:
+    """Return the links and pairs of a shortest way from a link to another."""
+    came: dict[str, tuple[str, Pair]] = {}
+    queue = deque([start])
+    while queue and end not in came:
+        link = queue.popleft()
+        for pair in pairs:
+            if link in pair.members[:2]:
+                other = pair.members[1] if link == pair.members[0] else pair.members[0]
+                if other != start and other not in came:
+                    came[other] = link, pair
+                    queue.append(other)
+    links, way = [end], []
+    while links[-1] != start and links[-1] in came:
+        link, pair = came[links[-1]]
+        links.append(link)
+        way.append(pair)
+    return links[::-1], way[::-1]

@@ -18,7 +18,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contact import Freedom
+from compoundkin.model.pairs.contact_search import Freedom
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.structure.parts import Body, Group

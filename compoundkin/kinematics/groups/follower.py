@@ -17,9 +17,9 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver, MountedBody
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
+from compoundkin.model.pairs.contact import Profiled, as_profiled
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, lower_equivalent
-from compoundkin.model.pairs.profiled import Profiled, as_profiled
 from compoundkin.structure.parts import Group
 
 # The members' poses where the body's coordinate is the one given.

@@ -16,8 +16,8 @@ from compoundkin.kinematics.configuration_arrays import Configurations, state_di
 from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.model.pairs.contact import as_profiled
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.profiled import as_profiled
 from compoundkin.structure.parts import Group
 
 # Where no theory counts a group's configurations, Newton searches them from so many random states.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import ClassVar
@@ -16,19 +16,11 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.arc import ArcSlot
-from compoundkin.model.pairs.contact import (
-    Freedom,
-    PointPath,
-    Touch,
-    centre_of_curvature,
-    outermost,
-    path_of,
-    row,
-)
+from compoundkin.model.pairs.contact import Profiled, Touch, centre_of_curvature, row
+from compoundkin.model.pairs.contact_search import Freedom, crossings_on_way, path_of
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.loop_terms import Curved, LoopTerms, Unknown, angle_of
 from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
-from compoundkin.model.pairs.profiled import Profiled
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
 
@@ -181,16 +173,8 @@ class Cam(Profiled):
         """
         side = poses[0].carry(ends[0])
         path = path_of(Pose(as_series(side.point), side.along), poses[1].at(ends[1].point).c[0], own, freedom)
-        middle = complex(np.mean(self._samples[0]))
-
-        def level(at: Sequence[Number], of: Sequence[Number]) -> Number:
-            return PointPath(path.straight, *at[:3]).level(of[0] + of[1] * at[3])
-
-        def coordinate(at: Sequence[Number], of: Sequence[Number]) -> Number:
-            return PointPath(path.straight, *at[:3]).coordinate(of[0] + of[1] * at[3], middle)
-
-        numbers = (*path[1:], np.asarray(ends[1].measure) * self.outward)
-        least, greatest = outermost(level, coordinate, numbers, self._samples, self.curve.closed)
+        away = np.asarray(ends[1].measure) * self.outward
+        least, greatest = crossings_on_way(path, self._samples, away, self.curve.closed)
         forward = (freedom.sense > 0) == path.straight
         return np.where(forward, least, greatest), np.where(forward, greatest, least)
 
@@ -219,11 +203,6 @@ class Cam(Profiled):
         u, z = complex(np.cos(angle), np.sin(angle)), complex(*rng.standard_normal(2))
         place = self.curve.at(s) + self.curve.normal(s) * self.outward * float(first_entry(self.radius))
         return End(z, u), End(z + u * place.c[0], None, float(first_entry(self.radius)))
-
-    @property
-    def rank_key(self) -> Hashable:
-        """A cam holds one distance, whatever its profile."""
-        return type(self)
 
     def round_at(self, link: str) -> str | None:
         """A roller may turn about its middle."""

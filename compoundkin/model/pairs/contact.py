@@ -1,18 +1,25 @@
-"""What pins in slots, cams and other contacts have in common: two links touch, and slide and roll on each other."""
+"""What pins in slots, cams and other contacts have in common: two links touch, and slide and roll on each other.
+
+A contact with a profile leads a member along it, as a cam its roller or flat face.
+"""
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
-from typing import ClassVar, NamedTuple, TypeAlias
+from collections.abc import Sequence
+from functools import cached_property
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.curves import Curve
+from compoundkin.base.curves.samples import spans
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.model.pairs.contract import Ends, Line, Poses, table
+from compoundkin.model.pairs.contact_search import Freedom
+from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, table
 from compoundkin.model.pairs.optional_answers import Replaceable
+from compoundkin.model.profiles import Profile
 
 
 class Touch(NamedTuple):
@@ -68,107 +75,6 @@ def centre_of_curvature(curve: Curve, s: Number, place: Number, u: Number) -> Nu
     return place + 1j * along / curve.curvature(s)
 
 
-class Freedom(NamedTuple):
-    """How a body moves as a coordinate grows at unit rate: about a point of the world, `sense` +1 counterclockwise; or,
-    where `about` is None, in the direction `along`."""
-
-    about: Number
-    along: Number
-    sense: Number
-
-
-class PointPath(NamedTuple):
-    """The way of a point past a profile as a body's coordinate grows, in the profile's frame.
-
-    It starts at `start` and turns about `centre`; or, where it is `straight`, goes in the direction `centre`. `sense`
-    is how it goes there as the coordinate grows. All but `straight` are numbers or arrays.
-    """
-
-    straight: bool
-    start: Number
-    centre: Number
-    sense: Number
-
-    def level(self, place: Number) -> Number:
-        """What is zero where a place is on the way."""
-        if self.straight:
-            gap = place - self.start
-            return self.centre.real * gap.imag - self.centre.imag * gap.real
-        gap, arm = place - self.centre, self.start - self.centre
-        return (gap.real**2 + gap.imag**2) - (arm.real**2 + arm.imag**2)
-
-    def coordinate(self, place: Number, middle: complex) -> Number:
-        """The coordinate at a place on the way; an angle is within half a turn of that of the `middle`."""
-        if self.straight:
-            gap = place - self.start
-            return self.sense * (self.centre.real * gap.real + self.centre.imag * gap.imag)
-        arm = self.start - self.centre
-        return self.sense * nearest_angle((place - self.centre) / arm, (middle - self.centre) / arm)
-
-
-def nearest_angle(of: Number, middle: Number) -> Number:
-    """The angle of a vector, within half a turn of that of another one."""
-    return np.angle(of / middle) + np.angle(middle)
-
-
-def path_of(frame: Pose, point: Number, own: int, freedom: Freedom) -> PointPath:
-    """The way of a point of the world past a profile's frame, as its body moves (own 1) or that of the profile (0)."""
-    back = np.conjugate(frame.u.c[0])
-    straight = freedom.about is None
-    centre = back * (freedom.along if straight else freedom.about - frame.z.c[0])
-    return PointPath(straight, back * (point - frame.z.c[0]), centre, freedom.sense if own else -freedom.sense)
-
-
-# Poses times samples that are looked at together: their arrays stay in a second-level cache.
-TOGETHER = 1 << 17
-
-# A function of numbers at poses and of samples of a profile, broadcast together.
-Look: TypeAlias = Callable[[Sequence[Number], Sequence[Number]], Number]
-
-
-def outermost(
-    level: Look, coordinate: Look, numbers: Sequence[Number], samples: Sequence[Number], closed: bool
-) -> tuple[Number, Number]:
-    """The least and the greatest coordinate at which a level passes zero between two samples.
-
-    Where none does, those of the samples beside the one nearest to it: what passes between two samples only, near a
-    limit position, is found from there.
-
-    `numbers` are arrays of the poses' shape, `samples` what belongs to each sample of the profile.
-    """
-    shape = np.broadcast_shapes(*(np.shape(v) for v in numbers))
-    flat = [np.broadcast_to(v, shape).ravel() for v in numbers]
-    around = [np.append(v, v[:1]) if closed else v for v in samples]
-    least: Number = np.full(flat[0].size, np.inf)
-    greatest: Number = np.full(flat[0].size, -np.inf)
-    step = max(1, TOGETHER // around[0].size)
-    for first in range(0, least.size, step):
-        found = level([v[first : first + step, None] for v in flat], [v[None] for v in around])
-        pose, side = np.nonzero((found[:, :-1] <= 0) != (found[:, 1:] <= 0))
-        before, after = found[pose, side], found[pose, side + 1]
-        share = before / (before - after)
-        pose = pose + first
-        at = coordinate([v[pose] for v in flat], [v[side] + share * (v[side + 1] - v[side]) for v in around])
-        np.minimum.at(least, pose, at)
-        np.maximum.at(greatest, pose, at)
-        lost = first + np.setdiff1d(np.arange(len(found)), pose - first)
-        both = _beside(np.abs(found[lost - first]), lost, coordinate, flat, around, closed)
-        least[lost], greatest[lost] = np.fmin(*both), np.fmax(*both)
-    least, greatest = (np.where(np.isfinite(v), v, np.nan).reshape(shape) for v in (least, greatest))
-    return least, greatest
-
-
-def _beside(
-    found: Number, pose: Number, coordinate: Look, flat: Sequence[Number], around: Sequence[Number], closed: bool
-) -> tuple[Number, Number]:
-    """The coordinates of the samples before and after that with the smallest level, for some poses."""
-    nearest, last = np.argmin(found, axis=1), found.shape[1] - 1
-    before = np.where(nearest > 0, nearest - 1, last - 1 if closed else 0)
-    after = np.where(nearest < last, nearest + 1, 1 if closed else last)
-    at = [v[pose] for v in flat]
-    return coordinate(at, [v[before] for v in around]), coordinate(at, [v[after] for v in around])
-
-
 def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
     """By how much the second link passes the first one at a place, in a direction, by each link's x, y, theta.
 
@@ -180,3 +86,114 @@ def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
 
 def _arms(poses: Sequence[Pose], place: Number) -> tuple[Number, ...]:
     return tuple(1j * (place - pose.z.c[0]) for pose in poses)
+
+
+# A roller that cuts into the profile elsewhere by this part of the profile's size would touch there first; less is
+# rounding where it touches twice.
+CUTS = 1e-7
+
+
+class Profiled(Contact):
+    """A contact with a profile of the link `on`, which leads a member along it."""
+
+    is_flat: ClassVar[bool]  # whether a flat face touches, which has no pitch curve
+
+    profile: Profile
+
+    @property
+    def curve(self) -> Curve:
+        """The profile as a curve."""
+        return self.profile.curve
+
+    @property
+    def outward(self) -> float:
+        """+1 where the follower is on the side to which the curve's normal points, else -1."""
+        raise NotImplementedError
+
+    @property
+    def coordinate_scale(self) -> float:
+        """The size of the profile for a displacement along a face; else the part of the parameter for a radian."""
+        return self.curve.size if self.is_flat else (self.curve.high - self.curve.low) / (2.0 * np.pi)
+
+    @property
+    def has_ends(self) -> bool:
+        """Whether the profile is open."""
+        return not self.curve.closed
+
+    @property
+    def extent(self) -> float:
+        """The diagonal of the box around the profile."""
+        return self.curve.size
+
+    @property
+    def roller(self) -> float:
+        """The radius of the roller, of several designs the greatest; 0 without one."""
+        return 0.0
+
+    @abstractmethod
+    def parameter(self, ends: Ends, poses: Poses) -> Number:
+        """The parameter of the profile at the contact."""
+
+    @abstractmethod
+    def led(self, ends: Ends, poses: Poses) -> Number:
+        """The point of the follower that is led: the roller's middle or the edge; of a flat face the contact."""
+
+    @cached_property
+    def hollows(self) -> tuple[tuple[float, float], ...]:
+        """The spans of the parameter where a hollow is narrower than the roller, or under a flat face."""
+        curve = self.curve
+        if self.is_flat:
+            return spans(curve.samples, curve.low, curve.high, lambda s: CUTS + self._bend(s))
+        return curve.undercut(self.outward * self.roller) if self.roller else ()
+
+    @cached_property
+    def bridged(self) -> tuple[tuple[float, float], ...]:
+        """The spans of the parameter that are not touched, because the follower touches before and behind them."""
+        curve = self.curve
+        if self.is_flat:
+            return spans(curve.samples, curve.low, curve.high, self._above_face)
+        return spans(curve.samples, curve.low, curve.high, self._beside_roller) if self.roller else ()
+
+    @abstractmethod
+    def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
+        """The coordinates at which a member of one freedom is in contact in mode -1 and +1, nearly.
+
+        `poses` are those where the coordinate is zero; NaN where there is no contact. The modes are those of the lower
+        pairs that stand for a round disc.
+        """
+
+    @abstractmethod
+    def no_contact_reason(self) -> str:
+        """Why a member has no contact where there are no candidates, in a sentence."""
+
+    def smooth_piece(self, ends: Ends, poses: Poses) -> Number:
+        """Between which of the places where the profile's derivatives jump, or the contact leaps, it is."""
+        return self.curve.smooth_piece(self.parameter(ends, poses), self._leaps)
+
+    @cached_property
+    def _leaps(self) -> tuple[float, ...]:
+        """Parameters that the contact leaps over."""
+        return tuple(float(self.curve.wrapped(0.5 * (a + b))) for a, b in self.bridged)
+
+    def _bend(self, s: Number) -> Number:
+        """The curvature by the profile's size, negative in a hollow."""
+        return self.outward * self.curve.curvature(s) * self.curve.size
+
+    def _above_face(self, s: Number) -> Number:
+        """How little a face that touched here would cut into the profile elsewhere."""
+        curve = self.curve
+        normal = curve.normal(s).c[0] * self.outward
+        farther = curve.at(curve.support(normal)).c[0] - curve.at(s).c[0]
+        return CUTS * curve.size - (farther.real * normal.real + farther.imag * normal.imag)
+
+    def _beside_roller(self, s: Number) -> Number:
+        """How little a roller that touched here would cut into the profile elsewhere."""
+        curve = self.curve
+        middle = curve.at(s).c[0] + curve.normal(s).c[0] * self.outward * self.roller
+        nearer = np.abs(middle - curve.at(curve.foot(middle).c[0]).c[0])
+        return CUTS * curve.size - (self.roller - nearer)
+
+
+def as_profiled(pair: Pair) -> Profiled | None:
+    """Return a pair as one that leads a member along a profile, or None."""
+    return pair if isinstance(pair, Profiled) else None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import ClassVar
@@ -15,15 +15,8 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import (
-    Freedom,
-    Touch,
-    centre_of_curvature,
-    nearest_angle,
-    outermost,
-    path_of,
-    row,
-)
+from compoundkin.model.pairs.contact import Profiled, Touch, centre_of_curvature, row
+from compoundkin.model.pairs.contact_search import Freedom, path_of, tangents_on_way
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.loop_terms import (
     Curved,
@@ -38,7 +31,6 @@ from compoundkin.model.pairs.loop_terms import (
 )
 from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
-from compoundkin.model.pairs.profiled import Profiled
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Mark, Outline, Track, reach
 from compoundkin.model.profiles import Profile, side_of
@@ -182,17 +174,7 @@ class Face(Profiled):
             rise = dot(facing, path.centre)
             found = path.sense * dot(facing, reach) / np.where(np.abs(rise) < ALONG, np.nan, rise)
             return found, found
-        middle = complex(np.mean(self._samples[0]))
-
-        def level(at: Sequence[Number], of: Sequence[Number]) -> Number:
-            return dot(of[1], of[0] - at[0]) - at[1]
-
-        def coordinate(at: Sequence[Number], of: Sequence[Number]) -> Number:
-            # seen from the pin the two tangents are on either side of the profile's middle
-            return nearest_angle(of[1] / at[2], (at[0] - middle) / at[2])
-
-        numbers = (path.centre, dot(facing, path.start - path.centre), facing)
-        right, left = outermost(level, coordinate, numbers, self._samples, self.curve.closed)
+        right, left = tangents_on_way(path, self._samples, facing, self.curve.closed)
         against, along = (right, left) if self.side > 0 else (left, right)
         return path.sense * against, path.sense * along
 
@@ -224,11 +206,6 @@ class Face(Profiled):
         z = complex(*rng.standard_normal(2))
         s = self.curve.support(np.conjugate(u) * along * (-1j * self.side))
         return End(z, u), End(z + u * self.curve.at(s).c[0] + along * rng.standard_normal(), along)
-
-    @property
-    def rank_key(self) -> Hashable:
-        """A face holds one distance, whatever the profile."""
-        return type(self)
 
     def parameter(self, ends: Ends, poses: Poses) -> Number:
         """The parameter of the profile at the contact."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from compoundkin.base.arrays import first_entry
-from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.errors import Problem, nearest
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, value_key
@@ -17,11 +17,7 @@ from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, times
 from compoundkin.model.pairs.optional_answers import Osculation, Replaceable, TurnCounting, as_drivable
-
-Two = tuple[Number, Number]
-
-# Radii fit a centre distance that they meet to this part of it: drawings are given to some five digits.
-FITS = 1e-5
+from compoundkin.model.pairs.wheel_sizes import Sizes, Two, axis_problems, size_problems, two_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +37,8 @@ class Geared(TurnCounting, Replaceable):
     second: str = field(metadata=link_key("The link with the second wheel."))
     _: KW_ONLY
     carrier: str = field(default="frame", metadata=link_key("The link that carries both axes."))
-    teeth: Sequence[Number] | None = field(
-        default=None, metadata=value_key("two", "Numbers of teeth of the two wheels.")
-    )
-    radii: Sequence[Number] | None = field(
+    teeth: Sizes = field(default=None, metadata=value_key("two", "Numbers of teeth of the two wheels."))
+    radii: Sizes = field(
         default=None, metadata=value_key("two", "Radii of the two wheels, of pitch circles for gears.")
     )
     phase: Number | None = field(
@@ -101,36 +95,8 @@ class Geared(TurnCounting, Replaceable):
             yield Problem(where, "the two wheels and their carrier are not three different links", "name three links")
         elif not missing:
             for key, name, axis in (("first", self.first, self.first_at), ("second", self.second, self.second_at)):
-                yield from self._axis_problems(links, where, key, name, axis)
-        yield from self._size_problems(where)
-
-    def _axis_problems(
-        self, links: Mapping[str, tuple[str, ...]], where: str, key: str, name: str, axis: str
-    ) -> Iterator[Problem]:
-        shared = [letter for letter in links[name] if letter in links[self.carrier]]
-        if axis and axis not in shared:
-            what = f"{name!r} and {self.carrier!r} do not share the point {axis!r}"
-            yield Problem(f"{where}.{key}_at", what, nearest(axis, shared))
-        elif not shared:
-            what = f"{self.carrier!r} does not carry the axis of {name!r}: they share no point"
-            yield Problem(f"{where}.carrier", what, "give both a point of one letter, or name another carrier")
-        elif not axis:
-            what = f"{name!r} and {self.carrier!r} share several points"
-            yield Problem(f"{where}.{key}_at", what, f"name the axis: {', '.join(shared)}")
-
-    def _size_problems(self, where: str) -> Iterator[Problem]:
-        if self.teeth is None and self.radii is None:
-            yield Problem(where, "it has no sizes", "give teeth = (20, 40) or radii = (10, 20)")
-        for key, sizes in (("teeth", self.teeth), ("radii", self.radii)):
-            if sizes is None:
-                continue
-            if not all(np.all(np.asarray(size) > 0) for size in sizes):
-                yield Problem(f"{where}.{key}", f"{_shown(sizes)} are not two positive numbers")
-            elif key == "teeth" and not all(np.all(np.asarray(size) == np.round(size)) for size in sizes):
-                yield Problem(f"{where}.{key}", f"{_shown(sizes)} are not whole numbers", "give radii instead")
-        if self.teeth is not None and self.radii is not None and not _proportional(self.teeth, self.radii):
-            what = f"teeth {_shown(self.teeth)} and radii {_shown(self.radii)} have different ratios"
-            yield Problem(where, what, "leave one of them out")
+                yield from axis_problems(links, (name, self.carrier), axis, where, key)
+        yield from size_problems(self.teeth, self.radii, where)
 
     def completed(self, links: Mapping[str, tuple[str, ...]]) -> Geared:
         """With the only point that each wheel shares with the carrier as its axis, where none is named."""
@@ -140,6 +106,11 @@ class Geared(TurnCounting, Replaceable):
             if not getattr(self, key) and len(shared) == 1:
                 found[key] = shared[0]
         return replace(self, **found) if found else self
+
+    @property
+    def axes(self) -> str:
+        """Where its axes are, in words."""
+        return f"{self.first_at} and {self.second_at} on {self.carrier!r}"
 
     def distance(self, geometry: Geometry) -> Number:
         """The distance between the two axes on the carrier."""
@@ -239,44 +210,9 @@ class Geared(TurnCounting, Replaceable):
         return float(abs(second - first))
 
 
-def two_of(key: str, value: Any) -> Two | None:
-    """Two sizes as numbers or arrays; raises InvalidMechanism naming the key for anything else.
-
-    >>> two_of("teeth", (20, 40))
-    (20.0, 40.0)
-    """
-    if value is None:
-        return None
-    try:
-        one, two = (np.asarray(size, dtype=float) for size in value)
-    except (TypeError, ValueError):
-        what = f"{value!r} are not two numbers"
-        raise InvalidMechanism(Problem(key, what, f"write {key}=(20, 40)")) from None
-    return one.item() if one.ndim == 0 else one, two.item() if two.ndim == 0 else two
-
-
 def ratio(ends: Ends) -> Number:
     """How far the second wheel turns back for a turn of the first, both seen from the carrier."""
     return ends[0].measure / ends[1].measure
-
-
-def check_distance(pair: Geared, geometry: Geometry, where: str, wanted: Number, said: str) -> Iterator[Problem]:
-    """The problem of wheels whose sizes do not fit the distance of their axes on the carrier."""
-    distance = pair.distance(geometry)
-    off = np.abs(wanted - distance) > FITS * np.abs(distance)
-    if np.any(off):
-        at = int(np.argmax(np.ravel(np.broadcast_to(off, np.shape(off)))))
-        a, b = (np.ravel(np.broadcast_to(value, np.shape(off)))[at] for value in (wanted, distance))
-        what = f"{said} {a:.6g}, but {pair.first_at} and {pair.second_at} on {pair.carrier!r} are {b:.6g} apart"
-        yield Problem(where, what, "change the sizes or move an axis; give teeth alone for a distance as it is")
-
-
-def _proportional(one: Sequence[Number], two: Sequence[Number]) -> bool:
-    return bool(np.all(np.abs(one[0] * two[1] - one[1] * two[0]) <= FITS * np.abs(one[0] * two[1])))
-
-
-def _shown(sizes: Sequence[Number]) -> str:
-    return " and ".join(f"{size:g}" if np.ndim(size) == 0 else str(np.asarray(size).tolist()) for size in sizes)
 
 
 def as_geared(pair: Pair) -> Geared | None:

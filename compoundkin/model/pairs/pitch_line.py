@@ -16,9 +16,7 @@ from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses
 from compoundkin.model.pairs.optional_answers import TurnCounting
 from compoundkin.model.pairs.symbols import Mark, Track, Wheel, reach
-
-# A radius fits a drawn distance that it meets to this part of it: drawings are given to some five digits.
-FITS = 1e-5
+from compoundkin.model.pairs.wheel_sizes import FITS
 
 Row = tuple[Number, ...]
 
@@ -176,10 +174,3 @@ class OnLine(TurnCounting):
         track = Track(0, line.point, line.along.c[0], low, high, float(self.side), self.pitch)
         teeth = round(2.0 * np.pi * radius / self.pitch) if self.pitch else 0
         return track, Wheel(1, wheel.point, radius, teeth)
-
-
-def radius_problems(where: str, key: str, radius: Number | None) -> Iterator[Problem]:
-    """The problem of a radius, or another length or number, that is not positive."""
-    if radius is not None and not np.all(np.asarray(radius) > 0):
-        shown = f"{radius:g}" if np.ndim(radius) == 0 else str(np.asarray(radius).tolist())
-        yield Problem(f"{where}.{key}", f"{shown} is not positive", "give the size of the wheel")

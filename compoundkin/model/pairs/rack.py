@@ -15,8 +15,9 @@ from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Pair, Poses, table
 from compoundkin.model.pairs.gear import UNCOUNTED
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, direction, times
-from compoundkin.model.pairs.pitch_line import FITS, OnLine, radius_problems
+from compoundkin.model.pairs.pitch_line import OnLine
 from compoundkin.model.pairs.revolute import Revolute
+from compoundkin.model.pairs.wheel_sizes import FITS, radius_problems
 
 
 @dataclass(frozen=True, eq=False)

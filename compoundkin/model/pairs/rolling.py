@@ -26,7 +26,8 @@ from compoundkin.model.pairs.loop_terms import (
     times,
 )
 from compoundkin.model.pairs.optional_answers import Drivable
-from compoundkin.model.pairs.pitch_line import OnLine, radius_problems
+from compoundkin.model.pairs.pitch_line import OnLine
+from compoundkin.model.pairs.wheel_sizes import radius_problems
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,8 +26,8 @@ from compoundkin.model.pairs.loop_terms import (
     direction,
 )
 from compoundkin.model.pairs.optional_answers import Drivable, TurnCounting
-from compoundkin.model.pairs.pitch_line import radius_problems
 from compoundkin.model.pairs.symbols import Mark, Wheel
+from compoundkin.model.pairs.wheel_sizes import radius_problems
 
 
 @dataclass(frozen=True, eq=False)
