@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from compoundkin.model.pairs.arc import ArcSlot, arc
+from compoundkin.model.pairs.belt import Belt, belt
 from compoundkin.model.pairs.cam import Cam, cam
 from compoundkin.model.pairs.contract import Pair
 from compoundkin.model.pairs.face import Face, face
-from compoundkin.model.pairs.gear import Belt, Gear, belt, gear
+from compoundkin.model.pairs.gear import Gear, gear
 from compoundkin.model.pairs.prismatic import Prismatic, slide
 from compoundkin.model.pairs.rack import Rack, rack
 from compoundkin.model.pairs.revolute import Revolute
