@@ -51,10 +51,10 @@ def command(
     """
     from compoundkin.cli.progress import working
     from compoundkin.configurations.circuit_search import circuits
-    from compoundkin.kinematics.solution import plan_of
+    from compoundkin.kinematics.solution import solving_order_of
     from compoundkin.view.report.configurations_section import circuits_report
 
-    structure = plan_of(loaded(file)).structure
+    structure = solving_order_of(loaded(file)).structure
     fixed = _fixed(structure, at)
     with working("following all circuits"):
         made = circuits_report(circuits(structure, driver, fixed, between=range_of(structure, driver, start, stop)))

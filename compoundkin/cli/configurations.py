@@ -34,10 +34,10 @@ def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) 
     from compoundkin.cli.progress import working
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.kinematics import solve
-    from compoundkin.kinematics.solution import plan_of
+    from compoundkin.kinematics.solution import solving_order_of
     from compoundkin.view.report.configurations_section import configurations_report
 
-    structure = plan_of(loaded(file)).structure
+    structure = solving_order_of(loaded(file)).structure
     driven = typed_values.of_pose(structure, at)
     with working("finding all configurations"):
         made = configurations_report(configurations(structure, driven))

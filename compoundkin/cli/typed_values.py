@@ -16,7 +16,6 @@ from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.elements import Drive
 from compoundkin.structure import Structure
-from compoundkin.view.report.structure_sections import driven_pairs
 
 HOW = "write 35, 0,35,60 or 0:360:5 (from:to:step)"
 TIMES = "write seconds: 0.5, 0,0.5,1 or 0:2:0.01 (from:to:step)"
@@ -195,7 +194,7 @@ def _own(structure: Structure, name: str) -> tuple[float, float, float] | None:
 
 def _angles(structure: Structure) -> dict[str, bool]:
     """Which drivers drive an angle."""
-    return {name: step.pair.free_is_angle for name, step in driven_pairs(structure).items()}
+    return {name: step.pair.free_is_angle for name, step in structure.driven.items()}
 
 
 def _of_one_length(structure: Structure, values: Mapping[str, Number]) -> None:

@@ -90,7 +90,7 @@ class _Maker:
             other = (i + 1) % count
             place = (last.row, last.left)
             group = int(segments.group[place])
-            links = self.placing.sweep.plan.structure.groups[group].links
+            links = self.placing.sweep.solving_order.structure.groups[group].links
             value = self._value((segments.low, segments.high)[last.left][last.row])
             numbers = (self.first + i, self.first + other)
             one = self.known[place]
@@ -129,7 +129,7 @@ class _Maker:
                 place = (visit.row, visit.left)
                 if segments.kind[place] == CHANGE:
                     group = int(segments.group[place])
-                    links = self.placing.sweep.plan.structure.groups[group].links
+                    links = self.placing.sweep.solving_order.structure.groups[group].links
                     value = self._value((segments.low, segments.high)[visit.left][visit.row])
                     one = self.known[place]
                     found.append(ChangePoint(value, group, links, one, self.number, self.first + i))
@@ -151,9 +151,9 @@ def toggles_of(placing: SegmentPoses, circuits: tuple[Circuit, ...]) -> tuple[To
 
 def _on_frame(placing: SegmentPoses) -> Iterator[tuple[str, Pair]]:
     """Yield links that a pair of one freedom joins to the frame, no driver being in it."""
-    ground = placing.sweep.plan.structure.ground.links[0]
-    driven = {d.pair.name for d in placing.sweep.plan.driven.values()}
-    for name, pair in placing.sweep.plan.pairs.items():
+    ground = placing.sweep.solving_order.structure.ground.links[0]
+    driven = {d.pair.name for d in placing.sweep.solving_order.structure.driven.values()}
+    for name, pair in placing.sweep.solving_order.pairs.items():
         if pair.held == 2 and name not in driven and ground in pair.members and len(pair.members) == 2:
             yield next(link for link in pair.members if link != ground), pair
 
@@ -164,7 +164,7 @@ def _of_link(
     segments = placing.segments
     rows, phi = np.arange(segments.rows), (np.arange(CELLS) + 0.5) * np.pi / CELLS
     rate = _rate(placing, pair, rows, np.broadcast_to(phi, (len(rows), CELLS)))
-    size = 1.0 if pair.free_is_angle else placing.sweep.plan.size
+    size = 1.0 if pair.free_is_angle else placing.sweep.solving_order.size
     moving = np.max(np.abs(rate), axis=1) > STILL * size
     at, cell = np.nonzero((rate[:, 1:] > 0) != (rate[:, :-1] > 0))
     kept = moving[at]
@@ -175,7 +175,7 @@ def _of_link(
     )
     values = segments.at(at, low[:, None])[:, 0] if len(at) else np.zeros(0)
     owner = {v.row: (c, b) for c in circuits for b in c.branches for v in b.visits}
-    period = placing.sweep.plan.driven[placing.sweep.driver].pair.free_is_angle
+    period = placing.sweep.solving_order.structure.driven[placing.sweep.driver].pair.free_is_angle
     for row, angle, s, one in zip(
         at.tolist(), low.tolist(), values.tolist(), placing.configurations(at, values), strict=True
     ):

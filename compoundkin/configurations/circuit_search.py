@@ -24,7 +24,7 @@ from compoundkin.configurations.segments import Segments, chains_of
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.solution import plan_of, starting_configuration
+from compoundkin.kinematics.solution import solving_order_of, starting_configuration
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
@@ -127,19 +127,19 @@ def circuits(
     >>> [len(circuit.branches) for circuit in found.circuits], [round(limit.value, 6) for limit in found.limits]
     ([2], [1.552938, -1.552938])
     """
-    plan = plan_of(mechanism)
-    name = _driver(plan, driver)
+    solving_order = solving_order_of(mechanism)
+    name = _driver(solving_order, driver)
     with np.errstate(all="ignore"):
-        known = starting_values(plan, values or {}, name)
-        given = _of_design(inputs(plan, known, None, None, None), design)
+        known = starting_values(solving_order, values or {}, name)
+        given = _of_design(inputs(solving_order, known, None, None, None), design)
         fixed = {other: value for other, value in known.items() if other != name}
-        sweep = Sweep(plan, given.ends, fixed, name)
+        sweep = Sweep(solving_order, given.ends, fixed, name)
         segments, period, lost, good = _traced(sweep, between, known[name])
         if not segments.rows:
             raise NotAssembled(Problem("circuits", f"the mechanism cannot be assembled at any value of {name!r}"))
         placing = SegmentPoses(sweep, segments, design)
         found = built(placing, chains_of(segments), period)
-        start = starting_configuration(plan, known, design)
+        start = starting_configuration(solving_order, known, design)
         place = None
         if start is not None:
             try:
@@ -147,7 +147,7 @@ def circuits(
             except InvalidInput:
                 place = None
     consistent = good and not lost
-    return Circuits(plan.structure, name, fixed, found, FRESH, consistent, place, period, placing)
+    return Circuits(solving_order.structure, name, fixed, found, FRESH, consistent, place, period, placing)
 
 
 def _of_design(given: Inputs, design: int) -> Inputs:
@@ -158,8 +158,8 @@ def _of_design(given: Inputs, design: int) -> Inputs:
     return given.cut(slice(design, design + 1), slice(0, 1))
 
 
-def _driver(plan: SolvingOrder, driver: str | None) -> str:
-    names = list(plan.driven)
+def _driver(solving_order: SolvingOrder, driver: str | None) -> str:
+    names = list(solving_order.structure.driven)
     if driver is None and len(names) == 1:
         return names[0]
     if not names:
@@ -186,7 +186,7 @@ def _traced(sweep: Sweep, between: Sequence[float] | None, value: float) -> tupl
 def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, int]:
     """Return all groups, one after another."""
     lost = 0
-    for k, solver in enumerate(sweep.plan.solvers):
+    for k, solver in enumerate(sweep.solving_order.solvers):
         if not segments.rows:
             break
         if solver.equations is not None:
@@ -202,11 +202,11 @@ def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, 
 
 def _with_redundant(sweep: Sweep, segments: Segments) -> Segments:
     """Return the segments on which redundant pairs are closed too."""
-    if not sweep.plan.structure.redundant or not segments.rows:
+    if not sweep.solving_order.structure.redundant or not segments.rows:
         return segments
     rows = np.arange(segments.rows)
     block = sweep.run(segments, rows, segments.at(rows, np.array(INSIDE)))
-    closed = np.broadcast_to(closed_redundant(sweep.plan, block), (len(rows), len(INSIDE)))
+    closed = np.broadcast_to(closed_redundant(sweep.solving_order, block), (len(rows), len(INSIDE)))
     return segments.kept(closed.all(axis=1))
 
 
@@ -215,6 +215,6 @@ def _counts_agree(sweep: Sweep, segments: Segments, low: float, high: float) -> 
     values = low + (high - low) * np.mod(GOLDEN * np.arange(1, FRESH + 1), 1.0)
     drives: dict[str, tuple[Number, ...]] = {name: (value,) for name, value in sweep.fixed.items()}
     given = Inputs((FRESH,), sweep.ends, {**drives, sweep.driver: (values[None],)})
-    counted = AllModes.of(sweep.plan, given).real[:, 0].sum(axis=0)
+    counted = AllModes.of(sweep.solving_order, given).real[:, 0].sum(axis=0)
     crossed = ((segments.low[:, None] < values) & (values < segments.high[:, None])).sum(axis=0)
     return bool(np.all(counted == crossed))

@@ -49,7 +49,7 @@ def lifted(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> Segme
     """The segments of the first `k` groups and group `k`, of one mode or two; cells are divided by `fineness`."""
     margins = _Margins(sweep, segments, k, CELLS * fineness)
     events = _events(margins)
-    modes = (1, -1) if sweep.plan.solvers[k].modes == 2 else (1,)
+    modes = (1, -1) if sweep.solving_order.solvers[k].modes == 2 else (1,)
     cuts = list(_cuts(margins, events, modes))
     return _glued(segments, k, cuts, margins.at_ends())
 
@@ -76,7 +76,7 @@ class _Margins:
 
     def _at(self, rows: Number, s: Number, sides: Number | None) -> Number:
         block = self.sweep.run(self.segments, rows, s, sides=sides, upto=self.k + 1)
-        solver = self.sweep.plan.solvers[self.k]
+        solver = self.sweep.solving_order.solvers[self.k]
         margin = solver.margin(block)
         if margin is None:
             # a group that tells no margin: whether it has a pose

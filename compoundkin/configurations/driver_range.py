@@ -41,14 +41,14 @@ def range_of(sweep: Sweep, between: Sequence[float] | None, start: float) -> tup
     if between is not None:
         low, high = _checked(between)
         return driver_segment(low, high, periodic=False), 0.0
-    driven = sweep.plan.driven[sweep.driver]
+    driven = sweep.solving_order.structure.driven[sweep.driver]
     if driven.pair.free_is_angle:
         turns = _turns(sweep)
         if turns is None:
             return driver_segment(start - TURN, start + TURN, periodic=False), 0.0
         return driver_segment(BEGIN, BEGIN + TURN * turns, periodic=True), TURN * turns
-    reach = BEYOND * (reach_of(sweep.plan) + abs(start))
-    on_frame = driven.link in sweep.plan.structure.ground.links
+    reach = BEYOND * (reach_of(sweep.solving_order) + abs(start))
+    on_frame = driven.link in sweep.solving_order.structure.ground.links
     return driver_segment(-reach if on_frame else 0.0, reach, periodic=False), 0.0
 
 
@@ -62,10 +62,10 @@ def _checked(between: Sequence[float]) -> tuple[float, float]:
     return low, high
 
 
-def reach_of(plan: SolvingOrder) -> float:
+def reach_of(solving_order: SolvingOrder) -> float:
     """A length that no displacement of links that are pinned to one another exceeds: the sum of their extents."""
-    points = plan.structure.mechanism.geometry.points.values()
-    return float(sum(_extent(list(placed.values())) for placed in points)) or plan.size
+    points = solving_order.structure.mechanism.geometry.points.values()
+    return float(sum(_extent(list(placed.values())) for placed in points)) or solving_order.size
 
 
 def _extent(points: list[Number]) -> float:
@@ -81,7 +81,7 @@ def _turns(sweep: Sweep) -> int | None:
 
     Raises InvalidInput where gears ride on links that groups solve, and it matters how often those have turned.
     """
-    if not any(solver.counted_from for solver in sweep.plan.solvers):
+    if not any(solver.counted_from for solver in sweep.solving_order.solvers):
         return 1
     places = _geared(sweep, BEGIN + TURN * np.arange(MOST_TURNS + 1), 0.0)
     again = np.flatnonzero(_apart(sweep, places, places[:, :1])[1:] < SAME)
@@ -96,10 +96,10 @@ def _geared(sweep: Sweep, s: Number, more: float) -> Number:
 
     Links that groups solve have turned by `more` than their orientations show.
     """
-    plan = sweep.plan
-    upto = min(plan.numbered, default=len(plan.solvers))
-    block = run(plan, sweep.start(s[None]), _Turned(plan, more), upto)
-    links = [link for solver in plan.solvers[:upto] if solver.counted_from for link in solver.group.links]
+    solving_order = sweep.solving_order
+    upto = min(solving_order.numbered, default=len(solving_order.solvers))
+    block = run(solving_order, sweep.start(s[None]), _Turned(solving_order, more), upto)
+    links = [link for solver in solving_order.solvers[:upto] if solver.counted_from for link in solver.group.links]
     values = [value for link in links for value in (block.world[link].z.c[0], block.world[link].u.c[0])]
     return np.array([row(value, len(s)) for value in values]).reshape(-1, len(s))
 
@@ -108,7 +108,7 @@ def _geared(sweep: Sweep, s: Number, more: float) -> Number:
 class _Turned:
     """The choice of the first mode of every group, all links being turned by more than drawn."""
 
-    plan: SolvingOrder
+    solving_order: SolvingOrder
     more: float
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
@@ -117,32 +117,32 @@ class _Turned:
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
         """Return the drawn angle of a link and more."""
-        return drawn_angle(self.plan, link) + self.more
+        return drawn_angle(self.solving_order, link) + self.more
 
 
 def _apart(sweep: Sweep, one: Number, other: Number) -> Number:
     """Return the largest difference of any body, at each value."""
-    size = np.tile([sweep.plan.size, 1.0], len(one) // 2)[:, None]
+    size = np.tile([sweep.solving_order.size, 1.0], len(one) // 2)[:, None]
     return np.max(np.nan_to_num(np.abs(one - other) / size), axis=0, initial=0.0)
 
 
-def starting_values(plan: SolvingOrder, values: Mapping[str, Any], moved: str) -> dict[str, float]:
+def starting_values(solving_order: SolvingOrder, values: Mapping[str, Any], moved: str) -> dict[str, float]:
     """Return one value of each driver: that given, else where it is drawn, else the first of its own.
 
     Raises InvalidInput for names that are no driver's, and values that are no single number.
     """
-    unknown = [name for name in values if name not in plan.driven]
+    unknown = [name for name in values if name not in solving_order.structure.driven]
     if unknown:
         raise InvalidInput([Problem(f"values.{name}", f"there is no driver {name!r}") for name in unknown])
-    first = {drive.name: _first(plan, drive) for drive in plan.structure.mechanism.drives}
-    drawn = _drawn(plan, first)
+    first = {drive.name: _first(solving_order, drive) for drive in solving_order.structure.mechanism.drives}
+    drawn = _drawn(solving_order, first)
     return {name: _number(name, values[name]) if name in values else drawn.get(name, first[name]) for name in first}
 
 
-def _first(plan: SolvingOrder, drive: Drive) -> float:
+def _first(solving_order: SolvingOrder, drive: Drive) -> float:
     if drive.values is not None:
         return float(first_entry(drive.values))
-    return 0.0 if plan.driven[drive.name].pair.free_is_angle else plan.size / 2.0
+    return 0.0 if solving_order.structure.driven[drive.name].pair.free_is_angle else solving_order.size / 2.0
 
 
 def _number(name: str, value: Any) -> float:
@@ -155,10 +155,12 @@ def _number(name: str, value: Any) -> float:
     return found
 
 
-def _drawn(plan: SolvingOrder, first: Mapping[str, float]) -> dict[str, float]:
+def _drawn(solving_order: SolvingOrder, first: Mapping[str, float]) -> dict[str, float]:
     """Return where the drivers are drawn; nothing where nothing is drawn."""
-    if not plan.structure.mechanism.sketch:
+    if not solving_order.structure.mechanism.sketch:
         return {}
-    geometry = plan.structure.mechanism.geometry
-    path, _, _ = approach_path(plan, inputs(plan, first, None, None, None), geometry.drawn, geometry.sketch)
+    geometry = solving_order.structure.mechanism.geometry
+    path, _, _ = approach_path(
+        solving_order, inputs(solving_order, first, None, None, None), geometry.drawn, geometry.sketch
+    )
     return {name: float(first_entry(v[0])) for name, v in path.drives.items()}

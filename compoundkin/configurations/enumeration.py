@@ -25,7 +25,7 @@ from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.kinematics.results import Named
-from compoundkin.kinematics.solution import plan_of
+from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
@@ -46,7 +46,7 @@ class AllModes:
     `modes[k]` are the names of the modes of group k, `expected[k]` their number over the complex numbers (0 unknown).
     """
 
-    plan: SolvingOrder
+    solving_order: SolvingOrder
     given: Inputs
     block: Block
     modes: dict[int, tuple[str, ...]] = field(default_factory=dict)
@@ -54,10 +54,12 @@ class AllModes:
     certified: dict[int, Number] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, plan: SolvingOrder, given: Inputs) -> AllModes:
+    def of(cls, solving_order: SolvingOrder, given: Inputs) -> AllModes:
         """Assemble all groups in solving order, at all designs and poses of the inputs."""
-        found = cls(plan, given, plan.start(given.ends, given.series(0), 0, (given.designs, given.poses)))
-        run(plan, found.block, found)
+        found = cls(
+            solving_order, given, solving_order.start(given.ends, given.series(0), 0, (given.designs, given.poses))
+        )
+        run(solving_order, found.block, found)
         return found
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
@@ -72,7 +74,7 @@ class AllModes:
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
         """Return the drawn angle of a link."""
-        return drawn_angle(self.plan, link)
+        return drawn_angle(self.solving_order, link)
 
     def _numbered(self, block: Block, solver: GroupSolver, equations: GroupEquations) -> Number:
         found = solver.every(block)
@@ -107,7 +109,7 @@ class AllModes:
     @property
     def real(self) -> Number:
         """Where each configuration can be assembled, (configurations, designs, poses)."""
-        closed = closed_redundant(self.plan, self.block)
+        closed = closed_redundant(self.solving_order, self.block)
         return self.full((np.asarray(self.block.failed) == 0) & closed)
 
     def kept(self, real: Number, shape: tuple[int, ...]) -> Configurations:
@@ -132,17 +134,17 @@ class AllModes:
             possible,
             possible,
             all(bool(np.all(found)) for found in self.certified.values()),
-            self.plan.structure,
+            self.solving_order.structure,
             {name: values[0] for name, values in self.given.drives.items()},
             tuple(every[k] for k in which),
             {k: shaped(margin) for k, margin in self.block.margins.items()},
         )
 
 
-def closed_redundant(plan: SolvingOrder, block: Block) -> Number:
+def closed_redundant(solving_order: SolvingOrder, block: Block) -> Number:
     """Where the pairs that are left out as redundant are closed: not all configurations of the others close them."""
-    pairs = plan.structure.redundant
-    return residual(pairs, block) <= (CLOSED * plan.size) ** 2 if pairs else True
+    pairs = solving_order.structure.redundant
+    return residual(pairs, block) <= (CLOSED * solving_order.size) ** 2 if pairs else True
 
 
 def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] | None = None) -> Configurations:
@@ -160,47 +162,50 @@ def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] |
     >>> found.names, int(found.real_count), found.possible
     (('RRR(coupler)+', 'RRR(coupler)-'), 2, 2)
     """
-    plan = plan_of(mechanism)
+    solving_order = solving_order_of(mechanism)
     with np.errstate(all="ignore"):
-        given = inputs(plan, by_name(plan.structure.mechanism, values), None, None, None)
-        found = AllModes.of(plan, given)
+        given = inputs(solving_order, by_name(solving_order.structure.mechanism, values), None, None, None)
+        found = AllModes.of(solving_order, given)
         real = found.real
         if not real.any():
-            raise NotAssembled(_nothing(plan, given))
+            raise NotAssembled(_nothing(solving_order, given))
         return found.kept(real, given.shape)
 
 
-def _nothing(plan: SolvingOrder, given: Inputs) -> Problem:
+def _nothing(solving_order: SolvingOrder, given: Inputs) -> Problem:
     """Say why there is no configuration: where the nearest one is."""
     found = [
-        (gap, name, value) for name in given.drives for gap, value in [_nearest(plan, given, name)] if gap < np.inf
+        (gap, name, value)
+        for name in given.drives
+        for gap, value in [_nearest(solving_order, given, name)]
+        if gap < np.inf
     ]
     if not found:
         return Problem("values", "the mechanism cannot be assembled there, nor at any other value of a single driver")
     _, name, value = min(found)
-    is_angle = plan.driven[name].pair.free_is_angle
+    is_angle = solving_order.structure.driven[name].pair.free_is_angle
     shown = f"{degrees(value):.6g} degrees" if is_angle else f"{value:.6g}"
     return Problem("values", "the mechanism cannot be assembled there", f"the nearest value is {name} = {shown}")
 
 
-def _nearest(plan: SolvingOrder, given: Inputs, name: str) -> tuple[float, float]:
+def _nearest(solving_order: SolvingOrder, given: Inputs, name: str) -> tuple[float, float]:
     """The value of a driver nearest to its own with any configuration, and how far it is (of the size, or radians)."""
     first = given.cut(slice(0, 1), slice(0, 1))
     here = float(first_entry(first.drives[name][0]))
-    is_angle = plan.driven[name].pair.free_is_angle
-    span = TURN / 2.0 if is_angle else 2.0 * reach_of(plan)
+    is_angle = solving_order.structure.driven[name].pair.free_is_angle
+    span = TURN / 2.0 if is_angle else 2.0 * reach_of(solving_order)
     offsets = np.linspace(-span, span, TRIED)
-    good = _any(plan, first, name, here + offsets)
+    good = _any(solving_order, first, name, here + offsets)
     if not good.any():
         return np.inf, here
     order = np.argsort(np.abs(offsets), kind="stable")
     best = int(order[good[order]][0])
     far = offsets[[best]] - np.sign(offsets[[best]]) * 2.0 * span / (TRIED - 1)
-    near, _ = bisected(lambda offset: _any(plan, first, name, here + offset), offsets[[best]], far, HALVINGS)
-    return abs(near[0]) / (1.0 if is_angle else plan.size), here + near[0]
+    near, _ = bisected(lambda offset: _any(solving_order, first, name, here + offset), offsets[[best]], far, HALVINGS)
+    return abs(near[0]) / (1.0 if is_angle else solving_order.size), here + near[0]
 
 
-def _any(plan: SolvingOrder, given: Inputs, name: str, values: Number) -> Number:
+def _any(solving_order: SolvingOrder, given: Inputs, name: str, values: Number) -> Number:
     rest = {other: tuple(first_entry(v) for v in vs) for other, vs in given.drives.items()}
     drives = {**rest, name: (values[None],)}
-    return AllModes.of(plan, Inputs((len(values),), given.ends, drives)).real.any(axis=(0, 1))
+    return AllModes.of(solving_order, Inputs((len(values),), given.ends, drives)).real.any(axis=(0, 1))

@@ -101,15 +101,15 @@ def _sampled(placing: SegmentPoses, circuit: Circuit, period: float, legs: list[
     values = np.concatenate([values for values, _ in parts])
     names = list(parts[0][1])
     links = {name: (_joined(parts, name, 0), _joined(parts, name, 1)) for name in names}
-    kept = np.append(True, _steps(links, placing.sweep.plan.size) > 0)
+    kept = np.append(True, _steps(links, placing.sweep.solving_order.size) > 0)
     kept = kept | np.append(True, np.diff(values) != 0)
     links = {name: (z[kept], u[kept]) for name, (z, u) in links.items()}
-    along = np.append(0.0, np.cumsum(_steps(links, placing.sweep.plan.size)))
+    along = np.append(0.0, np.cumsum(_steps(links, placing.sweep.solving_order.size)))
     shown = np.unwrap(values[kept], period=period) if period else values[kept]
     numbers = [next(b.number for b in circuit.branches for v in b.visits if v.row == leg.visit.row) for leg in legs]
     passed = tuple(n for i, n in enumerate(numbers) if i == 0 or n != numbers[i - 1])
     poses_of = {name: Pose.of(z, u) for name, (z, u) in links.items()}
-    dimensions = dimensions_at(placing.sweep.plan.structure, placing.design, 0)
+    dimensions = dimensions_at(placing.sweep.solving_order.structure, placing.design, 0)
     return Route(shown, poses_of, along, passed, dimensions)
 
 
@@ -138,7 +138,7 @@ def _steps(links: Mapping[str, tuple[Number, Number]], size: float) -> Number:
 def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration) -> CircuitPlace:
     """Return the place of a configuration; raises InvalidInput where it lies on none of the circuits."""
     sweep, segments = placing.sweep, placing.segments
-    if one.structure.mechanism != sweep.plan.structure.mechanism:
+    if one.structure.mechanism != sweep.solving_order.structure.mechanism:
         raise InvalidInput(Problem("configuration", "it is one of another mechanism"))
     moved = [name for name, value in sweep.fixed.items() if abs(one.values[name] - value) > STANDING * (1 + abs(value))]
     if moved:
@@ -152,7 +152,7 @@ def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float,
         rows, s = np.array([row for row, _ in candidates]), np.array([s for _, s in candidates])
         s = np.clip(s, segments.low[rows], segments.high[rows])
         with np.errstate(all="ignore"):
-            gaps = gap_between(one, placing.run(rows, s), len(rows), sweep.plan.size)
+            gaps = gap_between(one, placing.run(rows, s), len(rows), sweep.solving_order.size)
         best = int(np.argmin(np.nan_to_num(gaps, nan=np.inf)))
         if gaps[best] < MATCHED:
             return _place(circuits, int(rows[best]), float(s[best]), value)

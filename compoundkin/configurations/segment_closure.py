@@ -33,7 +33,7 @@ class SegmentClosure:
     @property
     def solver(self) -> GroupSolver:
         """The group's solver."""
-        return self.sweep.plan.solvers[self.k]
+        return self.sweep.solving_order.solvers[self.k]
 
     @property
     def own(self) -> GroupEquations:
@@ -44,7 +44,7 @@ class SegmentClosure:
     @property
     def weights(self) -> Number:
         """What makes x, y, theta of each body a part of a state."""
-        size = self.sweep.plan.size
+        size = self.sweep.solving_order.size
         return np.tile([1.0 / size, 1.0 / size, 1.0], self.own.n)
 
     def at(self, rows: Number, y: Number) -> tuple[Number, Number]:
@@ -97,7 +97,7 @@ class SegmentClosure:
 
     def bodies(self, y: Number) -> list[Pose]:
         """Return the poses of the bodies, each (paths, 1)."""
-        size = self.sweep.plan.size
+        size = self.sweep.solving_order.size
         out = []
         for k in range(self.own.n):
             z = size * (y[:, 3 * k] + 1j * y[:, 3 * k + 1])[:, None]

@@ -1,4 +1,4 @@
-"""A plan run at any place of any segment, and the poses there as configurations with their names."""
+"""A solving order run at any place of any segment, and the poses there as configurations with their names."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from compoundkin.model.pairs.contract import Ends
 
 @dataclass(frozen=True, repr=False)
 class Sweep(PrintsShort):
-    """A plan, the dimensions of one design, the values of all drivers but one."""
+    """A solving order, the dimensions of one design, the values of all drivers but one."""
 
-    plan: SolvingOrder
+    solving_order: SolvingOrder
     ends: Mapping[str, Ends]
     fixed: Mapping[str, float]
     driver: str
@@ -35,7 +35,7 @@ class Sweep(PrintsShort):
         moving = constant(s) if rate is None else Series((s, rate))
         drives = {name: constant(value) for name, value in self.fixed.items()}
         drives[self.driver] = moving
-        return self.plan.start(self.ends, drives, 0 if rate is None else 1, np.shape(s), EDGE)
+        return self.solving_order.start(self.ends, drives, 0 if rate is None else 1, np.shape(s), EDGE)
 
     def run(
         self,
@@ -47,14 +47,16 @@ class Sweep(PrintsShort):
         upto: int | None = None,
     ) -> Block:
         """Segments `rows` at driver values `s` (rows, columns), up to a group; `sides` says which columns are ends."""
-        return run(self.plan, self.start(s, rate), _OnSegments(self.plan, segments, rows, s, sides), upto)
+        return run(
+            self.solving_order, self.start(s, rate), _OnSegments(self.solving_order, segments, rows, s, sides), upto
+        )
 
 
 @dataclass(frozen=True)
 class _OnSegments:
     """The choice on segments: each has its modes and its states."""
 
-    plan: SolvingOrder
+    solving_order: SolvingOrder
     segments: Segments
     rows: Number
     s: Number
@@ -70,12 +72,12 @@ class _OnSegments:
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
         """Return the drawn angle of a link."""
-        return drawn_angle(self.plan, link)
+        return drawn_angle(self.solving_order, link)
 
 
-def drawn_angle(plan: SolvingOrder, link: str) -> Number:
+def drawn_angle(solving_order: SolvingOrder, link: str) -> Number:
     """Return the drawn angle of a link, from which its full turns count; 0 where it is not drawn."""
-    drawn = plan.structure.mechanism.geometry.drawn.get(link)
+    drawn = solving_order.structure.mechanism.geometry.drawn.get(link)
     return 0.0 if drawn is None else drawn.angle.c[0]
 
 
@@ -98,7 +100,7 @@ class SegmentPoses(PrintsShort):
         sides = np.full(len(rows), NONE) if sides is None else sides
         block = self.run(rows, s, sides)
         modes = self._modes(block, rows, s, sides)
-        structure = self.sweep.plan.structure
+        structure = self.sweep.solving_order.structure
         dimensions = dimensions_at(structure, self.design, 0)
         found = []
         for i, value in enumerate(s.tolist()):
@@ -111,7 +113,7 @@ class SegmentPoses(PrintsShort):
     def _modes(self, block: Block, rows: Number, s: Number, sides: Number) -> list[dict[int, str]]:
         """Return the signs and numbers of the groups with several configurations."""
         found: list[dict[int, str]] = [{} for _ in rows]
-        for k, solver in enumerate(self.sweep.plan.solvers):
+        for k, solver in enumerate(self.sweep.solving_order.solvers):
             if solver.modes == 0:
                 texts = self._numbers(k, solver, rows, s, sides)
             elif k in self.segments.signs and solver.modes == 2:
@@ -127,7 +129,7 @@ class SegmentPoses(PrintsShort):
 
     def _numbers(self, k: int, solver: GroupSolver, rows: Number, s: Number, sides: Number) -> list[str]:
         """Return the number of a group's configuration among all that are real there."""
-        size = self.sweep.plan.size
+        size = self.sweep.solving_order.size
         block = self.sweep.run(self.segments, rows, s[:, None], sides=sides[:, None], upto=k)
         every = solver.every(block).states
         every = np.broadcast_to(every, (len(rows), 1, *every.shape[-2:]))[:, 0]

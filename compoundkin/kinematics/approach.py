@@ -22,34 +22,34 @@ CLOSE = 1e-6
 
 
 def approach_path(
-    plan: SolvingOrder, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
+    solving_order: SolvingOrder, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> tuple[Inputs, int, float]:
     """Return the way from the drawn drivers to the motion's pose `at` nearest to them; `at`; and the reference.
 
     The approach path is one pose where the drawing shows no driver. The reference is the place along the motion to
     which the modes belong: just before `at` where the path comes from before, else just after.
     """
-    shown = {name: drawn_value(plan, given, name, drawn, sketch) for name in plan.driven}
+    shown = {name: drawn_value(solving_order, given, name, drawn, sketch) for name in solving_order.structure.driven}
     values = {name: value for name, value in shown.items() if value is not None}
-    at = _nearest(plan, given, values) if values else 0
+    at = _nearest(solving_order, given, values) if values else 0
     end = given.cut(slice(None), slice(at, at + 1))
     ways: dict[str, Number] = {}
     for name, rest in end.drives.items():
         way = rest[0] - values.get(name, rest[0])
-        if plan.driven[name].pair.free_is_angle:
+        if solving_order.structure.driven[name].pair.free_is_angle:
             way = way - whole_turns(way)
         ways[name] = way
-    count = 1 + max((spacings(plan, name, way) for name, way in ways.items()), default=0)
+    count = 1 + max((spacings(solving_order, name, way) for name, way in ways.items()), default=0)
     ramp = np.linspace(-1.0, 0.0, count)[None] if count > 1 else np.zeros((1, 1))
     path = end.driven({name: (rest[0] + ways[name] * ramp,) for name, rest in end.drives.items()})
     return path.of_poses(count), at, at + _side(given, at, ways) * CLOSE
 
 
 def drawn_value(
-    plan: SolvingOrder, given: Inputs, name: str, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
+    solving_order: SolvingOrder, given: Inputs, name: str, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> Number | None:
     """Return the driver's coordinate as the drawing shows it, a number or (designs, 1); None where it does not."""
-    driven = plan.driven[name]
+    driven = solving_order.structure.driven[name]
     pair = driven.pair
     if any(link not in drawn for link in pair.members):
         value = pair.drawn_coordinate(sketch)
@@ -59,12 +59,12 @@ def drawn_value(
     return pair.coordinate(ends, poses).c[0] * pair.driven_by(driven.drive.link)
 
 
-def _nearest(plan: SolvingOrder, given: Inputs, values: Mapping[str, Number]) -> int:
+def _nearest(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Number]) -> int:
     """Return the index of the pose whose drivers are nearest to the drawn ones, over all designs."""
     total: Number = np.zeros((1, 1))
     for name, value in values.items():
         gap = np.abs(given.drives[name][0] - value)
-        if plan.driven[name].pair.free_is_angle:
+        if solving_order.structure.driven[name].pair.free_is_angle:
             gap = np.abs(gap - whole_turns(gap))
         total = total + gap
     return int(np.argmin(np.broadcast_to(total.max(axis=0), given.poses)))
@@ -92,23 +92,23 @@ def column(pose: Pose) -> Pose:
     return Pose(constant(first_of(pose.z.c[0])), constant(first_of(pose.u.c[0])), theta)
 
 
-def spacings(plan: SolvingOrder, name: str, way: Number) -> int:
+def spacings(solving_order: SolvingOrder, name: str, way: Number) -> int:
     """Return how many spacings the longest of some ways of a driver takes; 0 where it stands still."""
-    return max(0, int(np.ceil(min(_spacings(plan, name, way) - CLOSE, MOST))))
+    return max(0, int(np.ceil(min(_spacings(solving_order, name, way) - CLOSE, MOST))))
 
 
-def between(plan: SolvingOrder, given: Inputs) -> int:
+def between(solving_order: SolvingOrder, given: Inputs) -> int:
     """Return how many spacings the longest step of a driver from one pose of a motion to the next takes."""
-    return max((spacings(plan, name, steps) for name, steps in _steps(given)), default=0)
+    return max((spacings(solving_order, name, steps) for name, steps in _steps(given)), default=0)
 
 
-def pace(plan: SolvingOrder, given: Inputs) -> float:
+def pace(solving_order: SolvingOrder, given: Inputs) -> float:
     """Return how many spacings the longest step of a driver from one pose to the next is, as a fraction."""
-    return max((_spacings(plan, name, steps) for name, steps in _steps(given)), default=0.0)
+    return max((_spacings(solving_order, name, steps) for name, steps in _steps(given)), default=0.0)
 
 
-def _spacings(plan: SolvingOrder, name: str, way: Number) -> float:
-    size = 1.0 if plan.driven[name].pair.free_is_angle else plan.size
+def _spacings(solving_order: SolvingOrder, name: str, way: Number) -> float:
+    size = 1.0 if solving_order.structure.driven[name].pair.free_is_angle else solving_order.size
     return float(np.max(np.abs(way))) / size / SPACING
 
 

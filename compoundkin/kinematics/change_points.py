@@ -57,7 +57,7 @@ class _Way:
 def near_groups(tracker: Tracker) -> set[int]:
     """The groups that come near a limit position on the approach path, or between the poses of a coarse motion."""
     found: set[int] = set()
-    upto = 1 + max((k for k, solver in enumerate(tracker.plan.solvers) if solver.modes_may_meet), default=-1)
+    upto = 1 + max((k for k, solver in enumerate(tracker.solving_order.solvers) if solver.modes_may_meet), default=-1)
     for way in _ways(tracker) if upto else ():
         if way.on_approach or way.unit < 1.0:
             for _, _, part, s, designs in way.blocks():
@@ -71,7 +71,7 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
 
     They are noted in the tracker, which changes the group's sign there.
     """
-    open_to = [k for k in sorted(near) if k not in tracker.flips and tracker.plan.solvers[k].modes_may_meet]
+    open_to = [k for k in sorted(near) if k not in tracker.flips and tracker.solving_order.solvers[k].modes_may_meet]
     if not open_to:
         return False
     found = [(way, _touching(way, tracker, open_to)) for way in _ways(tracker)]
@@ -84,7 +84,7 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
             flips = tracker.approach_flips if way.on_approach else tracker.flips
             flips[first] = _padded(spots.designs[here], spots.places[here], tracker.given.designs)
     tracker.flips.setdefault(first, np.full((tracker.given.designs, 1), np.inf))
-    if tracker.plan.numbered or tracker.turns:
+    if tracker.solving_order.numbered or tracker.turns:
         tracker.choose()
     return True
 
@@ -105,7 +105,7 @@ def _ways(tracker: Tracker) -> Iterator[_Way]:
         yield _Way(tracker.approach_path, 1.0, on_approach=True)
     given = tracker.given
     if given.poses > 1:
-        per_pose = max(1, between(tracker.plan, given))
+        per_pose = max(1, between(tracker.solving_order, given))
         yield _Way(given.refined(per_pose), 1.0 / per_pose, on_approach=False)
 
 

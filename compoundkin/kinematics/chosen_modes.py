@@ -13,53 +13,59 @@ from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.geometry import vector
 
 
-def signs_of(plan: SolvingOrder, modes: Mapping[str, int] | str | Configuration | None = None) -> dict[int, int]:
+def signs_of(
+    solving_order: SolvingOrder, modes: Mapping[str, int] | str | Configuration | None = None
+) -> dict[int, int]:
     """Return the modes chosen by sign, by group; those of the call go before those of the mechanism."""
-    mechanism = plan.structure.mechanism
+    mechanism = solving_order.structure.mechanism
     if isinstance(modes, Configuration):
         return {}
     if isinstance(modes, str):
         written = {link: mode.sign for mode in mechanism.modes for link in mode.links}
-        return {**_by_group(plan, written), **read_name(plan, modes)}
+        return {**_by_group(solving_order, written), **read_name(solving_order, modes)}
     if modes is not None and not isinstance(modes, Mapping):
         raise InvalidInput(Problem("modes", f"{modes!r} does not name a link", "write {'link of the group': -1}"))
     called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
-    return {**_by_group(plan, written), **_by_group(plan, called)}
+    return {**_by_group(solving_order, written), **_by_group(solving_order, called)}
 
 
-def _by_group(plan: SolvingOrder, modes: Mapping[str, int]) -> dict[int, int]:
+def _by_group(solving_order: SolvingOrder, modes: Mapping[str, int]) -> dict[int, int]:
     signs: dict[int, int] = {}
-    where = {link: solver.index for solver in plan.solvers for link in solver.group.links}
+    where = {link: solver.index for solver in solving_order.solvers for link in solver.group.links}
     for name, sign in modes.items():
-        plan.structure.mechanism.link(name)
+        solving_order.structure.mechanism.link(name)
         if name not in where:
             raise InvalidInput(Problem(f"modes.{name}", "this link is driven or fixed: it has no assembly mode"))
-        if sign not in (1, -1) and not (plan.solvers[where[name]].modes == 0 and isinstance(sign, int) and sign > 0):
+        if sign not in (1, -1) and not (
+            solving_order.solvers[where[name]].modes == 0 and isinstance(sign, int) and sign > 0
+        ):
             raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
         if signs.setdefault(where[name], sign) != sign:
             raise InvalidInput(Problem(f"modes.{name}", "another link of its group has the opposite mode"))
     return signs
 
 
-def read_name(plan: SolvingOrder, name: str) -> dict[int, int]:
+def read_name(solving_order: SolvingOrder, name: str) -> dict[int, int]:
     """Return the signs and numbers that a name gives to groups; raises InvalidInput for parts that name none."""
-    return dict(_read(plan, part.strip()) for part in name.split(BETWEEN.strip())) if name.strip() != ONLY else {}
+    return (
+        dict(_read(solving_order, part.strip()) for part in name.split(BETWEEN.strip())) if name.strip() != ONLY else {}
+    )
 
 
-def _read(plan: SolvingOrder, part: str) -> tuple[int, int]:
-    known = dict(_labels(plan))
+def _read(solving_order: SolvingOrder, part: str) -> tuple[int, int]:
+    known = dict(_labels(solving_order))
     for text, k in known.items():
-        mode = _mode(plan.solvers[k].modes, part.removeprefix(text)) if part.startswith(text) else None
+        mode = _mode(solving_order.solvers[k].modes, part.removeprefix(text)) if part.startswith(text) else None
         if mode is not None:
             return k, mode
     what = f"{part!r} is no configuration of a group"
     raise InvalidInput(Problem("modes", what, nearest(part, list(known)) + " with +, - or a number from 1"))
 
 
-def _labels(plan: SolvingOrder) -> Iterator[tuple[str, int]]:
-    for solver in plan.solvers:
+def _labels(solving_order: SolvingOrder) -> Iterator[tuple[str, int]]:
+    for solver in solving_order.solvers:
         if solver.modes != 1:
-            yield label(plan.structure, solver.index), solver.index
+            yield label(solving_order.structure, solver.index), solver.index
 
 
 def _mode(modes: int, text: str) -> int | None:
@@ -68,9 +74,9 @@ def _mode(modes: int, text: str) -> int | None:
     return {"+": 1, "-": -1}.get(text)
 
 
-def read_hint(plan: SolvingOrder, hint: Mapping[str, object] | None) -> dict[str, Number]:
+def read_hint(solving_order: SolvingOrder, hint: Mapping[str, object] | None) -> dict[str, Number]:
     """Return a hint as planar vectors; raises InvalidInput for points that the mechanism does not have."""
-    letters = plan.structure.mechanism.carriers
+    letters = solving_order.structure.mechanism.carriers
     wrong = [
         Problem(f"hint.{k}", f"there is no point {k!r}", nearest(k, list(letters)))
         for k in hint or {}

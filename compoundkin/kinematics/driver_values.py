@@ -27,7 +27,7 @@ FULL_TURN.setflags(write=False)
 
 
 def inputs(
-    plan: SolvingOrder,
+    solving_order: SolvingOrder,
     values: Mapping[str, Any] | None,
     speed: Any,
     acceleration: Any,
@@ -39,15 +39,15 @@ def inputs(
 
     Raises InvalidInput for unknown drivers or shapes that do not fit.
     """
-    mechanism = plan.structure.mechanism
+    mechanism = solving_order.structure.mechanism
     asked = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk}
     _only_known(mechanism, asked)
-    given = {drive.name: _driver(plan, drive, asked, times, order) for drive in mechanism.drives}
-    shape = _shape(plan, given)
+    given = {drive.name: _driver(solving_order, drive, asked, times, order) for drive in mechanism.drives}
+    shape = _shape(solving_order, given)
     fitted = fit(shape)
     return Inputs(
         shape,
-        {k: tuple(mapped(end, fitted) for end in ends) for k, ends in plan.ends.items()},
+        {k: tuple(mapped(end, fitted) for end in ends) for k, ends in solving_order.ends.items()},
         {k: tuple(fitted(v) for v in vs) for k, vs in given.items()},
     )
 
@@ -62,13 +62,13 @@ def by_name(mechanism: Mechanism, values: Any) -> Mapping[str, Any] | None:
 
 
 def _driver(
-    plan: SolvingOrder, drive: Drive, asked: Mapping[str, Any], times: Number | None, order: int
+    solving_order: SolvingOrder, drive: Drive, asked: Mapping[str, Any], times: Number | None, order: int
 ) -> tuple[Number, ...]:
     """Value, speed, acceleration and jerk of a driver; those of a law beyond the order are not asked for."""
     value = (asked["values"] or {}).get(drive.name, drive.values)
     if value is None:
-        value = _unsaid(plan, drive) if times is None else 0.0
-    only = len(plan.driven) == 1
+        value = _unsaid(solving_order, drive) if times is None else 0.0
+    only = len(solving_order.structure.driven) == 1
     rest = [_rate(drive, asked[key], getattr(drive, key), only) for key in ("speed", "acceleration", "jerk")]
     given = tuple(_number(f"{drive.name}", v) for v in (value, *rest))
     if times is None:
@@ -77,9 +77,9 @@ def _driver(
     return timed(drive, given, times, called, order)
 
 
-def _unsaid(plan: SolvingOrder, drive: Drive) -> Number:
+def _unsaid(solving_order: SolvingOrder, drive: Drive) -> Number:
     """Return the values of a driver that is given none: a full turn."""
-    if not plan.driven[drive.name].pair.free_is_angle:
+    if not solving_order.structure.driven[drive.name].pair.free_is_angle:
         raise InvalidInput(
             Problem(f"drives.{drive.name}", "it has no values", f"solve(..., {{{drive.name!r}: lengths}})")
         )
@@ -121,11 +121,11 @@ def _only_known(mechanism: Mechanism, given: Mapping[str, Any]) -> None:
         raise InvalidInput(wrong)
 
 
-def _shape(plan: SolvingOrder, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, ...]:
+def _shape(solving_order: SolvingOrder, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, ...]:
     found: tuple[int, ...] = ()
     named = [(f"drives.{k}", v) for k, vs in drives.items() for v in vs]
-    named += [(name, v) for name, ends in plan.ends.items() for end in ends for v in end if v is not None]
-    points = plan.structure.mechanism.geometry.points
+    named += [(name, v) for name, ends in solving_order.ends.items() for end in ends for v in end if v is not None]
+    points = solving_order.structure.mechanism.geometry.points
     named += [(f"links.{name}.points.{k}", v) for name, placed in points.items() for k, v in placed.items()]
     for where, value in named:
         if not isinstance(value, np.ndarray):

@@ -36,15 +36,15 @@ MOST_BODIES = 6
 Letters = list[tuple[str, str]]
 
 
-def shown(plan: SolvingOrder, solver: GroupSolver, sketch: Mapping[str, Number]) -> Letters:
+def shown(solving_order: SolvingOrder, solver: GroupSolver, sketch: Mapping[str, Number]) -> Letters:
     """Return the letters a sketch shows on the links of a group, each with its link."""
-    links = plan.structure.mechanism.links
+    links = solving_order.structure.mechanism.links
     return [(link, letter) for link in solver.group.links for letter in links[link].points if letter in sketch]
 
 
-def distance(plan: SolvingOrder, letters: Letters, sketch: Mapping[str, Number], block: Block) -> Number:
+def distance(solving_order: SolvingOrder, letters: Letters, sketch: Mapping[str, Number], block: Block) -> Number:
     """Return the summed squared distances of a group's points from where they are drawn."""
-    points = plan.structure.mechanism.geometry.points
+    points = solving_order.structure.mechanism.geometry.points
     total: Number = 0.0
     for link, letter in letters:
         gap = block.world[link].at(first_of(points[link][letter])).c[0] - first_of(sketch[letter])
@@ -53,7 +53,7 @@ def distance(plan: SolvingOrder, letters: Letters, sketch: Mapping[str, Number],
 
 
 def first_state(
-    plan: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number], number: int | None = None
+    solving_order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number], number: int | None
 ) -> tuple[Number, str]:
     """A closed state (designs, 1, width) of a group at a single pose, and what chose it; NaN for designs without.
 
@@ -62,20 +62,17 @@ def first_state(
     """
     if number is not None:
         return _numbered(solver, block, number), "number"
-    search = _ClosedStates(plan, solver, block, sketch)
-    letters = shown(plan, solver, sketch)
-    designs = block.shape[0]
-    best = np.full((designs, 1, search.equations.width), np.nan)
-    least = np.full((designs, 1), np.inf)
-    count = 0
+    search = _ClosedStates(solving_order, solver, block, sketch)
+    letters, designs, count = shown(solving_order, solver, sketch), block.shape[0], 0
+    best, least = np.full((designs, 1, search.equations.width), np.nan), np.full((designs, 1), np.inf)
     for batch in search.batches():
         found = search.equations.newton(batch, block, STEPS, LONGEST)
         trial = block.copy()
         solver.close(trial, found.state)
         order = count + np.arange(len(batch), dtype=float)[:, None]
         count += 1 if designs > 1 else len(batch)
-        cost = np.where(found.closed, distance(plan, letters, sketch, trial) if letters else order, np.inf)
-        state = found.state
+        cost = distance(solving_order, letters, sketch, trial) if letters else order
+        state, cost = found.state, np.where(found.closed, cost, np.inf)
         if designs == 1:
             first = int(np.argmin(cost))
             state, cost = state[first : first + 1], cost[first : first + 1]
@@ -115,8 +112,10 @@ def _numbered(solver: GroupSolver, block: Block, number: int) -> Number:
 class _ClosedStates:
     """Where a closed state is looked for; `complete` where all bodies are drawn."""
 
-    def __init__(self, plan: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number]) -> None:
-        self.plan, self.solver, self.block, self.sketch = plan, solver, block, sketch
+    def __init__(
+        self, solving_order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number]
+    ) -> None:
+        self.solving_order, self.solver, self.block, self.sketch = solving_order, solver, block, sketch
         self.equations = equations_of(solver)
         self.guesses = self._guesses()
         self.complete = all(self.guesses[k] is not None for k in self.equations.kept)
@@ -143,12 +142,12 @@ class _ClosedStates:
 
     def _guesses(self) -> list[Pose | None]:
         """Return the poses of the group's bodies as far as drawn points and points known already show them."""
-        points = self.plan.structure.mechanism.geometry.points
+        points = self.solving_order.structure.mechanism.geometry.points
         seen = {
             k: self.block.world[n].at(first_of(p)).c[0] for n in self.solver.group.uses for k, p in points[n].items()
         }
         seen.update({k: first_of(p) for k, p in self.sketch.items()})
-        drawn = self.plan.structure.mechanism.geometry.drawn
+        drawn = self.solving_order.structure.mechanism.geometry.drawn
         found = []
         for base in (body.links[0] for body in self.solver.group.bodies):
             pose = fitted_pose({k: first_of(p) for k, p in points[base].items()}, seen)
@@ -163,12 +162,12 @@ class _ClosedStates:
         """
         held = 1 if self.complete else COMPARED
         rng = np.random.default_rng(self.equations.n)
-        frame = list(self.plan.structure.mechanism.geometry.points[FRAME].values())
+        frame = list(self.solving_order.structure.mechanism.geometry.points[FRAME].values())
         centre = complex(np.mean([np.mean(p) for p in frame]))
         for number in range(STARTS):
             bodies = []
             for guess in self.guesses:
-                spot = centre + complex(*rng.standard_normal(2)) * self.plan.size / 2.0
+                spot = centre + complex(*rng.standard_normal(2)) * self.solving_order.size / 2.0
                 angle = rng.uniform(-np.pi, np.pi)
                 random = Pose.of(np.full((1, 1), spot), np.full((1, 1), np.exp(1j * angle)))
                 bodies.append(random if guess is None or number >= held else column(guess))

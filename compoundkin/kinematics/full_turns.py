@@ -46,10 +46,10 @@ def turns_of(tracker: Tracker, k: int, link: str) -> Turns:
     """Follow the angle of a link of group `k` from the first pose, where it is nearest to the drawn one or to zero."""
     given = tracker.given
     before = _angles(tracker, k, link, tracker.approach_path, 1.0, on_approach=True)
-    drawn = tracker.plan.structure.mechanism.geometry.drawn.get(link)
+    drawn = tracker.solving_order.structure.mechanism.geometry.drawn.get(link)
     first = before[:, 0] if drawn is None else np.ravel(column(drawn).angle.c[0])
     before = _unwrapped(before, 0, first)
-    per_pose = max(1, between(tracker.plan, given))
+    per_pose = max(1, between(tracker.solving_order, given))
     for _ in range(DOUBLINGS):
         angles = _angles(tracker, k, link, given.refined(per_pose), 1.0 / per_pose, on_approach=False)
         found = _unwrapped(angles, tracker.at * per_pose, before[:, -1])
@@ -78,21 +78,21 @@ def _unwrapped(angles: Number, start: int, first: Number) -> Number:
     return out + whole_turns(np.nan_to_num(first - out[:, start]))[:, None]
 
 
-def recounted(plan: SolvingOrder, ways: tuple[Inputs, ...], pose: Inputs) -> tuple[Inputs, ...]:
+def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Inputs) -> tuple[Inputs, ...]:
     """Return the motion and its approach path, phases read off a drawing taken on by the turns that drivers have made.
 
     A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
     """
-    drawn, rounds = _as_drawn(plan, pose)
-    turns = dict(_turns_at(plan, _counted_on(plan, drawn, rounds, {})))
-    return tuple(_counted_on(plan, way, rounds, turns) for way in ways)
+    drawn, rounds = _as_drawn(solving_order, pose)
+    turns = dict(_turns_at(solving_order, _counted_on(solving_order, drawn, rounds, {})))
+    return tuple(_counted_on(solving_order, way, rounds, turns) for way in ways)
 
 
-def _as_drawn(plan: SolvingOrder, pose: Inputs) -> tuple[Inputs, dict[str, Number]]:
+def _as_drawn(solving_order: SolvingOrder, pose: Inputs) -> tuple[Inputs, dict[str, Number]]:
     """Return the reference pose with drivers as drawn, in the turn they are in there; and that turn, by driven pair."""
     rounds: dict[str, Number] = {}
-    for name, driven in plan.driven.items():
-        value = drawn_value(plan, pose, name, plan.structure.mechanism.geometry.drawn, {})
+    for name, driven in solving_order.structure.driven.items():
+        value = drawn_value(solving_order, pose, name, solving_order.structure.mechanism.geometry.drawn, {})
         if value is None:
             continue
         if driven.pair.free_is_angle:
@@ -103,11 +103,13 @@ def _as_drawn(plan: SolvingOrder, pose: Inputs) -> tuple[Inputs, dict[str, Numbe
     return pose, rounds
 
 
-def _counted_on(plan: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]) -> Inputs:
+def _counted_on(
+    solving_order: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]
+) -> Inputs:
     """A way with the phases of driven pairs taken on by their turns, those of others by the turns of their links."""
-    geometry = plan.structure.mechanism.geometry
+    geometry = solving_order.structure.mechanism.geometry
     ends = dict(way.ends)
-    for name, pair in plan.pairs.items():
+    for name, pair in solving_order.pairs.items():
         ahead = tuple(turns.get(member, 0.0) for member in pair.members)
         counting = as_turn_counting(pair)
         if counting and name in rounds:
@@ -117,13 +119,15 @@ def _counted_on(plan: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], t
     return replace(way, ends=ends)
 
 
-def _turns_at(plan: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]:
+def _turns_at(solving_order: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]:
     """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
-    poses = plan.structure.mechanism.geometry.drawn
-    start = plan.start(drawn.ends, drawn.series(0), 0, (drawn.designs, 1))
-    for body in plan.bodies:
+    poses = solving_order.structure.mechanism.geometry.drawn
+    start = solving_order.start(drawn.ends, drawn.series(0), 0, (drawn.designs, 1))
+    for body in solving_order.structure.bodies:
         base = body.links[0]
-        for link in (link for link in body.links[1:] if link in poses and base in poses and link in plan.turning):
+        for link in (
+            link for link in body.links[1:] if link in poses and base in poses and link in solving_order.turning
+        ):
             pose = start.world.get(link) or start.local[link]
             gap = column(poses[base]).angle.c[0] + pose.angle.c[0] - column(poses[link]).angle.c[0]
             yield link, np.round(gap / TURN)

@@ -110,7 +110,7 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[s
 def _reasons(motion: Motion, designs: Number, poses: Number) -> list[str]:
     part = motion.inputs.pick(designs, poses.astype(float))
     block = motion.tracker.run(part, 0, poses.astype(float)[:, None], designs[:, None])
-    solvers = motion.tracker.plan.solvers
+    solvers = motion.solving_order.solvers
     failed = motion.failed[designs, poses]
     return [solvers[index - 1].why(block, k) for k, index in enumerate(failed.tolist())]
 

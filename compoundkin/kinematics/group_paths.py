@@ -115,7 +115,7 @@ class _March:
         self.slopes: list[Number] = []
         self.reached = np.zeros(len(state))
         self.longest = SPACINGS / max(
-            pace(tracker.plan, tracker.approach_path if on_approach else tracker.given), SLOWEST
+            pace(tracker.solving_order, tracker.approach_path if on_approach else tracker.given), SLOWEST
         )
 
     def go(self, stops: Number) -> _March:

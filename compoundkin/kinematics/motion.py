@@ -70,7 +70,7 @@ class Motion(ShowsPicture):
     @property
     def size(self) -> float:
         """The mechanism's length scale."""
-        return self._plan.size
+        return self.solving_order.size
 
     @cached_property
     def points(self) -> Mapping[str, PointMotion]:
@@ -85,7 +85,7 @@ class Motion(ShowsPicture):
     @cached_property
     def pairs(self) -> Mapping[str, PairMotion]:
         """The relative motion in every pair by its name."""
-        return Named("pair", tuple(self._plan.pairs), self._pair)
+        return Named("pair", tuple(self.solving_order.pairs), self._pair)
 
     @cached_property
     def drives(self) -> Mapping[str, PairMotion]:
@@ -118,8 +118,9 @@ class Motion(ShowsPicture):
         return way("animation")(self, **options)
 
     @property
-    def _plan(self) -> SolvingOrder:
-        return self.tracker.plan
+    def solving_order(self) -> SolvingOrder:
+        """What solved it: the driven links, then a solver for each group."""
+        return self.tracker.solving_order
 
     def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:
         """Return the motion with some of its poses put in the place of what was solved there."""
@@ -156,12 +157,12 @@ class Motion(ShowsPicture):
         return lambda k: pose.derivative(p, k)
 
     def _pair(self, name: str) -> PairMotion:
-        pair = self._plan.pairs[name]
+        pair = self.solving_order.pairs[name]
         ends = self.inputs.ends[name]
         poses = tuple(self.poses[member] for member in pair.members)
         counted = all(pose.theta is not None for pose in poses)
         return PairMotion(self.grid, pair.coordinate(ends, poses), pair.free_is_angle, counted=counted)
 
     def _drive(self, name: str) -> PairMotion:
-        is_angle = self._plan.driven[name].pair.free_is_angle
+        is_angle = self.structure.driven[name].pair.free_is_angle
         return PairMotion(self.grid, self.inputs.series(self.order)[name], is_angle, prescribed=True)

@@ -76,17 +76,19 @@ def solve(
         raise InvalidInput(
             Problem("order", f"{order!r} is not an order", "0 position, 1 velocity, 2 acceleration, 3 jerk")
         )
-    plan = plan_of(mechanism)
+    solving_order = solving_order_of(mechanism)
     with np.errstate(all="ignore"):
-        values = by_name(plan.structure.mechanism, values)
-        times = times_of(plan.structure.mechanism, values, time)
-        given = inputs(plan, values, speed, acceleration, jerk, times, order)
-        start = _start(plan, modes)
+        values = by_name(solving_order.structure.mechanism, values)
+        times = times_of(solving_order.structure.mechanism, values, time)
+        given = inputs(solving_order, values, speed, acceleration, jerk, times, order)
+        start = _start(solving_order, modes)
         named = isinstance(modes, str)
-        with diagnosing(plan.structure):
-            tracker = Tracker(plan, given, signs_of(plan, modes), read_hint(plan, hint), start, named)
-        motion = replace(_settled(plan, tracker.given, tracker, order), time=times)
-        if plan.structure.relaxation:
+        with diagnosing(solving_order.structure):
+            tracker = Tracker(
+                solving_order, given, signs_of(solving_order, modes), read_hint(solving_order, hint), start, named
+            )
+        motion = replace(_settled(solving_order, tracker.given, tracker, order), time=times)
+        if solving_order.structure.relaxation:
             check_redundant(motion)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
@@ -97,42 +99,42 @@ def solve(
     return motion
 
 
-def plan_of(mechanism: Mechanism | Structure) -> SolvingOrder:
-    """Return the plan of a mechanism, made once and kept with it."""
+def solving_order_of(mechanism: Mechanism | Structure) -> SolvingOrder:
+    """Return the solving order of a mechanism, made once and kept with it."""
     if not isinstance(mechanism, Mechanism | Structure):
         raise InvalidInput(Problem("mechanism", f"{mechanism!r} is not a mechanism", "load() one from a file"))
     owner = mechanism.mechanism if isinstance(mechanism, Structure) else mechanism
-    plan: SolvingOrder | None = owner.__dict__.get("_plan")
-    if plan is None:
+    solving_order: SolvingOrder | None = owner.__dict__.get("_solving_order")
+    if solving_order is None:
         structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
         if structure.faults:
             structure = relaxed(structure)
         if structure.faults:
             problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
             raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved{rank_diagnosis(structure)}")
-        plan = owner.__dict__["_plan"] = SolvingOrder(structure)
-    return plan
+        solving_order = owner.__dict__["_solving_order"] = SolvingOrder(structure)
+    return solving_order
 
 
-def _start(plan: SolvingOrder, modes: Any) -> Configuration | None:
+def _start(solving_order: SolvingOrder, modes: Any) -> Configuration | None:
     """Return the configuration that is given; raises InvalidInput for one of another mechanism."""
     if not isinstance(modes, Configuration):
         return None
-    if list(modes.structure.mechanism.links) != list(plan.structure.mechanism.links):
+    if list(modes.structure.mechanism.links) != list(solving_order.structure.mechanism.links):
         raise InvalidInput(Problem("modes", "the configuration is one of another mechanism"))
     return modes
 
 
-def _settled(plan: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> Motion:
+def _settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> Motion:
     """Solve; again where a group is found to pass through a change point, from which its mode changes sign."""
     while True:
-        motion, near = _run(plan, given, tracker, order)
+        motion, near = _run(solving_order, given, tracker, order)
         near |= near_groups(tracker)
         if not near or not pass_through(tracker, near):
             return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
 
 
-def _run(plan: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
+def _run(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
     """Solve block by block and gather; also the groups that come near a limit position."""
     designs, poses = given.designs, given.poses
     near: set[int] = set()
@@ -140,30 +142,32 @@ def _run(plan: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tup
     if len(parts) == 1:
         block = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
         failed = np.broadcast_to(block.failed, (designs, poses))
-        return Motion(plan.structure, order, given, dict(block.world), failed, tracker), _near(block)
+        return Motion(solving_order.structure, order, given, dict(block.world), failed, tracker), _near(block)
     store = JoinedBlocks(designs, poses)
     for d, m in parts:
         block = tracker.run(given.cut(d, m), order, *places(d, m))
         store.take(block, d, m)
         near |= _near(block)
-    return Motion(plan.structure, order, given, store.poses(), store.failed, tracker), near
+    return Motion(solving_order.structure, order, given, store.poses(), store.failed, tracker), near
 
 
 def _near(block: Block) -> set[int]:
     return {k for k, margin in block.margins.items() if np.any(margin < NEAR)}
 
 
-def starting_configuration(plan: SolvingOrder, values: Mapping[str, float], design: int) -> Configuration | None:
+def starting_configuration(
+    solving_order: SolvingOrder, values: Mapping[str, float], design: int
+) -> Configuration | None:
     """Return the configuration in which `solve` begins at these values; None where it does not close there."""
-    given = inputs(plan, values, None, None, None)
+    given = inputs(solving_order, values, None, None, None)
     try:
-        tracker = Tracker(plan, given, signs_of(plan), {})
+        tracker = Tracker(solving_order, given, signs_of(solving_order), {})
     except NotAssembled:
         return None
     block = tracker.run(tracker.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))
     if np.broadcast_to(block.failed, block.shape)[design, 0]:
         return None
-    return _picked(plan.structure, values, block.world, (design, 0))
+    return _picked(solving_order.structure, values, block.world, (design, 0))
 
 
 def first_configuration(motion: Motion, design: int) -> Configuration | None:

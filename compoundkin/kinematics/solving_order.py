@@ -18,7 +18,7 @@ from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import as_turn_counting
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.parts import Body, DrivenPair
+from compoundkin.structure.parts import DrivenPair
 
 
 class SolvingOrder(PrintsShort):
@@ -31,7 +31,7 @@ class SolvingOrder(PrintsShort):
         pairs = {p.name: p for p in structure.pairs}
         for group in structure.groups:
             pairs.update({p.name: p for p in (*group.inner, *group.outer)})
-        for body in self.bodies:
+        for body in self.structure.bodies:
             pairs.update({d.pair.name: d.pair for d in body.driven})
         self.pairs = pairs
         self.ends: dict[str, Ends] = {name: pair.ends(geometry) for name, pair in pairs.items()}
@@ -46,16 +46,6 @@ class SolvingOrder(PrintsShort):
         """The links whose angles some pair asks for with full turns, and those from which such angles count."""
         asked = {name for pair in self.pairs.values() if as_turn_counting(pair) for name in pair.members}
         return frozenset(asked.union(*(solver.counted_from for solver in self.solvers)))
-
-    @cached_property
-    def bodies(self) -> tuple[Body, ...]:
-        """The frame's composite, then every group's."""
-        return (self.structure.ground, *(b for g in self.structure.groups for b in g.bodies))
-
-    @cached_property
-    def driven(self) -> dict[str, DrivenPair]:
-        """The driven pairs by the names of their drivers."""
-        return {d.drive.name: d for body in self.bodies for d in body.driven if not d.is_passive}
 
     @cached_property
     def numbered(self) -> tuple[int, ...]:
@@ -73,7 +63,7 @@ class SolvingOrder(PrintsShort):
         """Return a block in which only the frame and the links it drives are known."""
         world: dict[str, Pose] = {}
         local: dict[str, Pose] = {}
-        for body in self.bodies:
+        for body in self.structure.bodies:
             placed = {body.links[0]: FIXED}
             for driven in body.driven:
                 placed[driven.link] = placed[driven.parent].compose(_driven(driven, ends, drives))
@@ -105,13 +95,13 @@ class Choice(Protocol):
         """Return about which angle, full turns counted, a link of a group has; None where it is not counted."""
 
 
-def run(plan: SolvingOrder, block: Block, choose: Choice, upto: int | None = None) -> Block:
+def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None = None) -> Block:
     """Assemble the groups one after another, up to one, each in the mode that is chosen; return the block."""
-    for solver in plan.solvers[:upto]:
+    for solver in solving_order.solvers[:upto]:
         solver.close(block, choose.mode(block, solver))
-        for link in solver.group.links if plan.turning else ():
+        for link in solver.group.links if solving_order.turning else ():
             pose = block.world[link]
-            near = choose.angle(solver, link) if link in plan.turning and pose.theta is None else None
+            near = choose.angle(solver, link) if link in solving_order.turning and pose.theta is None else None
             if near is not None:
                 block.world[link] = pose.counted(near)
     return block

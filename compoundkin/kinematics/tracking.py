@@ -22,25 +22,25 @@ from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 
 
 class Tracker(PrintsShort):
-    """Chooses and keeps the configuration of every group of a plan, for given inputs."""
+    """Chooses and keeps the configuration of every group, for given inputs."""
 
     def __init__(
         self,
-        plan: SolvingOrder,
+        solving_order: SolvingOrder,
         given: Inputs,
         signs: Mapping[int, int],
         hint: Mapping[str, Number],
         start: Configuration | None = None,
         from_first: bool = False,
     ) -> None:
-        self.plan = plan
+        self.solving_order = solving_order
         self.given = given
-        geometry = plan.structure.mechanism.geometry
-        relaxation = plan.structure.relaxation
+        geometry = solving_order.structure.mechanism.geometry
+        relaxation = solving_order.structure.relaxation
         known = relaxation.places if relaxation else {}
-        self.sketch = dict(hint) if hint else {**known, **plan.structure.mechanism.sketch}
+        self.sketch = dict(hint) if hint else {**known, **solving_order.structure.mechanism.sketch}
         self.drawn = geometry.drawn if not hint else {}
-        if relaxation and not hint and not plan.structure.mechanism.sketch:
+        if relaxation and not hint and not solving_order.structure.mechanism.sketch:
             self.drawn = relaxation.poses
         if start is not None:
             self.sketch, self.drawn = dict(start.points), start.poses
@@ -58,16 +58,16 @@ class Tracker(PrintsShort):
             self.drawn = {}
         sketch = {} if hint or from_first else geometry.sketch
         self.approach_path, self.at, self.reference = approach_path(
-            plan, given, self.drawn, start.points if start else sketch
+            solving_order, given, self.drawn, start.points if start else sketch
         )
-        if plan.turning and geometry.drawn:
+        if solving_order.turning and geometry.drawn:
             first = self.approach_path.cut(slice(None), slice(0, 1))
-            self.given, self.approach_path = recounted(plan, (given, self.approach_path), first)
+            self.given, self.approach_path = recounted(solving_order, (given, self.approach_path), first)
         self.fixed = signs
-        if self.sketch or plan.numbered or plan.turning:
+        if self.sketch or solving_order.numbered or solving_order.turning:
             self.choose()
         else:
-            for k in range(len(plan.solvers)):
+            for k in range(len(solving_order.solvers)):
                 self.signs[k] = signs.get(k, 1)
                 self.chosen_by[k] = "sign" if k in signs else "default"
 
@@ -87,9 +87,11 @@ class Tracker(PrintsShort):
         broadcast to the block, so that a column of designs and a row of places make a rectangle. `doubles`
         marks, by group, the poses that are change points.
         """
-        block = self.plan.start(part.ends, part.series(order), order, np.broadcast_shapes(s.shape, designs.shape))
+        block = self.solving_order.start(
+            part.ends, part.series(order), order, np.broadcast_shapes(s.shape, designs.shape)
+        )
         block.doubles = doubles or {}
-        return run(self.plan, block, _Kept(self, designs, s, on_approach), upto)
+        return run(self.solving_order, block, _Kept(self, designs, s, on_approach), upto)
 
     def sign(self, k: int, designs: Number, s: Number, on_approach: bool = False) -> Number:
         """Return the sign of a dyad's mode: it changes wherever the dyad passes a change point."""
@@ -107,7 +109,11 @@ class Tracker(PrintsShort):
         """Pass through the groups at the drawn pose, choosing; track those without a closed form."""
         self.turns = {}
         first = self.approach_path.cut(slice(None), slice(0, 1))
-        run(self.plan, self.plan.start(first.ends, first.series(0), 0, (self.given.designs, 1), NEAREST), _First(self))
+        run(
+            self.solving_order,
+            self.solving_order.start(first.ends, first.series(0), 0, (self.given.designs, 1), NEAREST),
+            _First(self),
+        )
 
 
 @dataclass(frozen=True)
@@ -145,7 +151,7 @@ class _First:
             tracker.signs[k], tracker.chosen_by[k] = self._sign(block, solver)
             return tracker.signs[k]
         number = tracker.fixed.get(k)
-        state, by = first_state(tracker.plan, solver, block, tracker.sketch, number)
+        state, by = first_state(tracker.solving_order, solver, block, tracker.sketch, number)
         tracker.chosen_by[k] = tracker.shown_by if by == "drawing" else by
         tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, solver.equations, state)
         return state
@@ -157,18 +163,20 @@ class _First:
 
     def _sign(self, block: Block, solver: GroupSolver) -> tuple[Number, str]:
         """Return the mode whose points lie nearest to the drawn ones, and what chose it."""
-        tracker, plan = self.tracker, self.tracker.plan
+        tracker, solving_order = self.tracker, self.tracker.solving_order
         if solver.index in tracker.fixed or solver.modes == 1:
             return tracker.fixed.get(solver.index, 1), "sign" if solver.index in tracker.fixed else "only one"
-        letters = shown(plan, solver, tracker.sketch)
-        closing = plan.closing(solver)
+        letters = shown(solving_order, solver, tracker.sketch)
+        closing = solving_order.closing(solver)
         if not letters and not closing:
             return 1, "default"
         cost = []
         for sign in (1, -1):
             trial = block.copy()
             solver.close(trial, sign)
-            cost.append(residual(closing, trial) if closing else distance(plan, letters, tracker.sketch, trial))
+            cost.append(
+                residual(closing, trial) if closing else distance(solving_order, letters, tracker.sketch, trial)
+            )
         best = np.where(cost[1] < cost[0], -1.0, 1.0)
         chosen = float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
         return chosen, "redundant" if closing else tracker.shown_by

@@ -10,7 +10,7 @@ from compoundkin.base.display import ShowsPicture
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.graph import Loop, independent_loops, kinematic_graph
-from compoundkin.structure.parts import Body, Fault, Group, Mobility, Passive, Relaxation
+from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Mobility, Passive, Relaxation
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -38,12 +38,21 @@ class Structure(ShowsPicture):
     relaxation: Relaxation | None = None
 
     @cached_property
+    def bodies(self) -> tuple[Body, ...]:
+        """The frame with its driven links, then the bodies of all groups."""
+        return (self.ground, *(body for group in self.groups for body in group.bodies))
+
+    @cached_property
+    def driven(self) -> dict[str, DrivenPair]:
+        """The driven pairs by the names of their drivers."""
+        return {step.drive.name: step for body in self.bodies for step in body.driven if not step.is_passive}
+
+    @cached_property
     def redundant(self) -> tuple[Pair, ...]:
         """The pairs that no driver and no group uses as they are. The others hold what they hold."""
         if self.relaxation is None:
             return ()
-        bodies = (self.ground, *(body for group in self.groups for body in group.bodies))
-        used = {step.pair.name for body in bodies for step in body.driven}
+        used = {step.pair.name for body in self.bodies for step in body.driven}
         used.update(pair.name for group in self.groups for pair in (*group.inner, *group.outer))
         return tuple(pair for pair in self.pairs if pair.name not in used)
 

@@ -18,8 +18,7 @@ from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.approach import column
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs.optional_answers import Drivable
-from compoundkin.structure import Structure, decompose
+from compoundkin.structure import decompose
 from compoundkin.synthesis.driver_places import renamed
 
 OLD_FRAME = "old frame"
@@ -110,10 +109,10 @@ def _replaced(mechanism: Mechanism, instead: str) -> Drive | None:
 
 def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
     """Return the mechanism with the drawn value for a driven slide."""
-    structure = decompose(mechanism)
-    pair = _driven(structure, new)
-    if pair is None or pair.free_is_angle:
+    driven = decompose(mechanism).driven.get(new.name)
+    if driven is None or driven.pair.free_is_angle:
         return mechanism
+    pair = driven.pair
     geometry = mechanism.geometry
     if all(name in geometry.drawn for name in pair.members):
         poses = tuple(column(geometry.drawn[name]) for name in pair.members)
@@ -123,11 +122,6 @@ def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
     if value is None:
         return mechanism
     return mechanism.replace(replace(new, values=float(value) if np.ndim(value) == 0 else value))
-
-
-def _driven(structure: Structure, new: Drive) -> Drivable | None:
-    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
-    return next((step.pair for body in bodies for step in body.driven if step.drive.name == new.name), None)
 
 
 def _written(mechanism: Mechanism, title: str, items: list[Item], outputs: list[str]) -> Mechanism:
@@ -202,8 +196,8 @@ def _clear(motion: Motion, found: Number) -> int:
     """Return which of some poses a drawing shows without doubt."""
     for item in motion.mechanism.drives:
         if any(len(motion.mechanism.links[name].points) == 1 for name in (item.link, item.on)):
-            pair = _driven(motion.structure, item)
-            if pair is None or pair.free_is_angle:
+            pair = motion.structure.driven[item.name].pair
+            if pair.free_is_angle:
                 # taken for the first pose
                 return int(found[0])
             # taken to be forward along the guide

@@ -63,7 +63,7 @@ def check_counts(found: Circuits) -> None:
 def check_way(found: Circuits, first: int, last: int) -> None:
     """A way along a circuit closes every pin and takes no leap."""
     way = found.path(first, last, poses=400)
-    mechanism, size = found.structure.mechanism, found.placing.sweep.plan.size
+    mechanism, size = found.structure.mechanism, found.placing.sweep.solving_order.size
     for letter, links in mechanism.pins.items():
         placed = [way.links[k].at(mechanism.geometry.points[k][letter]).c[0] for k in links]
         assert max(float(np.max(np.abs(p - placed[0]))) for p in placed) < 1e-7 * size

@@ -110,8 +110,8 @@ def test_everything_is_brought_into_designs_by_poses() -> None:
 
 
 def test_a_rectangle_of_the_inputs() -> None:
-    plan = SolvingOrder(ck.decompose(arm()))
-    given = inputs(plan, {"upper": np.arange(4.0), "fore": np.arange(3.0)[:, None]}, None, None, None)
+    solving_order = SolvingOrder(ck.decompose(arm()))
+    given = inputs(solving_order, {"upper": np.arange(4.0), "fore": np.arange(3.0)[:, None]}, None, None, None)
     assert (given.designs, given.poses) == (3, 4)
     part = given.cut(slice(1, 3), slice(2, 4))
     assert part.drives["upper"][0].tolist() == [[2, 3]]

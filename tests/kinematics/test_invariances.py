@@ -65,7 +65,7 @@ def test_the_drawn_pose_is_solved_as_drawn(seed: int) -> None:
         assert close(motion.points[letter].position, place)
     for name, value in home(mechanism).items():
         assert close(motion.drives[name].value, value)
-        driven = next(d.pair.name for b in motion.tracker.plan.bodies for d in b.driven if d.drive.name == name)
+        driven = motion.structure.driven[name].pair.name
         assert close(np.exp(1j * motion.pairs[driven].value), np.exp(1j * value))
 
 

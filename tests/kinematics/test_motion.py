@@ -356,7 +356,7 @@ def test_relative_motion_in_the_pairs() -> None:
     for name, first, second in (("B", "crank", "coupler"), ("D", "frame", "rocker")):
         pair = motion.pairs[name]
         one, two = motion.links[first], motion.links[second]
-        sign = 1 if motion.tracker.plan.pairs[name].members == (first, second) else -1
+        sign = 1 if motion.solving_order.pairs[name].members == (first, second) else -1
         assert np.allclose(pair.rate, sign * (two.angular_velocity - one.angular_velocity), atol=1e-12)
         assert np.allclose(pair.third, sign * (two.angular_jerk - one.angular_jerk), atol=1e-10)
         assert np.allclose(np.exp(1j * pair.value), np.exp(1j * sign * (two.angle - one.angle)))

@@ -109,7 +109,7 @@ def places_of(motion: Motion, diagram: Diagram, scale: OwnCoordinates) -> Primar
     """Return the primary centres at every pose, poses and designs in one axis."""
     units, lengths = [], []
     for primary in diagram.primaries:
-        pair = motion.tracker.plan.pairs[primary.pair]
+        pair = motion.solving_order.pairs[primary.pair]
         first, second = (_still(motion.poses[name]) for name in pair.members[:2])
         centre = pair.centre(motion.inputs.ends[primary.pair], (first, second))
         assert centre is not None

@@ -100,9 +100,7 @@ def diagram_of(structure: Structure) -> Diagram:
     links = tuple(structure.mechanism.links)
     number = {name: k for k, name in enumerate(links)}
     primaries = tuple(_on_lines(tuple(_primaries(structure, number)), structure, number))
-    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
-    drives = {d.drive.name: d for body in bodies for d in body.driven if not d.is_passive}
-    ordered = [drives[d.name] for d in structure.mechanism.drives if d.name in drives]
+    ordered = [structure.driven[d.name] for d in structure.mechanism.drives if d.name in structure.driven]
     return Diagram(links, primaries, tuple(_driven(d, primaries, number) for d in ordered))
 
 

@@ -54,7 +54,7 @@ def residuals(motion: Motion) -> Iterator[Finding]:
 
 def _distance_errors(motion: Motion) -> Iterator[tuple[str, Number]]:
     """Yield by pair how far a length is off that no pair holds."""
-    for name, pair in motion.tracker.plan.pairs.items():
+    for name, pair in motion.solving_order.pairs.items():
         poses, counting = tuple(motion.poses[member] for member in pair.members), as_turn_counting(pair)
         error = counting.distance_error(motion.inputs.ends[name], poses) if counting else None
         if error is not None:
@@ -69,7 +69,7 @@ def _off(name: str, gap: Number, limit: Number) -> str:
 def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
     """Yield the residuals of one order by pair, link or driver."""
     redundant = {pair.name for pair in motion.structure.redundant}
-    pairs = {name: pair for name, pair in motion.tracker.plan.pairs.items() if name not in redundant}
+    pairs = {name: pair for name, pair in motion.solving_order.pairs.items() if name not in redundant}
     yield ORDERS[k], {name: _pair(motion, pair, k) for name, pair in pairs.items()}
     yield f"rigid links, {ORDERS[k]}", {name: _rigid(motion, name, k) for name in motion.poses}
     if motion.inputs.drives:
@@ -97,7 +97,7 @@ def _rigid(motion: Motion, link: str, k: int) -> Number:
 
 
 def _driver(motion: Motion, name: str, k: int) -> Number:
-    driven = motion.tracker.plan.driven[name]
+    driven = motion.structure.driven[name]
     asked = motion.inputs.series(motion.order)[name].derivative(k) * driven.pair.driven_by(driven.drive.link)
     gap = motion.pairs[driven.pair.name].coordinate.derivative(k) - asked
     if not driven.pair.free_is_angle:

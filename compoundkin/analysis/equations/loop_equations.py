@@ -211,8 +211,7 @@ def _beside(structure: Structure, pairs: Sequence[Pair], walk: _Walk) -> Iterato
 
 
 def _drivers(structure: Structure, terms: Mapping[str, LoopTerms]) -> Iterator[DriverEquation]:
-    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
-    for step in (step for body in bodies for step in body.driven if not step.is_passive):
+    for step in structure.driven.values():
         free = terms[step.pair.name].unknowns[:1]
         first, second = (angle_of(name) for name in step.pair.members)
         value = Sum(0.0, tuple((1.0, unknown) for unknown in free)) if free else difference(first, second)

@@ -1,6 +1,6 @@
 """What a pair is drawn as: marks on its members, in the members' own frames, without any size on paper.
 
-A pair tells what there is to see of it (`Pair.glyph`); `drawing/` decides what that looks like.
+A pair tells what there is to see of it (`Pair.glyph`); `view/sketch/` decides what that looks like.
 """
 
 from __future__ import annotations

@@ -149,7 +149,7 @@ def _turns(motion: Motion) -> float:
 
 
 def _angles(motion: Motion) -> list[Number]:
-    driven = motion.tracker.plan.driven
+    driven = motion.structure.driven
     return [rows for name, rows in motion.inputs.drives.items() if driven[name].pair.free_is_angle]
 
 

@@ -86,7 +86,7 @@ class Positions:
         """The coordinates of the pairs."""
         sweep = self.found.placing.sweep
         found = {}
-        for name, pair in sweep.plan.pairs.items():
+        for name, pair in sweep.solving_order.pairs.items():
             ends: Ends = sweep.ends[name]
             poses: Poses = tuple(self.world[member] for member in pair.members)
             with np.errstate(all="ignore"):
@@ -98,7 +98,8 @@ class Positions:
         """The values of the drivers."""
         sweep = self.found.placing.sweep
         values = {**sweep.fixed, sweep.driver: self.values}
-        return {name: _Values(self._full(values[name]), d.pair.free_is_angle) for name, d in sweep.plan.driven.items()}
+        driven = self.found.structure.driven.items()
+        return {name: _Values(self._full(values[name]), step.pair.free_is_angle) for name, step in driven}
 
     def _full(self, value: Number) -> Number:
         return np.broadcast_to(value, self.values.shape)

@@ -113,8 +113,8 @@ def _default(found: Circuits) -> tuple[str, ...]:
     outputs = tuple(name for name in found.structure.mechanism.outputs if not order_of(name))
     if outputs:
         return outputs
-    groups, plan = found.structure.groups, found.placing.sweep.plan
-    several = [groups[k] for k, solver in enumerate(plan.solvers) if solver.modes != 1]
+    groups, solving_order = found.structure.groups, found.placing.sweep.solving_order
+    several = [groups[k] for k, solver in enumerate(solving_order.solvers) if solver.modes != 1]
     return tuple(_of_group(group) for group in (several or groups)[:MOST_PANELS]) or (f"{found.driver}.{VALUE}",)
 
 

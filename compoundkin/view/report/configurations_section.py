@@ -70,8 +70,7 @@ def _with_unit(angle: bool, value: float) -> str:
 
 def is_angle(structure: Structure, driver: str) -> bool:
     """Tell whether a driver drives an angle."""
-    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
-    return any(d.pair.free_is_angle for b in bodies for d in b.driven if d.drive.name == driver and not d.is_passive)
+    return driver in structure.driven and structure.driven[driver].pair.free_is_angle
 
 
 def circuits_report(found: Circuits) -> Report:
@@ -87,7 +86,7 @@ def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
     With several drivers the first one is moved, the others stay at their first values.
     """
     structure, drives = motion.structure, motion.mechanism.drives
-    modes = prod(solver.modes or _modes(solver.group) for solver in motion.tracker.plan.solvers)
+    modes = prod(solver.modes or _modes(solver.group) for solver in motion.solving_order.solvers)
     if not drives or motion.inputs.designs > 1 or modes > MOST_MODES:
         return ()
     first = {name: float(first_entry(values[0])) for name, values in motion.inputs.drives.items()}

@@ -21,7 +21,6 @@ from compoundkin.model.elements import Drive
 from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
 from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, StepBlock, TableBlock
 from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.report.structure_sections import driven_pairs
 from compoundkin.view.report.wording import Wording, counted, listed
 
 if TYPE_CHECKING:
@@ -42,7 +41,7 @@ CHOSEN_BY = {
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
     """Report each driver with its range and rates; angles and lengths in tables of their own."""
-    steps = driven_pairs(structure)
+    steps = structure.driven
     kinds: dict[bool, list[tuple[Cell, ...]]] = {}
     for drive in structure.mechanism.drives:
         step = steps.get(drive.name)
@@ -55,7 +54,7 @@ def drivers_section(structure: Structure, sample: Sample | None) -> Section:
 
 def _laws(structure: Structure) -> Iterator[Paragraph]:
     """How each driver with a law moves."""
-    steps, unit = driven_pairs(structure), unit_of(structure.mechanism.unit, "length")
+    steps, unit = structure.driven, unit_of(structure.mechanism.unit, "length")
     for drive in structure.mechanism.drives:
         if drive.law is not None:
             is_angle = drive.name not in steps or steps[drive.name].pair.free_is_angle
@@ -184,7 +183,7 @@ def _mode(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]]:
     """Which assembly mode it is in, what that means, and what chose it."""
     tracker = motion.tracker
     why = CHOSEN_BY.get(tracker.chosen_by.get(k, ""), "")
-    solver = tracker.plan.solvers[k]
+    solver = motion.solving_order.solvers[k]
     if solver.modes == 0:
         yield "mode", f"{why or 'found'}, by iteration, and followed along the motion"
     elif solver.modes == 1:

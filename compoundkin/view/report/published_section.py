@@ -19,7 +19,6 @@ from compoundkin.model.attributes import HIGHEST_ORDER, RATES, TIME
 from compoundkin.model.elements import Expectation
 from compoundkin.structure import Structure
 from compoundkin.view.report.report_data import Cell, Column, Paragraph, Section, TableBlock
-from compoundkin.view.report.structure_sections import driven_pairs
 from compoundkin.view.report.wording import counted
 
 # Up to so many published numbers are listed one by one; of more, each quantity's nearest to its tolerance.
@@ -147,7 +146,7 @@ def _row(structure: Structure, keys: tuple[str, ...], one: Comparison) -> tuple[
 
 def _at(structure: Structure, keys: tuple[str, ...], expectation: Expectation) -> tuple[float, ...]:
     """The driver values and rates of a published number, angles in degrees; NaN where it gives none."""
-    pairs, given = driven_pairs(structure), dict(expectation.at)
+    pairs, given = structure.driven, dict(expectation.at)
     is_angle = [key in pairs and pairs[key].pair.free_is_angle for key in keys]
     values = [given.get(key, float("nan")) for key in keys]
     return tuple(degrees(v) if turned else v for v, turned in zip(values, is_angle, strict=True))

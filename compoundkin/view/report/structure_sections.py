@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.structure import DrivenPair, Structure, links_by_pairs, pair_counts, roman
+from compoundkin.structure import Structure, links_by_pairs, pair_counts, roman
 from compoundkin.view.report.loop_sections import loops_section
 from compoundkin.view.report.mobility_sections import chain_section, mobility_section
 from compoundkin.view.report.report_data import Alert, Block, Column, Paragraph, Section, TableBlock
@@ -61,7 +61,7 @@ def _pairs_by_link(structure: Structure) -> dict[str, list[str]]:
 
 def pairs_section(structure: Structure) -> Section:
     """Return the pairs: what kind each is, which links it joins and where, and what drives it."""
-    drivers = {step.pair.name: name for name, step in driven_pairs(structure).items()}
+    drivers = {step.pair.name: name for name, step in structure.driven.items()}
     rows = tuple(
         (pair.name, f"{pair.code}, {pair.title.removesuffix(' pair')}", joined(pair.members),
          ", ".join(pair.letters), drivers.get(pair.name, ""))
@@ -69,12 +69,6 @@ def pairs_section(structure: Structure) -> Section:
     )  # fmt: skip
     columns = (Column("pair"), Column("kind"), Column("joins"), Column("at"), Column("driven by"))
     return Section("pairs", "Pairs", (*_multiple_pins(structure), TableBlock(columns, rows)))
-
-
-def driven_pairs(structure: Structure) -> dict[str, DrivenPair]:
-    """Return the driven pair of every driver that has its place in the structure, by the driver's name."""
-    bodies = (structure.ground, *(body for group in structure.groups for body in group.bodies))
-    return {step.drive.name: step for body in bodies for step in body.driven if not step.is_passive}
 
 
 def _multiple_pins(structure: Structure) -> Iterator[Block]:

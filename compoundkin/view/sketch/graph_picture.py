@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs import Pair
-from compoundkin.structure import Body, Structure
+from compoundkin.structure import Structure
 from compoundkin.view.sketch.label_places import Label, placed, text_half
 from compoundkin.view.sketch.picture import Picture, Window, checked_size, fitted
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, sheet
@@ -30,7 +30,7 @@ def graph(structure: Structure, numbers: Mapping[str, int], groups: Mapping[str,
     places = dict(zip(names, spread(names, structure.pairs), strict=True))
     window = fitted(Window(1.0, 0j, 0.0, 0.0), np.array(list(places.values())))
     places = {name: complex(window.at(np.conjugate(place))) for name, place in places.items()}
-    driven = {d.pair.name for body in _bodies(structure) for d in body.driven if not d.is_passive}
+    driven = {step.pair.name for step in structure.driven.values()}
     lines, named = _edges(structure.pairs, places, driven)
     nodes = [node(name, places[name], numbers[name], groups[name]) for name in names]
     found = placed(named, [*lines, *nodes], window.width, window.height)
@@ -154,7 +154,3 @@ def _steps(count: int, joined: Sequence[tuple[int, int]]) -> Number:
         steps = np.minimum(steps, steps[:, k, None] + steps[None, k])
     # links two steps apart a little farther, so that triangles are no needles
     return np.where(steps == 2.0, 1.75, steps)
-
-
-def _bodies(structure: Structure) -> tuple[Body, ...]:
-    return (structure.ground, *(body for group in structure.groups for body in group.bodies))

@@ -108,8 +108,7 @@ class Scene:
     @cached_property
     def driven(self) -> tuple[DrivenPair, ...]:
         """The driven pairs."""
-        bodies = (self.structure.ground, *(body for group in self.structure.groups for body in group.bodies))
-        return tuple(step for body in bodies for step in body.driven if not step.is_passive)
+        return tuple(self.structure.driven.values())
 
     def ghost(self, k: int) -> Scene:
         """Return the same scene at the k-th assembled pose of the motion."""

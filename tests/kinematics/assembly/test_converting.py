@@ -15,10 +15,14 @@ from compoundkin.kinematics.solving_order import SolvingOrder
 
 def attached(mechanism, **drives):
     """The first group, its surroundings at the driver values (poses,), and the size."""
-    plan = SolvingOrder(ck.decompose(mechanism))
+    solving_order = SolvingOrder(ck.decompose(mechanism))
     given = {name: Series((np.atleast_2d(value),)) for name, value in drives.items()}
     shape = np.broadcast_shapes(*(series.c[0].shape for series in given.values()))
-    return plan.structure.groups[0], plan.start(plan.ends, given, 0, shape), plan.size
+    return (
+        solving_order.structure.groups[0],
+        solving_order.start(solving_order.ends, given, 0, shape),
+        solving_order.size,
+    )
 
 
 def as_general(group, size):

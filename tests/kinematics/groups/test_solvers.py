@@ -39,7 +39,7 @@ def solved(kind: type[GroupSolver]) -> list[tuple[GroupSolver, Block, Block]]:
     found = []
     for name in SHOWN[kind.__name__]:
         motion = ck.solve(load_named(name), order=2)
-        for solver in motion.tracker.plan.solvers:
+        for solver in motion.solving_order.solvers:
             if type(solver) is kind:
                 places = np.arange(motion.inputs.poses, dtype=float)[None], np.zeros((1, 1), dtype=int)
                 before = motion.tracker.run(motion.inputs, 2, *places, upto=solver.index)
@@ -100,12 +100,12 @@ def test_it_tells_why_and_how_far_from_its_limit(kind: type[GroupSolver]) -> Non
 @every_way
 def test_it_leaves_other_groups_to_others(kind: type[GroupSolver]) -> None:
     """All but the last, which takes what is left, refuse the groups of the other ways."""
-    plans = [SolvingOrder(ck.decompose(load_named(name))) for names in SHOWN.values() for name in names]
+    orders = [SolvingOrder(ck.decompose(load_named(name))) for names in SHOWN.values() for name in names]
     taken = [
         type(solver) is kind
-        for plan in plans
-        for solver in plan.solvers
-        if kind.of(solver.index, solver.group, plan.size, plan.ends) is not None
+        for solving_order in orders
+        for solver in solving_order.solvers
+        if kind.of(solver.index, solver.group, solving_order.size, solving_order.ends) is not None
     ]
     assert taken
     assert all(taken) or kind is SOLVERS[-1]
@@ -153,4 +153,4 @@ def test_one_line_in_the_registry_adds_a_way(name: str, monkeypatch: pytest.Monk
     expected = told(name)
     monkeypatch.setattr(groups, "SOLVERS", (Pinned, *SOLVERS))
     assert told(name) == expected
-    assert any(type(solver) is Pinned for solver in ck.solve(load_named(name)).tracker.plan.solvers)
+    assert any(type(solver) is Pinned for solver in ck.solve(load_named(name)).tracker.solving_order.solvers)

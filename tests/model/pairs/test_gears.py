@@ -843,9 +843,9 @@ def test_a_train_agrees_with_newton_on_the_pairs_own_equations() -> None:
     """The linear equations of a train against the general solver, pose by pose and derivative by derivative."""
     mechanism = planetary(23, 31, ck.drive("sun"), ck.drive("ring"))
     motion = ck.solve(mechanism, {"sun": [0.3, 1.0], "ring": [-0.2, 0.9]}, speed={"sun": 2, "ring": -1}, order=3)
-    plan = motion.tracker.plan
-    (train,) = plan.solvers
-    general = GeneralSolver(0, train.group, plan.size).equations
+    solving_order = motion.solving_order
+    (train,) = solving_order.solvers
+    general = GeneralSolver(0, train.group, solving_order.size).equations
     run = motion.tracker.run(motion.inputs, 3, np.arange(2.0)[None], np.zeros((1, 1), dtype=int))
     state = general.state([run.world[body.links[0]] for body in train.group.bodies])
     solution = general.newton(state + 0.05, run)
