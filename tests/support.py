@@ -182,7 +182,7 @@ def _slide(sketch: Sketch, rng: np.random.Generator, guide: str, block: str, nam
     sketch.slides.append({**words, **({"name": name} if name else {})})
 
 
-def home(mechanism: ck.Mechanism) -> dict[str, float]:
+def drawn_values(mechanism: ck.Mechanism) -> dict[str, float]:
     """The drivers' values in the drawn pose, read off the drawing by plain geometry (not by the package)."""
     sketch, values = mechanism.sketch, {}
     letters = {name: link.letters for name, link in mechanism.links.items()}
@@ -206,7 +206,7 @@ def home(mechanism: ck.Mechanism) -> dict[str, float]:
 
 def well_conditioned(mechanism: ck.Mechanism, limit: float, reach: float) -> bool:
     """Whether no link is much faster than the driver within some reach of the drawn pose: no limit position is near."""
-    values = {name: value + reach * np.linspace(-1.0, 1.0, 9) for name, value in home(mechanism).items()}
+    values = {name: value + reach * np.linspace(-1.0, 1.0, 9) for name, value in drawn_values(mechanism).items()}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         motion = ck.solve(mechanism, values, order=2)

@@ -10,7 +10,7 @@ import numpy as np
 
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
-from tests.support import home, random_sketch
+from tests.support import drawn_values, random_sketch
 
 KINDS = [("RRR",), ("RRP",), ("RPR",), ("RRR", "RPR"), ("RRP", "RRR"), ("PRP", "RRR")]
 # How much faster than the driver a link or point of a random mechanism may be, and how far apart its points.
@@ -37,7 +37,7 @@ def random_mechanism(seed: int, change: Callable[[complex], complex] = complex) 
     for attempt in range(100):
         sketch = random_sketch(np.random.default_rng([seed, attempt]), KINDS[seed % len(KINDS)])
         mechanism = sketch.mechanism()
-        motion = ck.solve(mechanism, home(mechanism))
+        motion = ck.solve(mechanism, drawn_values(mechanism))
         fast = [abs(m.derivative(k)) ** (1 / k) for m in motion.points.values() for k in (1, 2)]
         if motion.assembled and max(fast) < FASTEST:
             return sketch.mechanism(change)

@@ -10,7 +10,7 @@ from compoundkin.analysis import coupler
 from compoundkin.analysis.mechanical_advantage import ForcePort, TorquePort, mechanical_advantage
 from compoundkin.files.shipped_mechanisms import load_named
 from tests.analysis.relative_motions import catalog, random_mechanism
-from tests.support import differences, home
+from tests.support import differences, drawn_values
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
 
@@ -64,7 +64,7 @@ def test_toggle_positions_are_infinite() -> None:
 @pytest.mark.parametrize("seed", range(12))
 def test_ratios_against_differences_of_the_positions(seed: int) -> None:
     mechanism, step = random_mechanism(seed), 5e-4
-    motion = ck.solve(mechanism, {k: v + step * np.arange(-4, 5) for k, v in home(mechanism).items()})
+    motion = ck.solve(mechanism, {k: v + step * np.arange(-4, 5) for k, v in drawn_values(mechanism).items()})
     driver = mechanism.drives[0].name
     for link in [name for name in motion.links if name != "frame"]:
         ratio = mechanical_advantage(motion, link, driver).velocity_ratio

@@ -11,7 +11,7 @@ import compoundkin as ck
 from compoundkin.analysis import coupler
 from compoundkin.files.shipped_mechanisms import load_named, names
 from tests.analysis.relative_motions import catalog, fastest, random_mechanism, turning_pairs
-from tests.support import differences, home
+from tests.support import differences, drawn_values
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
 
@@ -158,7 +158,7 @@ def test_the_moving_centrode_rolls_on_the_fixed_one(name: str) -> None:
 @pytest.mark.parametrize("seed", range(12))
 def test_pole_velocities_against_numeric_differentiation(seed: int) -> None:
     mechanism = random_mechanism(seed)
-    step, start = 2e-4, home(mechanism)
+    step, start = 2e-4, drawn_values(mechanism)
     motion = ck.solve(mechanism, {k: v + step * np.arange(-4, 5) for k, v in start.items()}, speed=1.0)
     for link, on in turning_pairs(motion):
         curves = coupler.centrodes(motion, link, on)
@@ -182,7 +182,7 @@ def test_arc_lengths_of_both_centrodes_are_equal() -> None:
 @pytest.mark.parametrize("seed", range(6))
 def test_roles_exchanged_exchange_the_centrodes(seed: int) -> None:
     mechanism = random_mechanism(seed)
-    motion = ck.solve(mechanism, home(mechanism), order=3)
+    motion = ck.solve(mechanism, drawn_values(mechanism), order=3)
     for link, on in turning_pairs(motion):
         one, other = coupler.pole(motion, link, on), coupler.pole(motion, on, link)
         for a, b in ((one.fixed, other.moving), (one.moving, other.fixed), (one.world, other.world)):
@@ -196,8 +196,8 @@ def test_roles_exchanged_exchange_the_centrodes(seed: int) -> None:
 @pytest.mark.parametrize("speed", [2.0, -1.0, 1e-3])
 def test_centrodes_do_not_depend_on_the_driver(seed: int, speed: float) -> None:
     mechanism = random_mechanism(seed)
-    base = ck.solve(mechanism, home(mechanism), speed=1.0, acceleration=0.0, order=3)
-    other = ck.solve(mechanism, home(mechanism), speed=speed, acceleration=0.7 * speed**2, order=3)
+    base = ck.solve(mechanism, drawn_values(mechanism), speed=1.0, acceleration=0.0, order=3)
+    other = ck.solve(mechanism, drawn_values(mechanism), speed=speed, acceleration=0.7 * speed**2, order=3)
     for link, on in turning_pairs(base):
         one, two = coupler.centrodes(base, link, on), coupler.centrodes(other, link, on)
         assert two.fixed == pytest.approx(one.fixed, rel=1e-7)
@@ -220,7 +220,7 @@ CHANGES = {
 @pytest.mark.parametrize("seed", range(6))
 def test_poles_go_along_when_the_mechanism_is_moved(seed: int, change: str) -> None:
     plain, moved = random_mechanism(seed), random_mechanism(seed, CHANGES[change])
-    one, two = (ck.solve(m, home(m), speed=1.0) for m in (plain, moved))
+    one, two = (ck.solve(m, drawn_values(m), speed=1.0) for m in (plain, moved))
     for link, on in turning_pairs(one):
         a, b = coupler.pole(one, link, on), coupler.pole(two, link, on)
         assert b.world == pytest.approx(CHANGES[change](complex(a.world)), rel=1e-6)

@@ -11,7 +11,7 @@ import compoundkin as ck
 from compoundkin.analysis import coupler
 from compoundkin.files.shipped_mechanisms import load_named, names
 from tests.analysis.relative_motions import catalog, fastest, random_mechanism, turning_pairs
-from tests.support import differences, home
+from tests.support import differences, drawn_values
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.base.errors.UnassembledPoses")
 SEEDS = range(12)
@@ -19,7 +19,7 @@ SEEDS = range(12)
 
 def random_motion(seed: int, **words: Any) -> ck.results.Motion:
     mechanism = random_mechanism(seed)
-    return ck.solve(mechanism, home(mechanism), **{"speed": 1.0, "order": 3, **words})
+    return ck.solve(mechanism, drawn_values(mechanism), **{"speed": 1.0, "order": 3, **words})
 
 
 def local(motion: ck.results.Motion, link: str, on: str, points: Any) -> Any:
@@ -60,7 +60,7 @@ def test_euler_savary_agrees_with_velocity_and_acceleration(name: str) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_curvature_of_random_points_against_differences_of_the_path(seed: int) -> None:
     mechanism, step = random_mechanism(seed), 5e-4
-    motion = ck.solve(mechanism, {k: v + step * np.arange(-4, 5) for k, v in home(mechanism).items()})
+    motion = ck.solve(mechanism, {k: v + step * np.arange(-4, 5) for k, v in drawn_values(mechanism).items()})
     point = complex(*np.random.default_rng(seed).uniform(-2, 2, 2))
     for link in [name for name in motion.links if name != "frame"]:
         path = np.asarray(motion.links[link].at(point).position)
@@ -281,7 +281,7 @@ def test_circles_go_along_when_the_mechanism_is_moved(seed: int, change: str) ->
     moved, factor = CHANGES[change]
     one = random_motion(seed)
     mechanism = random_mechanism(seed, moved)
-    two = ck.solve(mechanism, home(mechanism), order=3)
+    two = ck.solve(mechanism, drawn_values(mechanism), order=3)
     for link, on in turning_pairs(one, 0.05):
         if on != "frame":
             continue

@@ -14,7 +14,7 @@ import compoundkin as ck
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, constant
 from compoundkin.kinematics import Motion
-from tests.support import KINDS_OF_DYAD, Sketch, differences, home, random_sketch, well_conditioned
+from tests.support import KINDS_OF_DYAD, Sketch, differences, drawn_values, random_sketch, well_conditioned
 
 SEEDS = st.integers(0, 2**32 - 1)
 ORDER = 3
@@ -34,7 +34,7 @@ def random_mechanism(seed: int) -> tuple[Sketch, ck.Mechanism]:
 
 
 def near_home(mechanism: ck.Mechanism, speed: float = 1.0, **more: Any) -> Motion:
-    values = {name: value + SWEEP for name, value in home(mechanism).items()}
+    values = {name: value + SWEEP for name, value in drawn_values(mechanism).items()}
     speeds = dict.fromkeys(values, speed)
     return ck.solve(mechanism, values, speed=speeds, order=ORDER, **more)
 
@@ -60,10 +60,10 @@ def same(one: Motion, other: Motion, change: Callable[[Any, int], Any]) -> None:
 def test_the_drawn_pose_is_solved_as_drawn(seed: int) -> None:
     """Every dimension read off the drawing; at the drawn driver value the drawing comes out."""
     sketch, mechanism = random_mechanism(seed)
-    motion = ck.solve(mechanism, home(mechanism))
+    motion = ck.solve(mechanism, drawn_values(mechanism))
     for letter, place in sketch.places.items():
         assert close(motion.points[letter].position, place)
-    for name, value in home(mechanism).items():
+    for name, value in drawn_values(mechanism).items():
         assert close(motion.drives[name].value, value)
         driven = motion.structure.driven[name].pair.name
         assert close(np.exp(1j * motion.pairs[driven].value), np.exp(1j * value))
@@ -87,7 +87,7 @@ def test_all_points_of_a_letter_stay_together(seed: int) -> None:
 def test_derivatives_are_those_of_the_positions(seed: int) -> None:
     """Against ninth-order differences of separately solved positions, with speed, acceleration and jerk."""
     _, mechanism = random_mechanism(seed)
-    start, step = home(mechanism), 2e-3
+    start, step = drawn_values(mechanism), 2e-3
     w, a, j = 1.0, -0.7, 0.4
     times = step * np.arange(-4, 5)
     values = {k: v + w * times + a * times**2 / 2 + j * times**3 / 6 for k, v in start.items()}
@@ -130,7 +130,7 @@ def test_scaling_the_drawing(seed: int) -> None:
     one = near_home(mechanism)
     is_angle = all(drive.is_angle for drive in one.drives.values())
     part = 1.0 if is_angle else scale
-    values = {name: value + SWEEP * part for name, value in home(scaled).items()}
+    values = {name: value + SWEEP * part for name, value in drawn_values(scaled).items()}
     other = ck.solve(scaled, values, speed=dict.fromkeys(values, part), order=ORDER)
     same(one, other, lambda v, k: scale * v) if scale >= 1 else same(other, one, lambda v, k: v / scale)
 
@@ -143,7 +143,7 @@ def test_mirroring_the_drawing(seed: int) -> None:
     one = near_home(mechanism)
     mirrored = sketch.mechanism(lambda p: p.conjugate())
     sign = -1.0 if all(drive.is_angle for drive in one.drives.values()) else 1.0
-    values = {name: value + sign * SWEEP for name, value in home(mirrored).items()}
+    values = {name: value + sign * SWEEP for name, value in drawn_values(mirrored).items()}
     other = ck.solve(mirrored, values, speed=dict.fromkeys(values, sign), order=ORDER)
     same(one, other, lambda v, k: np.conjugate(v))
 
@@ -239,7 +239,7 @@ def test_dimensions_written_in_other_axes(seed: int) -> None:
     items += [ck.drive(**words) for words in sketch.drives]
     other = ck.Mechanism("other axes", *items, ck.drawn(**sketch.places))
     one = near_home(mechanism)
-    start = home(mechanism)
+    start = drawn_values(mechanism)
     if one.drives["link0"].is_angle:
         letters = sketch.links["link0"]
         start = {"link0": float(np.angle(axes["link0"][1]))}
@@ -254,7 +254,7 @@ def test_an_unbranched_chain_of_many_dyads() -> None:
     sketch = random_sketch(rng, rng.choice(KINDS_OF_DYAD, 60))
     mechanism = sketch.mechanism()
     assert len(ck.decompose(mechanism).groups) == 60
-    motion = ck.solve(mechanism, home(mechanism), order=0)
+    motion = ck.solve(mechanism, drawn_values(mechanism), order=0)
     for letter, place in sketch.places.items():
         assert abs(complex(motion.points[letter].position) - place) < 1e-8
 
@@ -271,7 +271,7 @@ def test_each_kind_alone_over_designs(kind: str) -> None:
     first = sketch.links["link0"][0]
     many[first] = np.full((4, 1), sketch.places[first])
     items = list(sketch.mechanism().items[:-1])
-    values = home(sketch.mechanism())["link0"] + SWEEP
+    values = drawn_values(sketch.mechanism())["link0"] + SWEEP
     together = ck.solve(ck.Mechanism("m", *items, ck.drawn(**many)), {"link0": values}, order=ORDER)
     assert together.shape == (4, 5)
     for row in range(4):

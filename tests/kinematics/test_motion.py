@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 import compoundkin as ck
 from compoundkin.base.arrays import unwrapped
 from compoundkin.kinematics import Motion, Vectors, solution
-from tests.support import KINDS_OF_DYAD, differences, home, random_sketch, well_conditioned
+from tests.support import KINDS_OF_DYAD, differences, drawn_values, random_sketch, well_conditioned
 
 
 def four_bar(crank: Any = 1.0, coupler: Any = 3.0, rocker: Any = 3.0, frame: Any = 4.0, *more: Any) -> ck.Mechanism:
@@ -460,7 +460,7 @@ def test_no_random_mechanism_ever_has_a_pose_that_does_not_close() -> None:
         rng = np.random.default_rng(seed)
         sketch = random_sketch(rng, rng.choice(KINDS_OF_DYAD, 3))
         mechanism = sketch.mechanism()
-        start = home(mechanism)["link0"]
+        start = drawn_values(mechanism)["link0"]
         motion = quietly(mechanism, {"link0": start + np.linspace(0, 2 * np.pi, 73)}, order=1)
         good = motion.assembled
         count += int(good.sum())

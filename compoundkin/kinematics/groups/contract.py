@@ -91,6 +91,9 @@ class GroupSolver(ABC):
             [trial.world[body.links[0]] for body in self.group.bodies], trial.failed == 0, (self.modes, *block.shape)
         )
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(self.group.links)})"
+
 
 @dataclass(frozen=True)
 class Side:

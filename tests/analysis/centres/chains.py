@@ -10,7 +10,7 @@ import numpy as np
 
 import compoundkin as ck
 from compoundkin.analysis.centres.circle_diagram import Diagram, DrivenCentre, Primary
-from tests.support import home
+from tests.support import drawn_values
 
 # The numbers of links with more than two pins, by their pins, that mobility 1 allows.
 MANY_PINNED = {4: [()], 6: [(3, 3)], 8: [(3, 3, 3, 3), (4, 3, 3), (4, 4)]}
@@ -99,4 +99,4 @@ def random_mechanism(graph: nx.Graph, seed: int) -> ck.Mechanism:
 
 def solved(drawn: ck.Mechanism) -> ck.results.Motion:
     """A mechanism in its drawn pose, with velocities."""
-    return ck.solve(drawn, home(drawn), order=1)
+    return ck.solve(drawn, drawn_values(drawn), order=1)

@@ -247,9 +247,9 @@ def test_moved_turned_and_scaled(change: tuple[complex, complex]) -> None:
 
 def _at_home(joints: dict[str, complex]) -> ck.results.Motion:
     drawn = mechanism(joints)
-    from tests.support import home
+    from tests.support import drawn_values
 
-    return ck.solve(drawn, home(drawn))
+    return ck.solve(drawn, drawn_values(drawn))
 
 
 def test_many_poses_are_as_each_alone() -> None:

@@ -17,7 +17,7 @@ from compoundkin.analysis.centres.homogeneous import sine_between
 from compoundkin.analysis.centres.rate_sets import RateSets
 from compoundkin.analysis.centres.twist_loops import null_twists
 from tests.analysis.centres.chains import DOUBLE_BUTTERFLY, SINGLE_FLIER, diagram, random_mechanism, solved
-from tests.support import home
+from tests.support import drawn_values
 
 
 @pytest.fixture(autouse=True)
@@ -64,7 +64,7 @@ def test_what_nothing_else_gives_comes_from_the_solved_velocities(monkeypatch: p
 def test_without_velocities_they_are_undetermined(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(derivation, "trial_position", lambda centres: None)
     flier = random_mechanism(nx.from_graph6_bytes(SINGLE_FLIER.encode()), 0)
-    centres = instant_centres(ck.solve(flier, home(flier), order=0))
+    centres = instant_centres(ck.solve(flier, drawn_values(flier), order=0))
     statuses = [int(centres[couple].status) for couple in centres]
     assert statuses.count(Status.UNDETERMINED) == 16
     assert statuses.count(Status.FOUND) == 12

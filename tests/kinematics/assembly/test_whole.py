@@ -11,7 +11,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from tests.configurations.mechanisms import four_bar, random_triad
-from tests.support import home, random_sketch
+from tests.support import drawn_values, random_sketch
 
 NAMED = [
     "six-bar",
@@ -117,7 +117,7 @@ def test_a_group_is_assembled_in_the_configuration_nearest_to_a_rough_drawing(se
     """Of all configurations that whose points lie nearest to the drawn ones, whatever Newton would have found."""
     rng = np.random.default_rng(seed)
     mechanism = random_triad(rng).mechanism()
-    value = home(mechanism)["link0"]
+    value = drawn_values(mechanism)["link0"]
     exact = ck.configurations(mechanism, {"link0": value})
     for one in exact:
         hint = {k: p + complex(*rng.normal(0.0, 1e-3, 2)) for k, p in one.points.items()}
