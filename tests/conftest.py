@@ -26,6 +26,7 @@ SLOW = {
     "view/page/test_browser.py": 30,
     "test_site.py": 30,
     "view/report/test_catalog.py": 20,
+    "model/pairs/test_minimal_kind.py": 14,
     "test_style.py": 18,
     "view/page/test_viewer.py": 12,
     "view/page/test_attack.py": 12,
