@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
-from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.model.attributes import (
     ALSO,
     CATALOGUE,
@@ -149,6 +149,10 @@ def quantity(motion: HasQuantities, name: str) -> Quantity:
 
 def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
     """Return the quantity of a name, or a vector and which part is meant; raises UnknownName."""
+    if not isinstance(name, str):
+        raise InvalidInput(
+            Problem("quantity", f"{name!r} is no name", 'write "G.velocity", one text for each quantity')
+        )
     try:
         return _whole(motion, name), ""
     except UnknownName:

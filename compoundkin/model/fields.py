@@ -176,15 +176,23 @@ def word(name: str, kind: Callable[P, Made]) -> Callable[P, Made]:
     'crank/arm'
     """
 
-    def made(*args: P.args, **kwargs: P.kwargs) -> Made:
-        return kind(*args, **kwargs)
-
     assert isinstance(kind, type)
+    signature = inspect.signature(kind).replace(return_annotation=kind.__name__)
+    make: Callable[P, Made] = kind
+
+    def made(*args: P.args, **kwargs: P.kwargs) -> Made:
+        try:
+            signature.bind(*args, **kwargs)
+        except TypeError as error:
+            # said of the word that was written, not of the class behind it
+            raise TypeError(f"{name}(): {error}") from None
+        return make(*args, **kwargs)
+
     text = inspect.cleandoc(kind.__doc__ or "").partition("\n\n>>>")
     arguments = "\n".join(f"* `{key.name}`: {key.doc}{_UNITS.get(key.kind, '')}" for key in keys_of(kind))
     made.__doc__ = f"{text[0]}\n\n{arguments}{''.join(text[1:])}"
     made.__name__, made.__qualname__, made.__module__ = name, name, kind.__module__
-    made.__signature__ = inspect.signature(kind).replace(return_annotation=kind.__name__)  # type: ignore[attr-defined]
+    made.__signature__ = signature  # type: ignore[attr-defined]
     return made
 
 

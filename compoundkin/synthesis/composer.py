@@ -42,7 +42,7 @@ class _GroupPair:
     toward: str = ""
 
 
-@dataclass
+@dataclass(repr=False)
 class Composer(LetteredLinks):
     """Builds a mechanism group by group; `mechanism()` is the result, as drawn.
 
@@ -57,6 +57,9 @@ class Composer(LetteredLinks):
     title: str
     _slides: list[dict[str, str]] = field(default_factory=list)
     _drives: list[dict[str, Any]] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        return f"Composer({self.title!r}: {len(self.links)} links)"
 
     def drive(self, name: str, to: str = FRAME, pair: str = REVOLUTE, **words: Any) -> Composer:
         """Return a driven link. Pinned (`pair` "R") or sliding ("P") on the frame or another link.

@@ -74,5 +74,5 @@ def as_law(where: str, law: Any) -> Law | None:
         return law
     if callable(law) and not isinstance(law, type):
         return FunctionLaw(law)
-    remedy = "write constant_speed(...), program(...), time_table(...) or a function of time"
+    remedy = "write laws.constant_speed(...), laws.program(...), laws.time_table(...) or a function of time"
     raise InvalidMechanism(Problem(where, f"{law!r} is not a law", remedy))

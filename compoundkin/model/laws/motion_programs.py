@@ -18,7 +18,7 @@ from compoundkin.model.laws.cam_laws import JUMP, LAWS, Discontinuity, PieceTabl
 
 Array: TypeAlias = np.ndarray[Any, Any]
 
-_WORDS = "write rise(...), fall(...), dwell(...)"
+_WORDS = "write laws.rise(...), laws.fall(...), laws.dwell(...)"
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,9 @@ class Cam(Profiled):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a length", "give a positive number, or none")
         if not isinstance(self.profile, Profile):
             what = f"{self.profile!r} is not a profile"
-            yield Problem(f"{where}.profile", what, "write disc(...), profile(points) or one made for a motion")
+            yield Problem(
+                f"{where}.profile", what, "write profiles.disc(...), profiles.profile(points) or one made for a motion"
+            )
         else:
             yield from self.profile.problems(f"{where}.profile")
 

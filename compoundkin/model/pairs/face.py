@@ -98,7 +98,9 @@ class Face(Profiled):
             yield Problem(f"{where}.side", f"{self.side!r} is not a side", "write 1 (left) or -1 (right)")
         if not isinstance(self.profile, Profile):
             what = f"{self.profile!r} is not a profile"
-            yield Problem(f"{where}.profile", what, "write disc(...), profile(points) or one made for a motion")
+            yield Problem(
+                f"{where}.profile", what, "write profiles.disc(...), profiles.profile(points) or one made for a motion"
+            )
         else:
             yield from self.profile.problems(f"{where}.profile")
 

@@ -69,7 +69,11 @@ def _words(made: Synthesised) -> Iterator[Problem]:
     if made.side not in (1, -1):
         yield Problem("side", f"{made.side!r} is not a side", "write 1 (rises counterclockwise) or -1 (clockwise)")
     if not isinstance(made.program, Program):
-        yield Problem("program", f"{made.program!r} is not a motion program", "write program(rise(...), dwell(...))")
+        yield Problem(
+            "program",
+            f"{made.program!r} is not a motion program",
+            "write laws.program(laws.rise(...), laws.dwell(...))",
+        )
     yield from _misplaced(made)
 
 
@@ -92,7 +96,7 @@ def _program(made: Synthesised) -> Iterator[Problem]:
     turn = program.period
     if abs(turn - TURN) > ROUNDING:
         what = f"the spans add up to {np.rad2deg(turn):.6g} degrees, not to a turn of 360"
-        remedy = "change a dwell; spans are degrees in a file, radians in Python: rise(10, over=deg(90))"
+        remedy = "change a dwell; spans are degrees in a file, radians in Python: laws.rise(10, over=deg(90))"
         yield Problem("program", what, remedy)
     back = float(program.values[-1] - program.values[0])
     if abs(back) > ROUNDING * program.lift:

@@ -111,7 +111,7 @@ def table_html(shown: ShownTable) -> str:
     """Return the table in a box of its own that scrolls, with its buttons."""
     parts = [element("caption", safe(shown.caption), class_="unseen"), _head(shown), _body(shown)]
     grid = element("table", lines(parts), class_="sortable asc n-last", id=shown.key)
-    box = element("div", grid, class_="scroll", role="region", aria_label=f"TableBlock: {shown.caption}", tabindex="0")
+    box = element("div", grid, class_="scroll", role="region", aria_label=f"Table: {shown.caption}", tabindex="0")
     return element("div", f"{_tools(shown)}\n{box}", class_="grid")
 
 

@@ -92,7 +92,7 @@ def _unseen_caption(text: str) -> str:
 def _sketch(moving: MotionData) -> str:
     """The sketch at the pose shown first; every part is an element with its own place."""
     sketch = moving.sketch
-    title = f"MotionData kinematic sketch of {moving.motion.mechanism.title}"
+    title = f"Moving kinematic sketch of {moving.motion.mechanism.title}"
     size = f"0 0 {number(sketch.window.width)} {number(sketch.window.height)}"
     parts = [*_parts(sketch)]
     inside = [

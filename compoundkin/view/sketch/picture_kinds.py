@@ -63,7 +63,7 @@ def draw(
     """
     if not isinstance(what, Motion | Mechanism | Structure):
         raise InvalidInput(Problem("draw", f"{what!r} is no motion and no mechanism", "load() one from a file"))
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", nearest(str(kind), list(KINDS))))
     wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size)
     drawn, known = KINDS[kind]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -50,7 +51,9 @@ def wanted(vectors: str | Sequence[str] | None) -> tuple[str, ...]:
     >>> wanted("velocity")
     ('velocity',)
     """
-    names = () if not vectors else (vectors,) if isinstance(vectors, str) else tuple(vectors)
+    names: tuple[Any, ...] = () if not vectors else (vectors,)
+    if vectors and isinstance(vectors, Iterable) and not isinstance(vectors, str):
+        names = tuple(vectors)
     for name in names:
         if name not in KINDS_OF_VECTOR:
             what = f"there are no vectors {name!r}"

@@ -33,6 +33,14 @@ from .conftest import HOSTILE
 VOID = {"meta", "link", "br", "wbr", "input", "img", "hr"}
 
 
+def test_tables_and_the_sketch_are_read_out_in_words() -> None:
+    html = page(catalog.motion("six-bar")).html
+    assert 'aria-label="Table: Links"' in html
+    assert "Moving kinematic sketch of" in html
+    assert "TableBlock" not in html
+    assert "MotionData" not in html
+
+
 class Reader(HTMLParser):
     """Reads a page, and holds it to be well formed: every element is ended in its turn."""
 

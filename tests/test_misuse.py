@@ -1,0 +1,34 @@
+"""Words used wrongly: what is said is about the word that was written, and says how to mend it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import compoundkin as ck
+
+SIX_BAR = ck.solve(ck.catalog.load_named("six-bar"))
+
+REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
+    "a list of names": (lambda: SIX_BAR.table(["G.velocity"]), "one text for each quantity"),
+    "a number for a name": (lambda: ck.quantity(SIX_BAR, 3), "3 is no name"),
+    "a list of names to plot": (lambda: ck.plot(SIX_BAR, ["G", "bar"]), "one text for each quantity"),
+    "a list of kinds": (lambda: ck.draw(SIX_BAR, kind=["groups"]), "there is no picture"),
+    "vectors switched on": (lambda: ck.draw(SIX_BAR, kind="polygon", vectors=True), "velocity, acceleration"),
+    "vectors of an animation switched on": (lambda: ck.animate(SIX_BAR, vectors=True), "velocity, acceleration"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_it_is_refused_with_a_remedy(case: str) -> None:
+    call, told = REFUSED[case]
+    with pytest.raises(ck.errors.CompoundkinError, match=told):
+        call()
+
+
+@pytest.mark.parametrize("word", ["slide", "slot", "arc", "cam", "face", "gear", "belt", "rack", "roll", "roll_around"])
+def test_arguments_that_lack_are_told_of_the_word_not_of_its_class(word: str) -> None:
+    with pytest.raises(TypeError, match=rf"^{word}\(\): missing a required"):
+        getattr(ck, word)()
