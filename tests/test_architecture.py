@@ -190,7 +190,8 @@ def test_solvers_are_told_apart_in_their_own_folder_only() -> None:
 
 
 def test_nobody_tracks_outside_kinematics() -> None:
-    tracking = re.compile(r"\b\w*Tracker\w*|\bcompoundkin\.kinematics\.tracking\b")
+    """Neither by the class and its module, nor by the attribute of a motion."""
+    tracking = re.compile(r"\b\w*Tracker\w*|\bcompoundkin\.kinematics\.tracking\b|\.tracker\b")
     others = [path for path in FILES if room(path) not in ("kinematics", "__init__")]
     only_shrinks(f"{where(p)}: {word}" for p in others for word in tracking.findall(code_of(p)))
 

@@ -189,7 +189,7 @@ def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, 
     for k, solver in enumerate(sweep.solving_order.solvers):
         if not segments.rows:
             break
-        if solver.equations is not None:
+        if solver.is_numbered:
             segments, missing = general_segments.lifted(sweep, segments, k, fineness)
             lost += missing
         elif solver.has_limits:

@@ -19,9 +19,8 @@ from compoundkin.configurations.segment_poses import drawn_angle
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.driver_values import by_name, inputs
-from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at
-from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.kinematics.results import Named
@@ -66,8 +65,8 @@ class AllModes:
         """Return all modes of a group, along an axis of their own where there are several."""
         if solver.modes == 1:
             return 1.0
-        if solver.equations is not None:
-            return self._numbered(block, solver, solver.equations)
+        if solver.is_numbered:
+            return self._numbered(block, solver)
         signs = np.array([1.0, -1.0]).reshape(2, *[1] * len(block.shape))
         self._branch(solver.index, ("+", "-"), 2)
         return signs
@@ -76,7 +75,7 @@ class AllModes:
         """Return the drawn angle of a link."""
         return drawn_angle(self.solving_order, link)
 
-    def _numbered(self, block: Block, solver: GroupSolver, equations: GroupEquations) -> Number:
+    def _numbered(self, block: Block, solver: GroupSolver) -> Number:
         found = solver.every(block)
         states = found.states
         batch = (1,) * (len(block.shape) - (states.ndim - 2)) + states.shape[:-2]
@@ -85,7 +84,7 @@ class AllModes:
             states = np.full((1, *states.shape[1:]), np.nan)
         self._branch(solver.index, tuple(str(n + 1) for n in range(len(states))), found.expected)
         self.certified[solver.index] = found.certified
-        return equations.state(bodies_at(states))
+        return equations_of(solver).state(bodies_at(states))
 
     def _branch(self, k: int, names: tuple[str, ...], expected: int) -> None:
         """Give the block an axis for the modes of a group."""

@@ -14,7 +14,7 @@ from compoundkin.base.series import Number, constant
 from compoundkin.configurations.segment_poses import Sweep
 from compoundkin.configurations.segments import NONE, Segments
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.model.pairs.contract import Poses
 
@@ -38,8 +38,7 @@ class SegmentClosure:
     @property
     def own(self) -> GroupEquations:
         """The group's own equations."""
-        assert self.solver.equations is not None
-        return self.solver.equations
+        return equations_of(self.solver)
 
     @property
     def weights(self) -> Number:

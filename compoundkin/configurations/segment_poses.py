@@ -14,7 +14,7 @@ from compoundkin.configurations.segments import NONE, TOUCHING, Segments
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import SIGNS, Configuration, dimensions_at, numbers_at, placed_at
 from compoundkin.kinematics.configuration_arrays import state_distance
-from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at
 from compoundkin.kinematics.limits import EDGE
 from compoundkin.kinematics.solving_order import SolvingOrder, run
@@ -64,8 +64,8 @@ class _OnSegments:
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the states of a group, its signs, or 1 where it has one mode."""
-        if solver.equations is not None:
-            return solver.equations.state(bodies_at(self.segments.seeds(solver.index, self.rows, self.s)))
+        if solver.is_numbered:
+            return equations_of(solver).state(bodies_at(self.segments.seeds(solver.index, self.rows, self.s)))
         if solver.has_limits:
             return self.segments.sign(solver.index, self.rows, self.sides)
         return 1.0
@@ -114,7 +114,7 @@ class SegmentPoses(PrintsShort):
         """Return the signs and numbers of the groups with several configurations."""
         found: list[dict[int, str]] = [{} for _ in rows]
         for k, solver in enumerate(self.sweep.solving_order.solvers):
-            if solver.modes == 0:
+            if solver.is_numbered:
                 texts = self._numbers(k, solver, rows, s, sides)
             elif k in self.segments.signs and solver.modes == 2:
                 sign = self.segments.sign(k, rows, sides[:, None])[:, 0]

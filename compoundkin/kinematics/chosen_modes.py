@@ -9,6 +9,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics.configuration import BETWEEN, ONLY, Configuration, label
+from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.geometry import vector
 
@@ -37,7 +38,7 @@ def _by_group(solving_order: SolvingOrder, modes: Mapping[str, int]) -> dict[int
         if name not in where:
             raise InvalidInput(Problem(f"modes.{name}", "this link is driven or fixed: it has no assembly mode"))
         if sign not in (1, -1) and not (
-            solving_order.solvers[where[name]].modes == 0 and isinstance(sign, int) and sign > 0
+            solving_order.solvers[where[name]].is_numbered and isinstance(sign, int) and sign > 0
         ):
             raise InvalidInput(Problem(f"modes.{name}", f"an assembly mode is +1 or -1, not {sign!r}"))
         if signs.setdefault(where[name], sign) != sign:
@@ -55,7 +56,7 @@ def read_name(solving_order: SolvingOrder, name: str) -> dict[int, int]:
 def _read(solving_order: SolvingOrder, part: str) -> tuple[int, int]:
     known = dict(_labels(solving_order))
     for text, k in known.items():
-        mode = _mode(solving_order.solvers[k].modes, part.removeprefix(text)) if part.startswith(text) else None
+        mode = _mode(solving_order.solvers[k], part.removeprefix(text)) if part.startswith(text) else None
         if mode is not None:
             return k, mode
     what = f"{part!r} is no configuration of a group"
@@ -68,8 +69,8 @@ def _labels(solving_order: SolvingOrder) -> Iterator[tuple[str, int]]:
             yield label(solving_order.structure, solver.index), solver.index
 
 
-def _mode(modes: int, text: str) -> int | None:
-    if modes == 0:
+def _mode(solver: GroupSolver, text: str) -> int | None:
+    if solver.is_numbered:
         return int(text) if text.strip().isdecimal() and int(text) > 0 else None
     return {"+": 1, "-": -1}.get(text)
 

@@ -14,9 +14,8 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import column, first_of
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at, known_configurations
-from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import FRAME
 from compoundkin.model.geometry import fitted_pose
@@ -181,9 +180,3 @@ def _unfound(solver: GroupSolver) -> Problem:
         "no assembled pose was found from the drawing or from random starts",
         "draw its points near an assembled pose, or give a hint",
     )
-
-
-def equations_of(solver: GroupSolver) -> GroupEquations:
-    """Return the equations of a group whose configurations are numbered."""
-    assert solver.equations is not None
-    return solver.equations

@@ -99,7 +99,7 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[s
 
     def closes(middle: Number) -> Number:
         part = motion.inputs.pick(designs, middle)
-        block = motion.tracker.run(part, 0, middle[:, None], designs[:, None])
+        block = motion.block(part, 0, middle[:, None], designs[:, None])
         return column(block.failed == 0, len(designs))
 
     near, _ = bisected(closes, near, bad.astype(float), HALVINGS)
@@ -109,7 +109,7 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[s
 
 def _reasons(motion: Motion, designs: Number, poses: Number) -> list[str]:
     part = motion.inputs.pick(designs, poses.astype(float))
-    block = motion.tracker.run(part, 0, poses.astype(float)[:, None], designs[:, None])
+    block = motion.block(part, 0, poses.astype(float)[:, None], designs[:, None])
     solvers = motion.solving_order.solvers
     failed = motion.failed[designs, poses]
     return [solvers[index - 1].why(block, k) for k, index in enumerate(failed.tolist())]

@@ -12,6 +12,7 @@ import numpy as np
 from compoundkin.base.display import ShowsPicture, way
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
+from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.inputs import Inputs, PoseGrid, fit
 from compoundkin.kinematics.results import LinkMotion, Named, PairMotion, PointMotion
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -121,6 +122,28 @@ class Motion(ShowsPicture):
     def solving_order(self) -> SolvingOrder:
         """What solved it: the driven links, then a solver for each group."""
         return self.tracker.solving_order
+
+    @property
+    def chosen_by(self) -> Mapping[int, str]:
+        """What chose the mode of each group: `sign`, `drawing`, `hint`, `default` or another."""
+        return self.tracker.chosen_by
+
+    @property
+    def change_points(self) -> Mapping[int, Number]:
+        """Where groups pass change points: places along the motion (designs, count), padded with inf."""
+        return self.tracker.flips
+
+    def sign(self, k: int, design: int) -> int:
+        """Return the sign of a group's mode at the first pose of a design."""
+        sign = self.tracker.sign(k, np.array([[design]]), np.array([[0.0]]))
+        return int(np.ravel(sign)[0])
+
+    def block(self, part: Inputs, order: int, s: Number, designs: Number) -> Block:
+        """Solve a block of other inputs in the configuration of the motion.
+
+        `s` are the places along the motion whose configuration is kept, `designs` the indices of the designs.
+        """
+        return self.tracker.run(part, order, s, designs)
 
     def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:
         """Return the motion with some of its poses put in the place of what was solved there."""

@@ -50,7 +50,7 @@ class SolvingOrder(PrintsShort):
     @cached_property
     def numbered(self) -> tuple[int, ...]:
         """The indices of the groups whose configurations are numbered."""
-        return tuple(solver.index for solver in self.solvers if solver.equations is not None)
+        return tuple(solver.index for solver in self.solvers if solver.is_numbered)
 
     def start(
         self,

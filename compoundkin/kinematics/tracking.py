@@ -15,7 +15,7 @@ from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.first_pose import distance, first_state, shown
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
 from compoundkin.kinematics.group_paths import GroupPath, track
-from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.limits import NEAREST
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
@@ -127,7 +127,7 @@ class _Kept:
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the tracked state, or the sign."""
-        if solver.equations is not None:
+        if solver.is_numbered:
             paths = self.tracker.approach_paths if self.on_approach else self.tracker.paths
             return paths[solver.index].seeds(self.designs, self.s)
         return self.tracker.sign(solver.index, self.designs, self.s, self.on_approach)
@@ -147,13 +147,13 @@ class _First:
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the chosen mode, and note it."""
         tracker, k = self.tracker, solver.index
-        if solver.equations is None:
+        if not solver.is_numbered:
             tracker.signs[k], tracker.chosen_by[k] = self._sign(block, solver)
             return tracker.signs[k]
         number = tracker.fixed.get(k)
         state, by = first_state(tracker.solving_order, solver, block, tracker.sketch, number)
         tracker.chosen_by[k] = tracker.shown_by if by == "drawing" else by
-        tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, solver.equations, state)
+        tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, equations_of(solver), state)
         return state
 
     def angle(self, solver: GroupSolver, link: str) -> Number:

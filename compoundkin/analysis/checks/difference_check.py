@@ -12,7 +12,7 @@ from compoundkin.analysis.checks.finding import Finding, worst
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.block import Block, places
+from compoundkin.kinematics.block import places
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs.contact import as_profiled
@@ -105,7 +105,7 @@ def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
             moved = moved + rate * time**k / factorial(k)
         drives[name] = (moved,)
     everywhere = places(slice(0, given.designs), slice(0, given.poses))
-    return dict(motion.tracker.run(given.driven(drives), 0, *everywhere).world)
+    return dict(motion.block(given.driven(drives), 0, *everywhere).world)
 
 
 def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
@@ -123,17 +123,17 @@ def _away_from_change_points(motion: Motion) -> Number:
     """Return poses whose neighbours lie on the same side of every change point."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
     index = np.arange(motion.inputs.poses, dtype=float)
-    for flips in motion.tracker.flips.values():
-        good = good & (np.abs(flips[:, :, None] - index).min(axis=1) > 1.0)
+    for found in motion.change_points.values():
+        good = good & (np.abs(found[:, :, None] - index).min(axis=1) > 1.0)
     return good
 
 
 def _before_change_points(motion: Motion, reach: Number) -> Number:
     """Return poses from which no change point is reached within a time."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
-    for flips in motion.tracker.flips.values():
-        designs, which = np.nonzero(np.isfinite(flips))
-        there = motion.inputs.pick(designs, flips[designs, which])
+    for found in motion.change_points.values():
+        designs, which = np.nonzero(np.isfinite(found))
+        there = motion.inputs.pick(designs, found[designs, which])
         away: Number = np.zeros((len(designs), motion.inputs.poses))
         for name, (value, speed, *_) in motion.inputs.drives.items():
             here, rate = (np.broadcast_to(v, motion.failed.shape)[designs] for v in (value, speed))
@@ -160,7 +160,7 @@ def continuity_findings(motion: Motion) -> Iterator[Finding]:
 
 
 def _slopes(motion: Motion, part: Inputs, s: Number) -> dict[str, Number]:
-    block: Block = motion.tracker.run(part, 1, s[None], np.arange(motion.inputs.designs)[:, None])
+    block = motion.block(part, 1, s[None], np.arange(motion.inputs.designs)[:, None])
     shape = motion.failed.shape
     found = {}
     for link, pose in block.world.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from compoundkin.kinematics.groups.contract import GroupSolver
+from compoundkin.kinematics.groups.contract import GroupSolver, equations_of
 from compoundkin.kinematics.groups.dyad import DyadSolver
 from compoundkin.kinematics.groups.follower import FollowerSolver
 from compoundkin.kinematics.groups.gear_train import GearTrainSolver
@@ -28,4 +28,4 @@ def solver_of(index: int, group: Group, size: float, ends: Mapping[str, Ends]) -
     return next(solver for solver in found if solver is not None)
 
 
-__all__ = ["DYADS", "SOLVERS", "DyadSolver", "GroupSolver", "solver_of"]
+__all__ = ["DYADS", "SOLVERS", "DyadSolver", "GroupSolver", "equations_of", "solver_of"]

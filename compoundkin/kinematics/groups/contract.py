@@ -68,6 +68,11 @@ class GroupSolver(ABC):
         """Say why the group cannot be assembled at a pose, given by its flat index."""
 
     @property
+    def is_numbered(self) -> bool:
+        """Whether its configurations are numbered, and states followed: it has equations and no signs."""
+        return self.equations is not None
+
+    @property
     def has_limits(self) -> bool:
         """Whether it may come to a limit position that its closed form shows."""
         return self.modes == 2 or self.tells_margin
@@ -93,6 +98,12 @@ class GroupSolver(ABC):
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(self.group.links)})"
+
+
+def equations_of(solver: GroupSolver) -> GroupEquations:
+    """Return the equations of a group whose configurations are numbered."""
+    assert solver.equations is not None
+    return solver.equations
 
 
 @dataclass(frozen=True)

@@ -63,8 +63,8 @@ def events(motion: Motion) -> Events:
     found = gaps(motion) if np.any(motion.failed) else ()
     changes = [
         (design, float(place))
-        for _, flips in sorted(motion.tracker.flips.items())
-        for design, row in enumerate(flips)
+        for _, places in sorted(motion.change_points.items())
+        for design, row in enumerate(places)
         for place in row[np.isfinite(row)]
     ]
     return Events(tuple(_blank(motion, gap) for gap in found), tuple(dict.fromkeys(changes)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -23,10 +23,7 @@ from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, 
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import Wording, counted, listed
 
-if TYPE_CHECKING:
-    from compoundkin.kinematics import Motion
-
-# How a motion's tracker names the reason for an assembly mode, in a report's words.
+# The reasons for an assembly mode that a motion names, in a report's words.
 CHOSEN_BY = {
     "sign": "chosen by sign",
     "drawing": "nearest to the drawing",
@@ -181,26 +178,19 @@ def _yields(links: Iterable[str], letters: Iterable[str]) -> str:
 
 def _mode(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]]:
     """Which assembly mode it is in, what that means, and what chose it."""
-    tracker = motion.tracker
-    why = CHOSEN_BY.get(tracker.chosen_by.get(k, ""), "")
+    why = CHOSEN_BY.get(motion.chosen_by.get(k, ""), "")
     solver = motion.solving_order.solvers[k]
-    if solver.modes == 0:
+    if solver.is_numbered:
         yield "mode", f"{why or 'found'}, by iteration, and followed along the motion"
     elif solver.modes == 1:
         yield "mode", "the only one"
     else:
-        sign = _sign(motion, k, design)
+        sign = motion.sign(k, design)
         meaning = solver.sign_means if sign > 0 else f"the other one; in +1, {solver.sign_means}"
         yield "mode", f"{sign:+d}, {why} ({meaning}){_changes(motion, k, design)}"
 
 
-def _sign(motion: Motion, k: int, design: int) -> int:
-    """The sign at the first pose."""
-    sign = motion.tracker.sign(k, np.array([[design]]), np.array([[0.0]]))
-    return int(np.ravel(sign)[0])
-
-
 def _changes(motion: Motion, k: int, design: int) -> str:
-    flips = motion.tracker.flips.get(k)
-    count = 0 if flips is None else int(np.count_nonzero(np.isfinite(flips[design])))
+    places = motion.change_points.get(k)
+    count = 0 if places is None else int(np.count_nonzero(np.isfinite(places[design])))
     return f"; it changes at {counted(count, 'change point')}" if count else ""
