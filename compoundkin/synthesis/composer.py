@@ -104,12 +104,8 @@ class Composer(LetteredLinks):
         told, written = iter(places), []
         named = iter(at or [""] * len(inner))
         for code, first, second in pairs:
-            if first is None:
-                place = next(told)
-                written.append(_GroupPair(code, place.link, links[second], place.point, place.toward))
-            else:
-                point, _, toward = next(named).partition(_TOWARD)
-                written.append(_GroupPair(code, links[first], links[second], point, toward))
+            place = next(told) if first is None else AttachmentPoint(links[first], *next(named).partition(_TOWARD)[::2])
+            written.append(_GroupPair(code, place.link, links[second], place.point, place.toward))
         # pins first: a slide then runs at the pin of its block
         for pair in sorted(written, key=lambda pair: pair.code != REVOLUTE):
             self._write(pair)

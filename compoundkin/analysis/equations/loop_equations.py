@@ -30,7 +30,6 @@ from compoundkin.model.pairs.loop_terms import (
     Vector,
     angle_of,
     difference,
-    times,
 )
 from compoundkin.structure import Loop, Structure, decompose
 from compoundkin.structure.graph import loops_through
@@ -216,4 +215,4 @@ def _drivers(structure: Structure, terms: Mapping[str, LoopTerms]) -> Iterator[D
         first, second = (angle_of(name) for name in step.pair.members)
         value = Sum(0.0, tuple((1.0, unknown) for unknown in free)) if free else difference(first, second)
         sign = step.pair.driven_by(step.drive.link)
-        yield DriverEquation(step.drive.name, value if sign > 0 else times(-1.0, value), step.pair.free_is_angle)
+        yield DriverEquation(step.drive.name, value if sign > 0 else value.times(-1.0), step.pair.free_is_angle)

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.loop_terms import (
@@ -21,7 +21,6 @@ from compoundkin.model.pairs.loop_terms import (
     angle_of,
     difference,
     direction,
-    place,
 )
 from compoundkin.model.pairs.optional_answers import Equivalent, lower_equivalent
 
@@ -73,7 +72,7 @@ def _sliding(own: Pair, lower: Equivalent, block: Sum, free: Mapping[str, Unknow
 
 def _across(pair: Pair, lower: Equivalent, block: Sum) -> Iterator[Vector]:
     """The vector on the link between, from its first pair to its second."""
-    start, stop = (place(lower.ends[own.name][own.members.index(lower.link)]) for own in lower.pairs)
+    start, stop = (_place(lower.ends[own.name][own.members.index(lower.link)]) for own in lower.pairs)
     if np.any(stop != start):
         yield Vector(f"r({pair.name})", Sum(np.abs(stop - start)), block.plus(np.angle(stop - start)))
 
@@ -82,7 +81,12 @@ def _outside(own: Pair, lower: Equivalent) -> tuple[Number, str]:
     """The point of a lower pair on the member that it joins, and its label."""
     k = 1 - own.members.index(lower.link)
     is_guide = k == 0 and not own.free_is_angle
-    return place(lower.ends[own.name][k]), f"{own.letters[1]}'" if is_guide else own.letters[0]
+    return _place(lower.ends[own.name][k]), f"{own.letters[1]}'" if is_guide else own.letters[0]
+
+
+def _place(end: End) -> Number:
+    """The point of a pair's side, as a number."""
+    return end.point.c[0] if isinstance(end.point, Series) else end.point
 
 
 def _by_closure(pair: Pair, ends: Ends) -> LoopTerms:
@@ -92,7 +96,7 @@ def _by_closure(pair: Pair, ends: Ends) -> LoopTerms:
     across = Vector("", Sum(0.0, ((1.0, x),)), first), Vector("", Sum(0.0, ((1.0, y),)), first.plus(np.pi / 2.0))
     is_crossed = len(pair.members) == 2
     driven = (Unknown("direction" if pair.free_is_angle else "displacement", pair.name),) if pair.held == 2 else ()
-    points = tuple(place(end) for end in ends)
+    points = tuple(_place(end) for end in ends)
     equations = tuple(
         Implicit(pair.name, k, pair.members, points, function, (across,) if is_crossed else (), result)
         for k, (function, result) in enumerate(_functions(pair, ends, driven), 1)

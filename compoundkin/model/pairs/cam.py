@@ -16,16 +16,13 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.arc import ArcSlot
-from compoundkin.model.pairs.contact import Profiled, Touch, centre_of_curvature, row
+from compoundkin.model.pairs.contact import THINNED, Profiled, Touch, centre_of_curvature, row
 from compoundkin.model.pairs.contact_search import Freedom, crossings_on_way, path_of
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.loop_terms import Curved, LoopTerms, Unknown, angle_of
 from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
-
-# One of so many samples of the profile is enough to find where a path crosses it; Newton does the rest.
-THINNED = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,11 +65,6 @@ class Cam(Profiled):
     is_flat: ClassVar[bool] = False
 
     @property
-    def letters(self) -> tuple[str, ...]:
-        """The point that runs on the profile."""
-        return (self.at,)
-
-    @property
     def outward(self) -> float:
         """+1 where the roller is on the side to which the curve's normal points, else -1."""
         return -side_of(self.curve) if self.inside else side_of(self.curve)
@@ -83,17 +75,10 @@ class Cam(Profiled):
         return float(np.max(self.radius))
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a radius that is none, a profile that is none."""
+        """Unknown links and points, a profile that is none, a radius that is none."""
         yield from super().problems(links, where)
         if not np.all(np.asarray(self.radius) >= 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a length", "give a positive number, or none")
-        if not isinstance(self.profile, Profile):
-            what = f"{self.profile!r} is not a profile"
-            yield Problem(
-                f"{where}.profile", what, "write profiles.disc(...), profiles.profile(points) or one made for a motion"
-            )
-        else:
-            yield from self.profile.problems(f"{where}.profile")
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
         """A roller that does not fit into a hollow of the profile that it must run through from inside."""

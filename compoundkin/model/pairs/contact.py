@@ -6,7 +6,7 @@ A contact with a profile leads a member along it, as a cam its roller or flat fa
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import ClassVar, NamedTuple
 
@@ -14,12 +14,13 @@ import numpy as np
 
 from compoundkin.base.curves import Curve
 from compoundkin.base.curves.samples import spans
+from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.model.pairs.contact_search import Freedom
 from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, table
 from compoundkin.model.pairs.optional_answers import Replaceable
-from compoundkin.model.profiles import Profile
+from compoundkin.model.profiles import Profile, side_of
 
 
 class Touch(NamedTuple):
@@ -88,6 +89,8 @@ def _arms(poses: Sequence[Pose], place: Number) -> tuple[Number, ...]:
     return tuple(1j * (place - pose.z.c[0]) for pose in poses)
 
 
+# One of so many samples of the profile is enough to find where it is crossed or touched; Newton does the rest.
+THINNED = 4
 # A roller that cuts into the profile elsewhere by this part of the profile's size would touch there first; less is
 # rounding where it touches twice.
 CUTS = 1e-7
@@ -98,7 +101,24 @@ class Profiled(Contact):
 
     is_flat: ClassVar[bool]  # whether a flat face touches, which has no pitch curve
 
+    at: str
     profile: Profile
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The point of the follower: of its face, of its edge, or the middle of its roller."""
+        return (self.at,)
+
+    def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+        """Unknown links and points, a profile that is none."""
+        yield from super().problems(links, where)
+        if not isinstance(self.profile, Profile):
+            what = f"{self.profile!r} is not a profile"
+            yield Problem(
+                f"{where}.profile", what, "write profiles.disc(...), profiles.profile(points) or one made for a motion"
+            )
+        else:
+            yield from self.profile.problems(f"{where}.profile")
 
     @property
     def curve(self) -> Curve:
@@ -108,7 +128,7 @@ class Profiled(Contact):
     @property
     def outward(self) -> float:
         """+1 where the follower is on the side to which the curve's normal points, else -1."""
-        raise NotImplementedError
+        return side_of(self.curve)
 
     @property
     def coordinate_scale(self) -> float:

@@ -15,7 +15,7 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import Profiled, Touch, centre_of_curvature, row
+from compoundkin.model.pairs.contact import THINNED, Profiled, Touch, centre_of_curvature, row
 from compoundkin.model.pairs.contact_search import Freedom, path_of, tangents_on_way
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.loop_terms import (
@@ -35,8 +35,6 @@ from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Mark, Outline, Track, reach
 from compoundkin.model.profiles import Profile, side_of
 
-# One of so many samples of the profile is enough to find where a face touches it; Newton does the rest.
-THINNED = 4
 # A sample is one that a face can touch if the face with its normal touches within this part of the size.
 NEAR = 1e-6
 # A face within this angle (radians) of its own guide never comes nearer to a profile.
@@ -81,28 +79,11 @@ class Face(Profiled):
     table: ClassVar[str] = "faces"
     is_flat: ClassVar[bool] = True
 
-    @property
-    def letters(self) -> tuple[str, ...]:
-        """The point of the face."""
-        return (self.at,)
-
-    @property
-    def outward(self) -> float:
-        """+1 where the curve's normal points out of the profile, else -1."""
-        return side_of(self.curve)
-
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a profile that is none."""
+        """Unknown links and points, a profile that is none, a side that is none."""
         yield from super().problems(links, where)
         if self.side not in (1, -1):
             yield Problem(f"{where}.side", f"{self.side!r} is not a side", "write 1 (left) or -1 (right)")
-        if not isinstance(self.profile, Profile):
-            what = f"{self.profile!r} is not a profile"
-            yield Problem(
-                f"{where}.profile", what, "write profiles.disc(...), profiles.profile(points) or one made for a motion"
-            )
-        else:
-            yield from self.profile.problems(f"{where}.profile")
 
     def ends(self, geometry: Geometry) -> Ends:
         """The profile's frame; point and direction of the face."""
@@ -168,9 +149,8 @@ class Face(Profiled):
         On a pin the contact may lie in the direction of the face (mode +1) or against it, as with a block on it.
         """
         frame, face = self._sides(ends, poses)
-        normal, start = self._normal(face).c[0], face.point.c[0]
-        path = path_of(frame, start, own, freedom)
-        facing = np.conjugate(frame.u.c[0]) * normal
+        path = path_of(frame, face.point.c[0], own, freedom)
+        facing = np.conjugate(frame.u.c[0]) * self._normal(face).c[0]
         if path.straight:
             reach = self.curve.at(self._support(frame, face).c[0]).c[0] - path.start
             rise = dot(facing, path.centre)

@@ -15,7 +15,7 @@ from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
-from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, times
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference
 from compoundkin.model.pairs.optional_answers import Osculation, Replaceable, TurnCounting, as_drivable
 from compoundkin.model.pairs.wheel_sizes import Sizes, Two, axis_problems, size_problems, two_of
 
@@ -166,7 +166,7 @@ class Geared(TurnCounting, Replaceable):
     def loop_terms(self, ends: Ends) -> LoopTerms:
         """The angles that it ties; no loop runs through it."""
         first, second, carrier = (angle_of(name) for name in self.members)
-        turned = times(-ratio(ends), difference(carrier, first))
+        turned = difference(carrier, first).times(-ratio(ends))
         tied = difference(turned, difference(carrier, second)).plus(-ends[2].measure)
         equation = Auxiliary(self.name, tied, counts_turns=True)
         return LoopTerms(

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.arrays import wrapped
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.series import Number, constant
 from compoundkin.model.geometry import FRAME
 
 # Values of unknowns by their keys: angles in radians, lengths.
@@ -45,8 +45,8 @@ class Unknown:
 class Sum:
     """A constant and multiples of unknowns.
 
-    >>> Sum(1.0, ((2.0, Unknown("angle", "a")),)).at({"a": 3.0})
-    7.0
+    >>> Sum(1.0, ((2.0, Unknown("angle", "a")),)).times(2.0).at({"a": 3.0})
+    14.0
     """
 
     constant: Number = 0.0
@@ -62,6 +62,10 @@ class Sum:
     def plus(self, constant: Number) -> Sum:
         """The sum with a greater constant."""
         return Sum(self.constant + constant, self.parts)
+
+    def times(self, factor: Number) -> Sum:
+        """The sum multiplied by a number."""
+        return Sum(factor * self.constant, tuple((factor * own, unknown) for own, unknown in self.parts))
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,20 +215,6 @@ def difference(first: Sum, second: Sum) -> Sum:
     return Sum(second.constant - first.constant, tuple((factor, unknown) for unknown, factor in total.items()))
 
 
-def times(factor: Number, of: Sum) -> Sum:
-    """A sum multiplied by a number.
-
-    >>> times(2.0, angle_of("a")).at({"a": 3.0})
-    6.0
-    """
-    return Sum(factor * of.constant, tuple((factor * own, unknown) for own, unknown in of.parts))
-
-
 def direction(end: End) -> Number:
     """The angle of a guide, a block or a face on its link."""
     return np.angle(end.along.c[0])
-
-
-def place(end: End) -> Number:
-    """The point of a pair's side, as a number."""
-    return end.point.c[0] if isinstance(end.point, Series) else end.point

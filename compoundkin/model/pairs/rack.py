@@ -14,7 +14,7 @@ from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Pair, Poses, table
 from compoundkin.model.pairs.gear import UNCOUNTED
-from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, direction, times
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, direction
 from compoundkin.model.pairs.pitch_line import OnLine
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.wheel_sizes import FITS, radius_problems
@@ -112,7 +112,7 @@ class Rack(OnLine):
     def loop_terms(self, ends: Ends) -> LoopTerms:
         """The way of the axis along the pitch line, by other pairs, and the turn of the pinion."""
         rack, pinion = (angle_of(name) for name in self.members)
-        turned = times(ends[1].measure, difference(rack, pinion)).plus(-ends[0].measure)
+        turned = difference(rack, pinion).times(ends[1].measure).plus(-ends[0].measure)
         rolled = Auxiliary(self.name, turned, along=rack.plus(direction(ends[0])), counts_turns=True)
         points = ends[0].point, ends[1].point
         return LoopTerms(points, ("line", "axis"), equations=(rolled,), is_crossed=False)

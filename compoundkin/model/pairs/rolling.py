@@ -23,7 +23,6 @@ from compoundkin.model.pairs.loop_terms import (
     angle_of,
     difference,
     direction,
-    times,
 )
 from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.model.pairs.pitch_line import OnLine
@@ -102,7 +101,7 @@ class Rolling(OnLine, Drivable):
         on, wheel = (angle_of(name) for name in self.members)
         along, side = on.plus(direction(ends[0])), int(np.sign(first_entry(radius)))
         out = Vector(f"r({self.name})", Sum(np.abs(radius)), along.plus(np.pi / 2.0), side)
-        turned = times(radius, difference(on, wheel))
+        turned = difference(on, wheel).times(radius)
         rolled = Auxiliary(self.name, Sum(-ends[0].measure, ((1.0, free), *turned.parts)), counts_turns=True)
         points, labels = (ends[0].point, ends[1].point), (f"{self.through}'", self.at)
         return LoopTerms(points, labels, (Vector("", Sum(0.0, ((1.0, free),)), along), out), (free,), (rolled,))
