@@ -22,7 +22,9 @@ from compoundkin.model.pairs.symbols import Groove, Mark, Stud, arc_line, reach
 
 @dataclass(frozen=True, eq=False)
 class ArcSlot(Contact):
-    """The point `at` of `link` runs along a circular slot in the link `on`: on the circle of `radius` about `centre`.
+    """A point of `link` that runs along a circular slot in the link `on`.
+
+    The point is `at`, the circle of `radius` about `centre`.
 
     A roller on a round disc is the same with the sum of both radii. Held: the distance of the pin from the circle.
     Free: the angle at which the pin is seen from the centre, from the x axis of `on`, and the angle between the links.
@@ -52,36 +54,36 @@ class ArcSlot(Contact):
         return self.at, self.centre_at
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a radius that is none."""
+        """Find unknown links and points, a radius that is none."""
         yield from super().problems(links, where)
         if not np.all(np.asarray(self.radius) > 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a positive length")
 
     def ends(self, geometry: Geometry) -> Ends:
-        """The centre with the radius; the pin."""
+        """Return the centre with the radius; the pin."""
         centre = geometry.points[self.on][self.centre_at]
         return End(centre, 1 + 0j, self.radius), End(geometry.points[self.link][self.at])
 
     def touch(self, ends: Ends, poses: Poses) -> Touch:
-        """At the pin, in the direction from the centre."""
+        """Return the contact at the pin, in the direction from the centre."""
         pin = poses[1].at(ends[1].point)
         arm = pin - poses[0].at(ends[0].point)
         length = arm.abs2().sqrt()
         return Touch(pin, arm / length, length - ends[0].measure)
 
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
-        """The pin passes along the circle, by its distance from the centre."""
+        """Return the row of the pin along the circle. It goes by the pin's distance from the centre."""
         pin = poses[1].at(ends[1].point).c[0]
         arm = pin - poses[0].at(ends[0].point).c[0]
         return row(poses, pin, 1j * arm / np.abs(arm) ** 2)
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """The direction from the centre to the pin."""
+        """Return the direction from the centre to the pin."""
         arm = poses[1].at(ends[1].point) - poses[0].at(ends[0].point)
         return (arm.unit() * poses[0].carry(ends[0]).along.conj()).angle()
 
     def equivalent(self, ends: Ends) -> Equivalent:
-        """A bar from the centre to the pin."""
+        """Return a bar from the centre to the pin."""
         bar = f"{self.name} (bar)"
         pairs = (
             Revolute(f"{self.name} (centre)", self.centre_at, self.on, bar),
@@ -91,21 +93,21 @@ class ArcSlot(Contact):
         return Equivalent(bar, pairs, {pairs[0].name: (End(ends[0].point), End(0j)), pairs[1].name: (far, ends[1])})
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
-        """The middle of the circle, and the pin."""
+        """Return the middle of the circle, and the pin."""
         centre, pin = (pose.at(end.point).c[0] for pose, end in zip(poses, ends, strict=True))
         return Osculation(centre, pin, (pin - centre) / np.abs(pin - centre))
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """A random circle with the pin somewhere on it."""
+        """Draw a random circle with the pin somewhere on it."""
         centre, arm = complex(*rng.standard_normal(2)), complex(*rng.standard_normal(2))
         return End(centre, 1 + 0j, abs(arm)), End(centre + arm)
 
     def round_at(self, link: str) -> str | None:
-        """The pin may turn in the slot, and the slot about its centre."""
+        """Return the pin, or the middle of the slot. The pin may turn in the slot, and the slot about its centre."""
         return self.at if link == self.link else self.centre_at
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """A groove as long as the pin's way, and the pin."""
+        """Return a groove as long as the pin's way, and the pin."""
         way = reach(np.unwrap(np.ravel(self.coordinate(ends, poses).c[0])))
         return Groove(0, arc_line(ends[0].point, ends[0].measure, *way)), Stud(1, ends[1].point)
 

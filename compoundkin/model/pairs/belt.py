@@ -20,7 +20,7 @@ from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, strap_line
 
 @dataclass(frozen=True, eq=False)
 class Belt(Geared):
-    """Two pulleys or sprockets joined by a belt, chain or cable that does not slip.
+    """Two pulleys or sprockets with a belt, chain or cable that does not slip.
 
     An open belt turns them alike, a `crossed` one does not. See `Geared` for the rest.
 
@@ -43,11 +43,11 @@ class Belt(Geared):
         return not self.crossed
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:
-        """The radii as they are; by teeth alone, some that fit."""
+        """Return the radii as they are; by teeth alone, some that fit."""
         return 1.0 if self.teeth is None else super().reach(one, two, distance)
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Axes that coincide, and pulleys that overlap."""
+        """Find axes that coincide, and pulleys that overlap."""
         distance = self.distance(geometry)
         if self.radii is None and np.all(distance > 0):
             return
@@ -59,7 +59,7 @@ class Belt(Geared):
             yield Problem(f"{where}.radii", what, "the distance of the axes must exceed both radii together")
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """The pulleys and the belt around them."""
+        """Return the pulleys and the belt around them."""
         one, two = (abs(float(end.measure)) for end in ends[:2])
         unit = float(self.reach(one, two, self.apart(ends, poses)))
         radii = one * unit, two * unit

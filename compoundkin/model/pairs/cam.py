@@ -27,7 +27,7 @@ from compoundkin.model.profiles import Profile, side_of
 
 @dataclass(frozen=True, eq=False)
 class Cam(Profiled):
-    """The point `at` of `link`, or a roller of `radius` about it, runs on the profile of the link `on`.
+    """A roller of `radius`, or the point `at`, on the profile of `on`.
 
     A closed profile is touched from outside, or from `inside`; without a radius the point runs on the profile itself,
     as a knife edge on a cam or a pin in a curved slot. Of several points of the profile the nearest one touches, so
@@ -66,7 +66,7 @@ class Cam(Profiled):
 
     @property
     def outward(self) -> float:
-        """+1 where the roller is on the side to which the curve's normal points, else -1."""
+        """The side of the roller: +1 on that of the curve's normal, else -1."""
         return -side_of(self.curve) if self.inside else side_of(self.curve)
 
     @property
@@ -75,29 +75,29 @@ class Cam(Profiled):
         return float(np.max(self.radius))
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a profile that is none, a radius that is none."""
+        """Find unknown links and points, and a radius or profile that is none."""
         yield from super().problems(links, where)
         if not np.all(np.asarray(self.radius) >= 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a length", "give a positive number, or none")
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """A roller that does not fit into a hollow of the profile that it must run through from inside."""
+        """Find a hollow run through from inside that is too narrow for the roller."""
         if self.inside and self.profile.circle and not np.all(np.asarray(self.radius) < self.profile.circle[1]):
             what = f"a roller of radius {self.radius:g} does not fit into a ring of radius {self.profile.circle[1]:g}"
             yield Problem(f"{where}.radius", what, "take a smaller roller")
 
     def ends(self, geometry: Geometry) -> Ends:
-        """The profile's frame; the roller's middle with its radius."""
+        """Return the profile's frame; the roller's middle with its radius."""
         return End(0j, 1 + 0j), End(geometry.points[self.link][self.at], None, self.radius)
 
     def touch(self, ends: Ends, poses: Poses) -> Touch:
-        """At the foot of the roller's middle."""
+        """Return the contact at the foot of the roller's middle."""
         frame, centre, foot = self._foot(ends, poses)
         place, normal = frame.at(self.curve.at(foot)), frame.u * self.curve.normal(foot) * self.outward
         return Touch(place, normal, normal.dot(centre - place) - ends[1].measure)
 
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
-        """The middle passes along the profile, by the speed of the parallel curve on which it runs."""
+        """Return the row of the middle along the profile, by the parallel curve's speed."""
         frame, centre, foot = self._foot(ends, poses)
         s = foot.c[0]
         place, first, _ = self.curve.derivatives(s, 2)
@@ -109,15 +109,15 @@ class Cam(Profiled):
         return row(poses, centre.c[0], frame.u.c[0] * along / speed)
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """The parameter of the contact."""
+        """Return the parameter of the contact."""
         return self._foot(ends, poses)[2]
 
     def parameter(self, ends: Ends, poses: Poses) -> Number:
-        """The parameter of the profile at the contact."""
+        """Return the parameter of the profile at the contact."""
         return self._foot(ends, poses)[2].c[0]
 
     def led(self, ends: Ends, poses: Poses) -> Number:
-        """The middle of the roller."""
+        """Return the middle of the roller."""
         return poses[1].at(ends[1].point).c[0]
 
     def _foot(self, ends: Ends, poses: Poses) -> tuple[Pose, Series, Series]:
@@ -128,12 +128,12 @@ class Cam(Profiled):
         return frame, centre, self.curve.foot(frame.u.conj() * (centre - frame.z))
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
-        """Whether the foot is on the profile, not beyond an end of it."""
+        """Tell whether the foot is on the profile, not beyond an end of it."""
         frame, centre, foot = self._foot(ends, poses)
         return ~self.curve.beyond(frame.u.conj() * (centre - frame.z), foot)
 
     def equivalent(self, ends: Ends) -> Equivalent | None:
-        """For a round disc a bar from its middle to that of the roller."""
+        """Return the bar from the middle of a round disc to the roller's."""
         if self.profile.circle is None:
             return None
         middle, radius = self.profile.circle
@@ -143,7 +143,7 @@ class Cam(Profiled):
         return arc.equivalent((End(middle, 1 + 0j, reach), End(ends[1].point)))
 
     def loop_terms(self, ends: Ends) -> LoopTerms | None:
-        """From the origin of the profile's link to the contact, and on to the roller's middle; not of a round disc."""
+        """Return the way from the profile's origin over the contact to the roller. A round disc has none."""
         if self.profile.circle is not None:
             return None
         free, on, curve = Unknown("parameter", self.name), angle_of(self.on), self.curve
@@ -154,7 +154,7 @@ class Cam(Profiled):
         return LoopTerms((ends[0].point, ends[1].point), (f"origin of {self.on}", self.at), arms, (free,))
 
     def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
-        """Where the path of the roller's middle crosses the parallel curve.
+        """Find where the path of the roller's middle crosses the parallel curve.
 
         On a slide it is farthest along the guide in mode +1; on a pin most clockwise, as with a bar for the profile.
         """
@@ -166,7 +166,7 @@ class Cam(Profiled):
         return np.where(forward, least, greatest), np.where(forward, greatest, least)
 
     def no_contact_reason(self) -> str:
-        """The path does not meet the profile."""
+        """Say that the path does not meet the profile."""
         between = "" if self.curve.closed else " between its ends"
         return f"on its way {self.at} does not meet the profile of {self.on}{between}"
 
@@ -179,24 +179,24 @@ class Cam(Profiled):
         return place, -1j * first / np.abs(first)
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
-        """The profile's centre of curvature, and the middle of the roller."""
+        """Return the profile's centre of curvature, and the middle of the roller."""
         frame, centre, foot = self._foot(ends, poses)
         place, normal = frame.at(self.curve.at(foot.c[0])).c[0], self.touch(ends, poses).normal.c[0]
         return Osculation(centre_of_curvature(self.curve, foot.c[0], place, frame.u.c[0]), centre.c[0], normal)
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """The profile in a random direction, the roller somewhere on it."""
+        """Draw the profile in a random direction, the roller somewhere on it."""
         angle, s = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(self.curve.low, self.curve.high)
         u, z = complex(np.cos(angle), np.sin(angle)), complex(*rng.standard_normal(2))
         place = self.curve.at(s) + self.curve.normal(s) * self.outward * float(first_entry(self.radius))
         return End(z, u), End(z + u * place.c[0], None, float(first_entry(self.radius)))
 
     def round_at(self, link: str) -> str | None:
-        """A roller may turn about its middle."""
+        """Return the middle of a roller, about which it may turn."""
         return self.at if link == self.link else None
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """The profile, as a groove where a pin runs in an open one; the roller, the pin or the edge."""
+        """Return the profile and the roller, pin or edge. An open profile is a groove for a pin."""
         line = self.curve.at(self.curve.samples.s).c[0]
         if ends[1].measure > 0:
             return Outline(0, line, self.curve.closed, self.inside), Wheel(1, ends[1].point, ends[1].measure)

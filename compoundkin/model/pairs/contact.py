@@ -24,7 +24,7 @@ from compoundkin.model.profiles import Profile, side_of
 
 
 class Touch(NamedTuple):
-    """Where two links touch or would touch, in the world: a point of their common normal, and their distance there.
+    """Where two links touch or would touch, in the world. A point of their common normal, and their distance there.
 
     `normal` is a unit vector from the profile's link to the other; `gap` is zero where they touch.
     """
@@ -35,7 +35,7 @@ class Touch(NamedTuple):
 
 
 class Contact(Replaceable):
-    """A higher pair that holds one coordinate, the distance along a common normal: first the link with the profile."""
+    """A higher pair that holds one distance, along the common normal. The link with the profile comes first."""
 
     held: ClassVar[int] = 1
 
@@ -49,37 +49,37 @@ class Contact(Replaceable):
 
     @abstractmethod
     def touch(self, ends: Ends, poses: Poses) -> Touch:
-        """Where the two links touch; away from contact, where they are nearest."""
+        """Find where the two links touch; away from contact, where they are nearest."""
 
     @abstractmethod
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
-        """The derivatives of the coordinate by each link's x, y, theta: a row of the Jacobian."""
+        """Return the derivatives of the coordinate by each link's x, y, theta. They are a row of the Jacobian."""
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """The distance along the common normal."""
+        """Return the distance along the common normal."""
         return (self.touch(ends, poses).gap,)
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
-        """Rows of the distance and of the sliding."""
+        """Return the rows of the distance and of the sliding."""
         place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
         return table(row(poses, place, normal), self.sliding(ends, poses))
 
     def centre(self, ends: Ends, poses: Poses) -> Line:
-        """On the common normal."""
+        """Return the common normal as the line of the centre."""
         place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
         return Line(-normal.imag, normal.real, place.real * normal.imag - place.imag * normal.real)
 
 
 def centre_of_curvature(curve: Curve, s: Number, place: Number, u: Number) -> Number:
-    """The centre of curvature of a profile at a parameter, whose point is at a place of the world; inf if straight."""
+    """Return a profile's centre of curvature at a parameter; inf if straight. Its place is in the world."""
     along = curve.tangent(s).c[0] * u
     return place + 1j * along / curve.curvature(s)
 
 
 def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
-    """By how much the second link passes the first one at a place, in a direction, by each link's x, y, theta.
+    """Return the rates at which the second link passes the first at a place.
 
-    `along` is a unit vector, or one whose length is a factor.
+    They are by each link's x, y, theta; the direction `along` is a unit vector, or one whose length is a factor.
     """
     first, second = (along.real * arm.real + along.imag * arm.imag for arm in _arms(poses, place))
     return -along.real, -along.imag, -first, along.real, along.imag, second
@@ -97,7 +97,7 @@ CUTS = 1e-7
 
 
 class Profiled(Contact):
-    """A contact with a profile of the link `on`, which leads a member along it."""
+    """A contact with a profile of the link `on`, leading a member along it."""
 
     is_flat: ClassVar[bool]  # whether a flat face touches, which has no pitch curve
 
@@ -106,11 +106,11 @@ class Profiled(Contact):
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """The point of the follower: of its face, of its edge, or the middle of its roller."""
+        """The point of the follower. It is of its face, of its edge, or the middle of its roller."""
         return (self.at,)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a profile that is none."""
+        """Find unknown links and points, a profile that is none."""
         yield from super().problems(links, where)
         if not isinstance(self.profile, Profile):
             what = f"{self.profile!r} is not a profile"
@@ -127,12 +127,12 @@ class Profiled(Contact):
 
     @property
     def outward(self) -> float:
-        """+1 where the follower is on the side to which the curve's normal points, else -1."""
+        """The side of the follower: +1 on that of the curve's normal, else -1."""
         return side_of(self.curve)
 
     @property
     def coordinate_scale(self) -> float:
-        """The size of the profile for a displacement along a face; else the part of the parameter for a radian."""
+        """The profile's size along a face, else the parameter's part for a radian."""
         return self.curve.size if self.is_flat else (self.curve.high - self.curve.low) / (2.0 * np.pi)
 
     @property
@@ -152,15 +152,15 @@ class Profiled(Contact):
 
     @abstractmethod
     def parameter(self, ends: Ends, poses: Poses) -> Number:
-        """The parameter of the profile at the contact."""
+        """Return the parameter of the profile at the contact."""
 
     @abstractmethod
     def led(self, ends: Ends, poses: Poses) -> Number:
-        """The point of the follower that is led: the roller's middle or the edge; of a flat face the contact."""
+        """Return the point led: the roller's middle, the edge, a flat face's contact."""
 
     @cached_property
     def hollows(self) -> tuple[tuple[float, float], ...]:
-        """The spans of the parameter where a hollow is narrower than the roller, or under a flat face."""
+        """The parameter's spans where hollows are narrower than the roller or flat face."""
         curve = self.curve
         if self.is_flat:
             return spans(curve.samples, curve.low, curve.high, lambda s: CUTS + self._bend(s))
@@ -168,7 +168,7 @@ class Profiled(Contact):
 
     @cached_property
     def bridged(self) -> tuple[tuple[float, float], ...]:
-        """The spans of the parameter that are not touched, because the follower touches before and behind them."""
+        """The spans of the parameter that are not touched. The follower touches before and behind them."""
         curve = self.curve
         if self.is_flat:
             return spans(curve.samples, curve.low, curve.high, self._above_face)
@@ -176,7 +176,7 @@ class Profiled(Contact):
 
     @abstractmethod
     def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
-        """The coordinates at which a member of one freedom is in contact in mode -1 and +1, nearly.
+        """Return the coordinates, nearly, of contacts in mode -1 and +1. They are those of a member of one freedom.
 
         `poses` are those where the coordinate is zero; NaN where there is no contact. The modes are those of the lower
         pairs that stand for a round disc.
@@ -184,10 +184,10 @@ class Profiled(Contact):
 
     @abstractmethod
     def no_contact_reason(self) -> str:
-        """Why a member has no contact where there are no candidates, in a sentence."""
+        """Say why a member has no contact where there are no candidates."""
 
     def smooth_piece(self, ends: Ends, poses: Poses) -> Number:
-        """Between which of the places where the profile's derivatives jump, or the contact leaps, it is."""
+        """Find the smooth piece it is on. Pieces part where the profile's derivatives jump, or the contact leaps."""
         return self.curve.smooth_piece(self.parameter(ends, poses), self._leaps)
 
     @cached_property

@@ -13,8 +13,11 @@ from compoundkin.base.series import Number
 
 
 class Freedom(NamedTuple):
-    """How a body moves as a coordinate grows at unit rate: about a point of the world, `sense` +1 counterclockwise; or,
-    where `about` is None, in the direction `along`."""
+    """The freedom of a body, as a coordinate grows at unit rate.
+
+    It turns about a point of the world, `sense` +1 counterclockwise; or, where `about` is None, moves in the direction
+    `along`.
+    """
 
     about: Number
     along: Number
@@ -22,7 +25,7 @@ class Freedom(NamedTuple):
 
 
 class PointPath(NamedTuple):
-    """The way of a point past a profile as a body's coordinate grows, in the profile's frame.
+    """The way of a point past a profile, in the profile's frame. It is run as a body's coordinate grows.
 
     It starts at `start` and turns about `centre`; or, where it is `straight`, goes in the direction `centre`. `sense`
     is how it goes there as the coordinate grows. All but `straight` are numbers or arrays.
@@ -34,7 +37,7 @@ class PointPath(NamedTuple):
     sense: Number
 
     def level(self, place: Number) -> Number:
-        """What is zero where a place is on the way."""
+        """Return what is zero where a place is on the way."""
         if self.straight:
             gap = place - self.start
             return self.centre.real * gap.imag - self.centre.imag * gap.real
@@ -42,7 +45,7 @@ class PointPath(NamedTuple):
         return (gap.real**2 + gap.imag**2) - (arm.real**2 + arm.imag**2)
 
     def coordinate(self, place: Number, middle: complex) -> Number:
-        """The coordinate at a place on the way; an angle is within half a turn of that of the `middle`."""
+        """Return the coordinate at a place on the way. An angle is within half a turn of that of the `middle`."""
         if self.straight:
             gap = place - self.start
             return self.sense * (self.centre.real * gap.real + self.centre.imag * gap.imag)
@@ -51,12 +54,15 @@ class PointPath(NamedTuple):
 
 
 def nearest_angle(of: Number, middle: Number) -> Number:
-    """The angle of a vector, within half a turn of that of another one."""
+    """Return the angle of a vector, within half a turn of another vector's."""
     return np.angle(of / middle) + np.angle(middle)
 
 
 def path_of(frame: Pose, point: Number, own: int, freedom: Freedom) -> PointPath:
-    """The way of a point of the world past a profile's frame, as its body moves (own 1) or that of the profile (0)."""
+    """Return the way of a point of the world past a profile's frame.
+
+    Its body moves (own 1) or that of the profile (0).
+    """
     back = np.conjugate(frame.u.c[0])
     straight = freedom.about is None
     centre = back * (freedom.along if straight else freedom.about - frame.z.c[0])
@@ -66,7 +72,7 @@ def path_of(frame: Pose, point: Number, own: int, freedom: Freedom) -> PointPath
 def crossings_on_way(
     path: PointPath, samples: tuple[Number, Number], away: Number, closed: bool
 ) -> tuple[Number, Number]:
-    """Return the least and the greatest coordinate at which a point crosses the parallel of a profile.
+    """Find where a point crosses the parallel of a profile. Return the least and the greatest coordinate.
 
     `samples` are points of the profile and its normals there, `away` how far the parallel is from it.
     """
@@ -84,7 +90,7 @@ def crossings_on_way(
 def tangents_on_way(
     path: PointPath, samples: tuple[Number, Number], facing: Number, closed: bool
 ) -> tuple[Number, Number]:
-    """Return the least and the greatest angle at which a face that turns touches a profile.
+    """Find where a face that turns touches a profile. Return the least and the greatest angle.
 
     `samples` are points of the profile and its outward normals there, `facing` the normal of the face.
     """
@@ -111,7 +117,7 @@ Look: TypeAlias = Callable[[Sequence[Number], Sequence[Number]], Number]
 def outermost(
     level: Look, coordinate: Look, numbers: Sequence[Number], samples: Sequence[Number], closed: bool
 ) -> tuple[Number, Number]:
-    """The least and the greatest coordinate at which a level passes zero between two samples.
+    """Return the least and the greatest coordinate at which a level is zero. It passes zero between two samples.
 
     Where none does, those of the samples beside the one nearest to it: what passes between two samples only, near a
     limit position, is found from there.

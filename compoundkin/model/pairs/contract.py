@@ -23,7 +23,7 @@ from compoundkin.model.pairs.symbols import Mark
 
 
 class Point(NamedTuple):
-    """A relative instant centre at ``(x / w, y / w)``, at infinity in the direction (x, y) where w is zero.
+    """A relative instant centre at ``(x / w, y / w)``. It is at infinity in the direction (x, y) where w is zero.
 
     The free coordinate's rate times (x, y, w) is the motion of the second member relative to the first: the
     velocity of the point p is ``1j * (w * p - (x + 1j * y))`` times that rate.
@@ -35,7 +35,7 @@ class Point(NamedTuple):
 
 
 class Line(NamedTuple):
-    """The line ``a x + b y + c w = 0`` that a relative instant centre lies on, such as a common normal."""
+    """A line that a relative instant centre lies on. It is ``a x + b y + c w = 0``, such as a common normal."""
 
     a: Number
     b: Number
@@ -49,7 +49,7 @@ Poses: TypeAlias = tuple[Pose, ...]
 
 @dataclass(frozen=True, eq=False)
 class Pair(ABC):
-    """A kinematic pair between two links, or two and their carrier; kinds are frozen dataclasses, one file each."""
+    """A kinematic pair between two links, or two and their carrier. Kinds are frozen dataclasses, one file each."""
 
     name: str = field(
         default="",
@@ -75,7 +75,7 @@ class Pair(ABC):
     @property
     @abstractmethod
     def members(self) -> tuple[str, ...]:
-        """The two links, the one that carries the reference first; a third one is their carrier."""
+        """The two links, the one that carries the reference first. A third one is their carrier."""
 
     @property
     @abstractmethod
@@ -88,32 +88,34 @@ class Pair(ABC):
         return "/".join(getattr(self, name) for name in link_fields(type(self))[:2])
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """What is wrong with the pair as written; `links` maps each link to its point names."""
+        """Find what is wrong with the pair as written. `links` maps each link to its point names."""
         yield from name_problems(self, links, where, self.wording)
 
     def completed(self, links: Mapping[str, tuple[str, ...]]) -> Pair:
-        """The pair with the points that its words leave to be understood: itself where they leave none."""
+        """Return the pair with the points that its words leave open; itself without any."""
         found = only_points(self, links)
         return replace(self, **found) if found else self
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """What is wrong with its dimensions: teeth that do not fit, a profile that crosses itself."""
+        """Find what is wrong with its dimensions. Such are teeth that do not fit, a profile that crosses itself."""
         return iter(())
 
     @abstractmethod
     def ends(self, geometry: Geometry) -> Ends:
-        """The pair's side on each member, in the members' own frames."""
+        """Return the pair's side on each member, in the members' own frames."""
 
     @abstractmethod
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """The held relative coordinates as series: zero where the pair is closed."""
+        """Return the held relative coordinates as series: zero where the pair is closed."""
 
     @abstractmethod
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """The (first) free relative coordinate as a series."""
+        """Return the (first) free relative coordinate as a series."""
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
-        """The derivatives of `closure` and then `coordinate` by x, y, theta of the first member, then of the second.
+        """Return the derivatives of `closure` and then of `coordinate`.
+
+        They go by x, y, theta of the first member, then of the second.
 
         Shape (..., held + 1, 3 members), at the leading coefficient of the poses. By series, unless a kind knows it.
         """
@@ -128,7 +130,7 @@ class Pair(ABC):
         return table(*zip(*columns, strict=True))
 
     def centre(self, ends: Ends, poses: Poses) -> Point | Line:
-        """Where the relative instant centre of the first two members is: a point, or a line it must lie on.
+        """Return the relative instant centre of the first two members. It is a point, or a line it must lie on.
 
         At the leading coefficient of the poses; which of the two it is depends on the kind of pair only. By the
         Jacobian, unless a kind knows it; with a carrier the members turn about their own points.
@@ -148,12 +150,12 @@ class Pair(ABC):
         return Point(*((other * at - turn * before) / rate for before, at in zip(one, two, strict=True)))
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
-        """Whether a closed pair is in the way that is meant, where its closure does not tell."""
+        """Tell whether a closed pair is in the way that is meant. Its closure alone does not tell."""
         return True
 
     @abstractmethod
     def generic(self, rng: np.random.Generator) -> Ends:
-        """Ends of random geometry in the world at a pose where the pair is closed, for rank tests."""
+        """Draw ends of random geometry in the world for rank tests. The pair is closed at their pose."""
 
     @property
     def rank_key(self) -> Hashable:
@@ -161,16 +163,22 @@ class Pair(ABC):
         return type(self)
 
     def loop_terms(self, ends: Ends) -> LoopTerms | None:
-        """Return what it adds to vector loops; None to have it from its lower pairs, or else from its closure."""
+        """Return what it adds to vector loops. None to have it from its lower pairs, or else from its closure."""
         return None
 
     def round_at(self, link: str) -> str | None:
-        """The point about which a member may turn without any effect on the pair, such as a roller's pin."""
+        """Return the point about which a member may turn freely.
+
+        The turn has no effect on the pair, such as that about a roller's pin.
+        """
         return None
 
     @abstractmethod
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """What there is to see of it, in the members' frames: `ends` are numbers, `poses` a whole motion (poses,)."""
+        """Return the symbols of the pair, in the members' frames.
+
+        `ends` are numbers, `poses` a whole motion (poses,).
+        """
 
 
 def _lines(rows: Number, z: Number) -> list[tuple[Number, Number, Number]]:
@@ -198,7 +206,7 @@ def _moving(pose: Pose) -> Iterator[Pose]:
 
 
 def table(*rows: tuple[Number, ...]) -> Number:
-    """Jacobian rows of equal length, numbers or arrays, as one array (..., rows, columns).
+    """Join Jacobian rows of equal length in one array (..., rows, columns). The rows are numbers or arrays.
 
     >>> table((1.0, 0.0, np.zeros(2), 0.0, 0.0, 0.0)).shape
     (2, 1, 6)

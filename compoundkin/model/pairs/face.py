@@ -80,24 +80,24 @@ class Face(Profiled):
     is_flat: ClassVar[bool] = True
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a profile that is none, a side that is none."""
+        """Find unknown links and points, a profile or side that is none."""
         yield from super().problems(links, where)
         if self.side not in (1, -1):
             yield Problem(f"{where}.side", f"{self.side!r} is not a side", "write 1 (left) or -1 (right)")
 
     def ends(self, geometry: Geometry) -> Ends:
-        """The profile's frame; point and direction of the face."""
+        """Return the profile's frame; point and direction of the face."""
         return End(0j, 1 + 0j), End(geometry.points[self.link][self.at], np.cos(self.angle) + 1j * np.sin(self.angle))
 
     def touch(self, ends: Ends, poses: Poses) -> Touch:
-        """Where the profile reaches farthest toward the face."""
+        """Find where the profile reaches farthest toward the face."""
         frame, face = self._sides(ends, poses)
         place = frame.at(self.curve.at(self._support(frame, face)))
         normal = self._normal(face)
         return Touch(place, normal, normal.dot(face.point - place))
 
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
-        """The contact falls behind by the sliding, and rolls on by the radius of curvature times the relative turn."""
+        """Return the row along the face. The radius of curvature times the relative turn adds to the sliding."""
         frame, face = self._sides(ends, poses)
         s = self._support(frame, face).c[0]
         rolled = self.side / np.abs(self.curve.curvature(s))
@@ -105,17 +105,17 @@ class Face(Profiled):
         return tuple(rolled * turn - p for turn, p in zip((0.0, 0.0, -1.0, 0.0, 0.0, 1.0), passed, strict=True))
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """How far along the face the contact is."""
+        """Return how far along the face the contact is."""
         _, face = self._sides(ends, poses)
         return face.along.dot(self.touch(ends, poses).place - face.point)
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
-        """Whether the contact is not at an end of an open profile."""
+        """Tell whether the contact is not at an end of an open profile."""
         s = self._support(*self._sides(ends, poses)).c[0]
         return self.curve.closed | ((s > self.curve.low) & (s < self.curve.high))
 
     def equivalent(self, ends: Ends) -> Equivalent | None:
-        """For a round disc a block on the face, pinned at the middle of the disc."""
+        """Return, for a round disc, a block on the face. It is pinned at the middle of the disc."""
         if self.profile.circle is None:
             return None
         middle, radius = self.profile.circle
@@ -130,7 +130,7 @@ class Face(Profiled):
         return Equivalent(block, pairs, sides)
 
     def loop_terms(self, ends: Ends) -> LoopTerms | None:
-        """From the origin of the profile's link to the contact, and along the face; not of a round disc."""
+        """Return the way from the profile's origin to contact and along the face. A round disc has none."""
         if self.profile.circle is not None:
             return None
         free, on, curve, side = Unknown("displacement", self.name), angle_of(self.on), self.curve, -1j * self.side
@@ -144,7 +144,7 @@ class Face(Profiled):
         return LoopTerms((ends[0].point, ends[1].point), (f"origin of {self.on}", self.at), arms, (free,))
 
     def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
-        """On a slide the face's direction tells the contact; on a pin the face also touches a circle about it.
+        """Find where it touches: on a slide by the face's direction. On a pin the face also touches a circle about it.
 
         On a pin the contact may lie in the direction of the face (mode +1) or against it, as with a block on it.
         """
@@ -161,7 +161,7 @@ class Face(Profiled):
         return path.sense * against, path.sense * along
 
     def no_contact_reason(self) -> str:
-        """The face does not reach the profile."""
+        """Say that the face does not reach the profile."""
         return f"the face of {self.link} does not meet the profile of {self.on}, or lies along its own guide"
 
     @cached_property
@@ -175,14 +175,14 @@ class Face(Profiled):
         return place[on_hull], normal[on_hull]
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
-        """The profile's centre of curvature; the face is straight."""
+        """Return the profile's centre of curvature; the face is straight."""
         frame, face = self._sides(ends, poses)
         s = self._support(frame, face).c[0]
         place = frame.at(self.curve.at(s)).c[0]
         return Osculation(centre_of_curvature(self.curve, s, place, frame.u.c[0]), None, self._normal(face).c[0])
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """The profile in a random direction, the face somewhere on it."""
+        """Draw the profile in a random direction, the face somewhere on it."""
         angle, turned = rng.uniform(0.0, 2.0 * np.pi, 2)
         u, along = complex(np.cos(angle), np.sin(angle)), complex(np.cos(turned), np.sin(turned))
         z = complex(*rng.standard_normal(2))
@@ -190,11 +190,11 @@ class Face(Profiled):
         return End(z, u), End(z + u * self.curve.at(s).c[0] + along * rng.standard_normal(), along)
 
     def parameter(self, ends: Ends, poses: Poses) -> Number:
-        """The parameter of the profile at the contact."""
+        """Return the parameter of the profile at the contact."""
         return self._support(*self._sides(ends, poses)).c[0]
 
     def led(self, ends: Ends, poses: Poses) -> Number:
-        """The contact."""
+        """Return the contact."""
         return self.touch(ends, poses).place.c[0]
 
     def _sides(self, ends: Ends, poses: Poses) -> tuple[Pose, End]:
@@ -210,7 +210,7 @@ class Face(Profiled):
         return face.along * (-1j * self.side)
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """The profile, and the part of the face that it touches."""
+        """Return the profile, and the part of the face that it touches."""
         line = self.curve.at(self.curve.samples.s).c[0]
         travel = reach(self.coordinate(ends, poses).c[0])
         track = Track(1, ends[1].point, ends[1].along.c[0], *travel, float(self.side))

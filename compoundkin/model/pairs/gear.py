@@ -26,7 +26,7 @@ UNCOUNTED = 18
 
 @dataclass(frozen=True, eq=False)
 class Gear(Geared):
-    """Two gears in mesh; `internal` where the second is an internal gear (a ring) around the first.
+    """Two gears in mesh. `internal` where the second is an internal gear (a ring) around the first.
 
     With a `module`, or with radii, the pitch circles must fit the distance of the axes; by teeth alone they take it.
     See `Geared` for the rest.
@@ -53,7 +53,7 @@ class Gear(Geared):
         return self.internal
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Also a ring that is not larger than the gear in it, and a module without teeth."""
+        """Find also a ring that is not larger than the gear in it. A module without teeth is one more problem."""
         yield from super().problems(links, where)
         for key, sizes in (("teeth", self.teeth), ("radii", self.radii)):
             if self.internal and sizes is not None and not np.all(np.asarray(sizes[1]) > np.asarray(sizes[0])):
@@ -65,7 +65,7 @@ class Gear(Geared):
             yield Problem(f"{where}.module", "a module says nothing without teeth", "give teeth = (20, 40)")
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Axes that coincide; pitch circles that do not fit the distance of the axes."""
+        """Find axes that coincide, and pitch circles that do not fit their distance."""
         distance = self.distance(geometry)
         if not np.all(distance > 0):
             what = f"{self.first_at} and {self.second_at} are at one place on {self.carrier!r}"
@@ -84,11 +84,11 @@ class Gear(Geared):
             )
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:
-        """From teeth or radii to base circles."""
+        """Return the factors from teeth or radii to base circles."""
         return distance / (one + two) * np.cos(PRESSURE_ANGLE)
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """The pitch circles."""
+        """Return the pitch circles."""
         one, two = (abs(float(end.measure)) for end in ends[:2])
         unit = self.apart(ends, poses) / (two - one if self.internal else two + one)
         tooth = 1.0 if self.teeth is not None else min(one, two) / UNCOUNTED

@@ -22,7 +22,7 @@ from compoundkin.model.pairs.wheel_sizes import Sizes, Two, axis_problems, size_
 
 @dataclass(frozen=True, eq=False)
 class Geared(TurnCounting, Replaceable):
-    """The link `first` and the link `second` turn about their axes on the link `carrier` in a fixed ratio.
+    """Links `first` and `second`, which turn on the link `carrier` in a fixed ratio.
 
     An axis is the point that a link shares with the carrier; `first_at` and `second_at` name it where there are
     several. The ratio is that of `teeth` or of `radii`, numbers for first and second. With both angles taken from
@@ -86,7 +86,7 @@ class Geared(TurnCounting, Replaceable):
         return one, -two if self.turns_alike else two
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links, one link twice, an axis that the carrier does not carry, sizes that are none."""
+        """Find unknown links, one link twice, axes the carrier lacks, sizes that are none."""
         named = (("first", self.first), ("second", self.second), ("carrier", self.carrier))
         missing = [(key, name) for key, name in named if name not in links]
         for key, name in missing:
@@ -99,7 +99,7 @@ class Geared(TurnCounting, Replaceable):
         yield from size_problems(self.teeth, self.radii, where)
 
     def completed(self, links: Mapping[str, tuple[str, ...]]) -> Geared:
-        """With the only point that each wheel shares with the carrier as its axis, where none is named."""
+        """Return the pair with axes found. An unnamed one is the only point its wheel shares with the carrier."""
         found: dict[str, Any] = {}
         for key, name in (("first_at", self.first), ("second_at", self.second)):
             shared = [letter for letter in links.get(name, ()) if letter in links.get(self.carrier, ())]
@@ -113,12 +113,12 @@ class Geared(TurnCounting, Replaceable):
         return f"{self.first_at} and {self.second_at} on {self.carrier!r}"
 
     def distance(self, geometry: Geometry) -> Number:
-        """The distance between the two axes on the carrier."""
+        """Return the distance between the two axes on the carrier."""
         axes = geometry.points[self.carrier]
         return np.abs(axes[self.second_at] - axes[self.first_at])
 
     def ends(self, geometry: Geometry) -> Ends:
-        """Axis and size on each wheel; the phase on the carrier, read off a drawing that shows all three links."""
+        """Return axes and sizes on wheels; the phase on the carrier. A drawing of all three links tells it."""
         one, two = self.sizes
         first = End(geometry.points[self.first][self.first_at], None, one)
         second = End(geometry.points[self.second][self.second_at], None, two)
@@ -132,7 +132,7 @@ class Geared(TurnCounting, Replaceable):
         return (second - carrier) + (first - carrier) * (one / two)
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
-        """A phase that the drawing gave follows the turns of wheels and carrier since."""
+        """Return the ends with a drawn phase taken on by turns since. The turns are those of wheels and carrier."""
         if self.phase is not None or any(name not in geometry.drawn for name in self.members):
             return ends
         one, two, carrier = turns
@@ -140,16 +140,16 @@ class Geared(TurnCounting, Replaceable):
         return *ends[:2], ends[2]._replace(measure=ends[2].measure + ahead)
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """The angle by which the second wheel is ahead of where the first one turns it."""
+        """Return the angle of the second wheel ahead of its turn by the first."""
         first, second, carrier = (pose.angle for pose in poses)
         return ((second - carrier) + (first - carrier) * ratio(ends) - ends[2].measure,)
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """The angle of the first wheel from the carrier."""
+        """Return the angle of the first wheel from the carrier."""
         return poses[0].angle - poses[2].angle
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
-        """Rows of the sum of angles and of the first angle."""
+        """Return the rows of the sum of angles and of the first angle."""
         turned = ratio(ends)
         return table(
             (0.0, 0.0, turned, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 - turned),
@@ -157,14 +157,14 @@ class Geared(TurnCounting, Replaceable):
         )
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
-        """The pitch point: it divides the line of the axes; at infinity for equal wheels that turn alike."""
+        """Return the pitch point, which divides the line of axes. Equal wheels that turn alike have it at infinity."""
         one, two = ends[0].measure, ends[1].measure
         first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
         place = first * two + second * one
         return Point(-place.real / two, -place.imag / two, -(one + two) / two)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """The angles that it ties; no loop runs through it."""
+        """Return the angles that it ties; no loop runs through it."""
         first, second, carrier = (angle_of(name) for name in self.members)
         turned = difference(carrier, first).times(-ratio(ends))
         tied = difference(turned, difference(carrier, second)).plus(-ends[2].measure)
@@ -174,11 +174,11 @@ class Geared(TurnCounting, Replaceable):
         )
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:
-        """What the sizes are to be multiplied with to be radii of the circles that the line of action touches."""
+        """Return the factors from the sizes to radii of circles. The line of action touches these circles."""
         return distance / (2.0 * (np.abs(one) + np.abs(two)))
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
-        """Where the line of action, of involutes or of a belt, touches the circles about both axes."""
+        """Return where the line of action touches the circles about the axes. It is of involutes or of a belt."""
         first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
         distance = np.abs(second - first)
         one, two = ends[0].measure, ends[1].measure
@@ -189,11 +189,11 @@ class Geared(TurnCounting, Replaceable):
         return Osculation(first + one * across, second - two * across, across * 1j)
 
     def is_affine(self, lower: Pair, own: int) -> bool:
-        """On a pin, any of the three turns in proportion."""
+        """Tell whether a pair is a pin: there any member turns in proportion."""
         return lower.free_is_angle and as_drivable(lower) is not None
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """Axes at random places, the ratio as it is: it may make a train lock."""
+        """Draw axes at random places. The ratio stays as it is: it may make a train lock."""
         one, two = (float(first_entry(size)) for size in self.sizes)
         places = (complex(*rng.standard_normal(2)) for _ in range(2))
         return *(End(place, None, size) for place, size in zip(places, (one, two), strict=True)), End(0j, None, 0.0)
@@ -205,16 +205,16 @@ class Geared(TurnCounting, Replaceable):
         return type(self), one / two
 
     def apart(self, ends: Ends, poses: Poses) -> float:
-        """The distance of the axes at the first pose."""
+        """Return the distance of the axes at the first pose."""
         first, second = (first_entry(pose.at(end.point).c[0]) for pose, end in zip(poses[:2], ends[:2], strict=True))
         return float(abs(second - first))
 
 
 def ratio(ends: Ends) -> Number:
-    """How far the second wheel turns back for a turn of the first, both seen from the carrier."""
+    """Return how far the second wheel turns back for one of the first. Both are seen from the carrier."""
     return ends[0].measure / ends[1].measure
 
 
 def as_geared(pair: Pair) -> Geared | None:
-    """Return a pair as one whose closure is a sum of its members' angles times constants, or None."""
+    """Return a pair as one whose closure is a sum of angles, or None. The angles are its members', times constants."""
     return pair if isinstance(pair, Geared) else None

@@ -23,7 +23,7 @@ LETTERS: Mapping[Kind, str] = {"displacement": "s", "direction": "d", "parameter
 
 @dataclass(frozen=True)
 class Unknown:
-    """The angle of a link, or what a pair leaves free: a displacement, a direction, a profile's parameter.
+    """The angle of a link, or what a pair leaves free. This is a displacement, a direction, a profile's parameter.
 
     Across a pair of which no more is known, x and y are the way from its first side to its second, in the frame of
     the first member. `owner` is the link or the pair.
@@ -37,7 +37,7 @@ class Unknown:
 
     @property
     def key(self) -> str:
-        """What it is called in a text: the name of a link stands for its angle."""
+        """The name of the unknown in a text. The name of a link stands for its angle."""
         return self.owner if self.kind == "angle" else f"{LETTERS[self.kind]}({self.owner})"
 
 
@@ -53,18 +53,18 @@ class Sum:
     parts: tuple[tuple[Number, Unknown], ...] = ()
 
     def at(self, values: Values) -> Number:
-        """Its value."""
+        """Return its value."""
         total = self.constant
         for factor, unknown in self.parts:
             total = total + factor * values[unknown.key]
         return total
 
     def plus(self, constant: Number) -> Sum:
-        """The sum with a greater constant."""
+        """Return the sum with a greater constant."""
         return Sum(self.constant + constant, self.parts)
 
     def times(self, factor: Number) -> Sum:
-        """The sum multiplied by a number."""
+        """Return the sum multiplied by a number."""
         return Sum(factor * self.constant, tuple((factor * own, unknown) for own, unknown in self.parts))
 
 
@@ -84,17 +84,17 @@ class Vector:
     sign: int = 1
 
     def at(self, values: Values) -> Number:
-        """Its value, complex."""
+        """Return its value, complex."""
         return self.sign * self.length.at(values) * np.exp(1j * self.angle.at(values))
 
     def reversed(self) -> Vector:
-        """The vector the other way round."""
+        """Return the vector the other way round."""
         return Vector(self.symbol, self.length, self.angle, -self.sign)
 
 
 @dataclass(frozen=True, eq=False)
 class Curved:
-    """A vector that a profile gives, in the frame of a link that is turned by `angle`; `symbol` names it."""
+    """A profile's vector in a link's frame, turned by `angle`; `symbol` names it."""
 
     symbol: str
     place: Callable[[Values], Number]
@@ -102,11 +102,11 @@ class Curved:
     sign: int = 1
 
     def at(self, values: Values) -> Number:
-        """Its value, complex."""
+        """Return its value, complex."""
         return self.sign * self.place(values) * np.exp(1j * self.angle.at(values))
 
     def reversed(self) -> Curved:
-        """The vector the other way round."""
+        """Return the vector the other way round."""
         return Curved(self.symbol, self.place, self.angle, -self.sign)
 
 
@@ -129,7 +129,7 @@ class Auxiliary:
     counts_turns: bool = False
 
     def at(self, values: Values) -> Number:
-        """What is to be zero."""
+        """Return what is to be zero."""
         total = self.sum.at(values)
         if self.along is not None:
             vector = sum((term.at(values) for term in self.path), 0j)
@@ -139,7 +139,7 @@ class Auxiliary:
 
 @dataclass(frozen=True, eq=False)
 class Implicit:
-    """An equation of a pair of which only the value is known: a `function` of its members' poses is zero.
+    """An equation of a pair of which only the value is known. A `function` of its members' poses is zero.
 
     The pose of a member follows from its angle and from the way, by the terms of `ways`, from the pair's side on the
     first member (the first of `points`) to that on it. With a `result` the function has this unknown's value.
@@ -157,14 +157,14 @@ class Implicit:
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
-        """What the function depends on: the angles of links, and what is free on the ways."""
+        """The unknowns of the function: angles of links, and what ways leave free."""
         sums = [angle_of(name) for name in self.members]
         vectors = [term for way in self.ways for term in way if isinstance(term, Vector)]
         sums += [own for term in vectors for own in (term.angle, term.length)]
         return tuple(dict.fromkeys(unknown for own in sums for _, unknown in own.parts))
 
     def at(self, values: Values) -> Number:
-        """What is to be zero."""
+        """Return what is to be zero."""
         places = (0j, *(sum((term.at(values) for term in way), 0j) for way in self.ways))
         angles = (angle_of(name).at(values) for name in self.members)
         found = self.function(tuple(map(_pose, places, self.points, angles)))
@@ -179,7 +179,7 @@ def _pose(at: Number, point: Number, angle: Number) -> Pose:
 
 @dataclass(frozen=True, eq=False)
 class LoopTerms:
-    """What a pair adds to vector loops: how a loop crosses it, and equations of its own.
+    """The terms that a pair adds to vector loops. How a loop crosses it, and equations of its own.
 
     A loop runs from the point on its first member to that on its second one, along `arms`; a `label` names each
     point. `unknowns` are what the pair leaves free, its coordinate first; none for a pin. No loop runs through a pair
@@ -195,7 +195,7 @@ class LoopTerms:
 
 
 def angle_of(link: str) -> Sum:
-    """The angle of a link; that of the frame is zero.
+    """Return the angle of a link; that of the frame is zero.
 
     >>> angle_of("frame").parts
     ()
@@ -204,7 +204,7 @@ def angle_of(link: str) -> Sum:
 
 
 def difference(first: Sum, second: Sum) -> Sum:
-    """The second sum less the first.
+    """Return the second sum less the first.
 
     >>> difference(angle_of("a"), angle_of("b")).at({"a": 1.0, "b": 3.0})
     2.0
@@ -216,5 +216,5 @@ def difference(first: Sum, second: Sum) -> Sum:
 
 
 def direction(end: End) -> Number:
-    """The angle of a guide, a block or a face on its link."""
+    """Return the angle of a guide, a block or a face on its link."""
     return np.angle(end.along.c[0])

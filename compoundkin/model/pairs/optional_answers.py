@@ -20,14 +20,17 @@ class Drivable(Pair):
 
     @abstractmethod
     def placed(self, ends: Ends, free: Series) -> Pose:
-        """The pose of the second member in the first one's frame when the coordinate is `free`."""
+        """Return the second member's pose when the coordinate is `free`. It is in the first one's frame."""
 
     def driven_by(self, link: str) -> int:
-        """+1 if driving `link` drives the coordinate itself, -1 if its opposite."""
+        """Return +1 if driving `link` drives the coordinate itself, else -1."""
         return 1
 
     def drawn_coordinate(self, sketch: Mapping[str, Number]) -> Number | None:
-        """The free coordinate as drawn points alone show it, without the links' poses; None where they do not."""
+        """Return the free coordinate as drawn points alone show it.
+
+        None where they do not, without the links' poses.
+        """
         return None
 
 
@@ -37,22 +40,28 @@ def as_drivable(pair: Pair) -> Drivable | None:
 
 
 class TurnCounting(Pair):
-    """A pair that asks for its members' angles with full turns: gears, belts, racks, wheels that roll."""
+    """A pair that asks for its members' angles with full turns. Such are gears, belts, racks, wheels that roll."""
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
-        """The ends where the members' angles are by whole `turns` from the drawn ones."""
+        """Return the ends with members' angles by whole `turns` from the drawn ones."""
         return ends
 
     def with_driver_turns(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
-        """The ends of a driven pair where its coordinate is by whole `turns` from the drawn one."""
+        """Return the ends of a driven pair for whole `turns` of its coordinate. They count from the drawn one."""
         return ends
 
     def is_affine(self, lower: Pair, own: int) -> bool:
-        """Whether `closure` grows in proportion to the coordinate of the pair `lower`, on which the member `own` is."""
+        """Tell whether `closure` grows in proportion to another pair's coordinate.
+
+        The other pair is `lower`, on which the member `own` is.
+        """
         return False
 
     def distance_error(self, ends: Ends, poses: Poses) -> Series | None:
-        """A length that must be zero though the pair does not hold it: other pairs must; None where there is none."""
+        """Return a length that other pairs must keep at zero.
+
+        The pair does not hold it itself; None where there is none.
+        """
         return None
 
 
@@ -62,7 +71,9 @@ def as_turn_counting(pair: Pair) -> TurnCounting | None:
 
 
 class Equivalent(NamedTuple):
-    """Two lower pairs and a link between them that stand for a higher pair at every pose, not at one only.
+    """The lower pairs and the link between them for a higher pair.
+
+    The two pairs stand for it at every pose, not at one only.
 
     `pairs` join `link` to the first and to the second member; `ends` are their sides by their names.
     """
@@ -73,7 +84,7 @@ class Equivalent(NamedTuple):
 
 
 class Osculation(NamedTuple):
-    """Where the profiles of two members have their centres of curvature while they touch, in the world.
+    """The centres of curvature of two members' profiles where they touch. They are in the world.
 
     None for a straight one. A bar between the centres, or a block on the straight profile pinned at the other one's
     centre, gives the members the same velocities and accelerations. `normal` is a unit vector between the centres.
@@ -85,19 +96,22 @@ class Osculation(NamedTuple):
 
 
 class Replaceable(Pair):
-    """A higher pair for which lower pairs stand: at every pose, or for velocities and accelerations at one."""
+    """A higher pair for which lower pairs stand. They do at every pose, or for velocities and accelerations at one."""
 
     def equivalent(self, ends: Ends) -> Equivalent | None:
-        """The lower pairs that stand for it at every pose, where its dimensions allow such."""
+        """Return the lower pairs for it at every pose. Only some dimensions allow such."""
         return None
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation | None:
-        """The centres of curvature at the leading coefficient of the poses, where they are known."""
+        """Return the centres of curvature where they are known.
+
+        They are those at the leading coefficient of the poses.
+        """
         return None
 
 
 def lower_equivalent(pair: Pair, ends: Ends) -> Equivalent | None:
-    """Return the lower pairs that stand for a pair at every pose, where there are such."""
+    """Return the lower pairs for a pair at every pose. None where there are no such pairs."""
     return pair.equivalent(ends) if isinstance(pair, Replaceable) else None
 
 

@@ -22,7 +22,7 @@ Row = tuple[Number, ...]
 
 
 class OnLine(TurnCounting):
-    """A wheel of a radius that rolls along a straight line of another link; first the link with the line."""
+    """A wheel of a radius that rolls along a straight line. The line is another link's, which comes first."""
 
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
@@ -45,7 +45,7 @@ class OnLine(TurnCounting):
         return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a line without direction, a side that is none."""
+        """Find unknown links and points, a line without direction, a wrong side."""
         yield from super().problems(links, where)
         if self.toward == self.through:
             yield Problem(f"{where}.toward", f"a line from {self.through!r} to itself has no direction")
@@ -54,7 +54,10 @@ class OnLine(TurnCounting):
             yield Problem(f"{where}.side", what, "write 1 for the left of its direction, -1 for the right")
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Two points of the line at one place; a radius that does not fit a drawing which gives all dimensions."""
+        """Find two points of the line at one place, or a wrong radius.
+
+        Wrong is one that does not fit a drawing which gives all dimensions.
+        """
         line, _ = self.members
         points = geometry.points[line]
         if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
@@ -74,7 +77,10 @@ class OnLine(TurnCounting):
             yield Problem(f"{where}.radius", what, remedy)
 
     def ends(self, geometry: Geometry) -> Ends:
-        """A point and the direction of the line with the phase; the axis with the radius, negative to the right."""
+        """Return the line with the phase; the axis with the radius.
+
+        The line is a point and a direction; the radius is negative to the right.
+        """
         start, along = self._line(geometry)
         across = self.side * self.size
         axis = geometry.points[self.members[1]][self.at]
@@ -114,31 +120,34 @@ class OnLine(TurnCounting):
         return self.phase + whole_turns(drawn - self.phase, TURN * across)
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
-        """A phase that the drawing gave follows the turns of line and wheel since."""
+        """Return the ends with a drawn phase taken on by turns since. The turns are those of line and wheel."""
         if any(name not in geometry.drawn for name in self.members):
             return ends
         line, wheel = ends
         return line._replace(measure=line.measure + wheel.measure * TURN * (turns[1] - turns[0])), wheel
 
     def slip(self, ends: Ends, poses: Poses) -> Series:
-        """By how much the axis is ahead of where the wheel rolls it; zero where there is no slip."""
+        """Return the slip, zero where the wheel only rolls.
+
+        It is the length by which the axis is ahead of where the wheel rolls it.
+        """
         turned = poses[1].angle - poses[0].angle
         slip: Series = self.coordinate(ends, poses) + turned * ends[1].measure - ends[0].measure
         return slip
 
     def distance(self, ends: Ends, poses: Poses) -> Series:
-        """By how much the axis is farther from the line than the radius."""
+        """Return the distance of the axis from the line less the radius."""
         line, axis = poses[0].carry(ends[0]), poses[1].at(ends[1].point)
         farther: Series = line.along.cross(axis - line.point) - ends[1].measure
         return farther
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """The displacement of the axis along the line."""
+        """Return the displacement of the axis along the line."""
         line, axis = poses[0].carry(ends[0]), poses[1].at(ends[1].point)
         return line.along.dot(axis - line.point)
 
     def rows(self, ends: Ends, poses: Poses) -> tuple[Row, Row, Row]:
-        """The derivatives of distance, slip and displacement."""
+        """Return the derivatives of distance, slip and displacement."""
         e = poses[0].carry(ends[0]).along.c[0]
         away = poses[1].at(ends[1].point).c[0] - poses[0].z.c[0]
         arm = poses[1].at(ends[1].point).c[0] - poses[1].z.c[0]
@@ -148,13 +157,13 @@ class OnLine(TurnCounting):
         return across, (*along[:2], along[2] - m, *along[3:5], along[5] + m), along
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
-        """The pitch point, where the wheel touches the line."""
+        """Return the pitch point, where the wheel touches the line."""
         m = ends[1].measure
         place = poses[1].at(ends[1].point).c[0] - 1j * poses[0].carry(ends[0]).along.c[0] * m
         return Point(-place.real / m, -place.imag / m, -1.0 / m)
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """A line in a random direction with a wheel somewhere on it."""
+        """Draw a line in a random direction with a wheel somewhere on it."""
         angle = rng.uniform(0.0, TURN)
         along = complex(np.cos(angle), np.sin(angle))
         start, travel = complex(*rng.standard_normal(2)), rng.standard_normal()
@@ -167,7 +176,7 @@ class OnLine(TurnCounting):
         return 0.0
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """The part of the line on which the wheel rolls, and the wheel."""
+        """Return the part of the line on which the wheel rolls, and the wheel."""
         line, wheel = ends
         low, high = reach(self.coordinate(ends, poses).c[0])
         radius = abs(float(wheel.measure))

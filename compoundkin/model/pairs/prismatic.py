@@ -31,7 +31,7 @@ from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 
 @dataclass(frozen=True, eq=False)
 class Prismatic(Drivable):
-    """The link `link` slides on the link `on`: its point `at` runs along a guide.
+    """The link `link` slides on the link `on`. Its point `at` runs along a guide.
 
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x
     axis of `on`) or toward the point `toward`, moved `offset` to the left of that direction. The x axis of
@@ -89,13 +89,16 @@ class Prismatic(Drivable):
         return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a link that slides on itself, a guide from a point to itself."""
+        """Find unknown links and points, and a guide that is none.
+
+        Such is one of a link that slides on itself, or from a point to itself.
+        """
         yield from super().problems(links, where)
         if self.toward is not None and self.toward == self.through:
             yield Problem(f"{where}.toward", f"a guide from {self.through!r} to itself has no direction")
 
     def ends(self, geometry: Geometry) -> Ends:
-        """Guide point and direction on each link; the two directions are parallel when the pair is closed."""
+        """Return guide point and direction on each link. The two directions are parallel when the pair is closed."""
         start = geometry.points[self.on][self.through]
         if self.toward is None:
             guide = np.cos(self.angle) + 1j * np.sin(self.angle)
@@ -119,24 +122,24 @@ class Prismatic(Drivable):
         return End(start, guide), End(point, along)
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """Distance from the guide, sine of the angle to it."""
+        """Return the distance from the guide, the sine of the angle to it."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.cross(block.point - guide.point), guide.along.cross(block.along)
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """The displacement along the guide."""
+        """Return the displacement along the guide."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.dot(block.point - guide.point)
 
     def drawn_coordinate(self, sketch: Mapping[str, Number]) -> Number | None:
-        """The displacement from `through` to `at`, taken to be forward along the guide."""
+        """Return the displacement from `through` to `at`, taken to be forward."""
         if self.at not in sketch or self.through not in sketch:
             return None
         across = 0.0 if self.offset is None else self.offset
         return np.sqrt(np.maximum(np.abs(sketch[self.at] - sketch[self.through]) ** 2 - across**2, 0.0))
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
-        """Rows of distance, angle and displacement."""
+        """Return the rows of distance, angle and displacement."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         e = guide.along.c[0]
         gap = (block.point - guide.point).c[0]
@@ -153,12 +156,12 @@ class Prismatic(Drivable):
         )
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
-        """At infinity, at right angles to the guide."""
+        """Return the point at infinity, at right angles to the guide."""
         guide = poses[0].carry(ends[0]).along.c[0]
         return Point(-guide.imag, guide.real, 0.0)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """Along the guide; the angles of block and guide are tied."""
+        """Return the way along the guide; angles of block and guide are tied."""
         free = Unknown("displacement", self.name)
         guide, block = (angle_of(name).plus(direction(end)) for name, end in zip(self.members, ends, strict=True))
         arm, tied = Vector("", Sum(0.0, ((1.0, free),)), guide), Auxiliary(self.name, difference(guide, block))
@@ -166,25 +169,25 @@ class Prismatic(Drivable):
         return LoopTerms(points, (f"{self.through}'", self.at), (arm,), (free,), (tied,))
 
     def placed(self, ends: Ends, free: Series) -> Pose:
-        """The block moved along the guide by the given displacement."""
+        """Return the block moved along the guide by the given displacement."""
         guide, block = ends
         u = guide.along * block.along.conj()
         return Pose(free * guide.along + guide.point - u * block.point, u, u.angle())
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """A guide in a random direction with the block somewhere along it."""
+        """Draw a guide in a random direction with the block along it."""
         angle = rng.uniform(0.0, 2.0 * np.pi)
         guide = complex(np.cos(angle), np.sin(angle))
         start = complex(*rng.standard_normal(2))
         return End(start, guide), End(start + guide * rng.standard_normal(), guide)
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
-        """Whether the guide does not lie in its block the wrong way round, which the sine alone does not see."""
+        """Tell whether the guide lies in its block the right way round. The sine alone does not see it."""
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.dot(block.along).c[0] > 0
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """A block on the part of its guide that it uses."""
+        """Return a block on the part of its guide that it uses."""
         guide, block = ends
         low, high = reach(self.coordinate(ends, poses).c[0])
         return (Sliding(guide.point, guide.along.c[0], low, high, block.point, block.along.c[0]),)

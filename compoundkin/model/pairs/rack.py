@@ -82,7 +82,7 @@ class Rack(OnLine):
         return 1.0 if self.teeth is None or self.module is None else self.teeth * self.module / 2.0
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a pinion without a size or with two."""
+        """Find unknown links and points, a pinion without a size or with two."""
         yield from super().problems(links, where)
         for key in ("radius", "teeth", "module"):
             yield from radius_problems(where, key, getattr(self, key))
@@ -98,19 +98,19 @@ class Rack(OnLine):
                 yield Problem(f"{where}.radius", what, "give the radius, or teeth and module")
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """The slip."""
+        """Return the slip."""
         return (self.slip(ends, poses),)
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
-        """Rows of slip and displacement."""
+        """Return the rows of slip and displacement."""
         return table(*self.rows(ends, poses)[1:])
 
     def distance_error(self, ends: Ends, poses: Poses) -> Series:
-        """The axis must be at its radius from the pitch line."""
+        """Return the distance of the axis from the pitch line less the radius."""
         return self.distance(ends, poses)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """The way of the axis along the pitch line, by other pairs, and the turn of the pinion."""
+        """Return the way along the pitch line, and the pinion's turn. Other pairs lead the axis on this way."""
         rack, pinion = (angle_of(name) for name in self.members)
         turned = difference(rack, pinion).times(ends[1].measure).plus(-ends[0].measure)
         rolled = Auxiliary(self.name, turned, along=rack.plus(direction(ends[0])), counts_turns=True)
@@ -118,14 +118,14 @@ class Rack(OnLine):
         return LoopTerms(points, ("line", "axis"), equations=(rolled,), is_crossed=False)
 
     def is_affine(self, lower: Pair, own: int) -> bool:
-        """Where a member only slides, or the pinion only turns about its axis."""
+        """Tell whether a member only slides, or the pinion only turns about its axis."""
         if not lower.free_is_angle:
             return lower.free == ("displacement",) and lower.is_simple
         return isinstance(lower, Revolute) and own == 1 and lower.at == self.at and self.pinion in lower.members
 
     @property
     def pitch(self) -> float:
-        """The distance of teeth: by the module, else by as many as a gear of unknown teeth shows."""
+        """The distance of teeth. By the module, else by as many as a gear of unknown teeth shows."""
         if self.module is not None:
             return float(np.pi * first_entry(self.module))
         return float(2.0 * np.pi * first_entry(self.size) / UNCOUNTED)

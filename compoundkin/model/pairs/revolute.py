@@ -48,27 +48,27 @@ class Revolute(Drivable):
         return (self.at,)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Nothing can be wrong: a pin exists only where two links share a letter."""
+        """Find nothing wrong: a pin exists only where two links share a letter."""
         return iter(())
 
     def ends(self, geometry: Geometry) -> Ends:
-        """The pin on each link."""
+        """Return the pin on each link."""
         return End(geometry.points[self.first][self.at]), End(geometry.points[self.second][self.at])
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """Gap in x, gap in y."""
+        """Return the gap in x, the gap in y."""
         gap = poses[1].at(ends[1].point) - poses[0].at(ends[0].point)
         return gap.real, gap.imag
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """The angle from the first link to the second."""
+        """Return the angle from the first link to the second."""
         first, second = poses
         if first.theta is not None and second.theta is not None:
             return second.theta - first.theta
         return (second.u * first.u.conj()).angle()
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
-        """Rows of gap x, gap y and angle."""
+        """Return the rows of gap x, gap y and angle."""
         arm = [(pose.u * end.point).c[0] for pose, end in zip(poses, ends, strict=True)]
         return table(
             (-1.0, 0.0, arm[0].imag, 1.0, 0.0, -arm[1].imag),
@@ -77,28 +77,28 @@ class Revolute(Drivable):
         )
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
-        """The pin."""
+        """Return the pin."""
         pin = poses[0].at(ends[0].point).c[0]
         return Point(pin.real, pin.imag, 1.0)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """A loop passes the pin itself."""
+        """Return the pin itself, which a loop passes."""
         return LoopTerms((ends[0].point, ends[1].point), (self.at, self.at))
 
     def placed(self, ends: Ends, free: Series) -> Pose:
-        """The second link turned about the pin by the given angle."""
+        """Return the second link turned about the pin by the given angle."""
         u = free.turn()
         return Pose(Pose(as_series(ends[0].point), u).at(-ends[1].point), u, free)
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """A pin at a random place."""
+        """Draw a pin at a random place."""
         pin = complex(*rng.standard_normal(2))
         return End(pin), End(pin)
 
     def driven_by(self, link: str) -> int:
-        """The angle of the driven link from the other one."""
+        """Return the angle of the driven link from the other one."""
         return 1 if link == self.second else -1
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """A pin."""
+        """Return a pin."""
         return (Pin(0, ends[0].point),)

@@ -31,7 +31,9 @@ from compoundkin.model.pairs.wheel_sizes import radius_problems
 
 @dataclass(frozen=True, eq=False)
 class Rolling(OnLine, Drivable):
-    """The link `link`, a wheel about its point `at`, rolls without slip along a straight line of the link `on`.
+    """A wheel that rolls without slip along a straight line.
+
+    The wheel is the link `link`, about its point `at`; the line is one of the link `on`.
 
     The line runs through the point `through` of `on`, in the direction `angle` (radians, from the x axis of `on`) or
     toward the point `toward`; the wheel is to its left where `side` is +1, to its right where it is -1. `phase` is the
@@ -83,20 +85,20 @@ class Rolling(OnLine, Drivable):
         return self.radius
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a radius that is none."""
+        """Find unknown links and points, a radius that is none."""
         yield from super().problems(links, where)
         yield from radius_problems(where, "radius", self.radius)
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """The distance from the line but for the radius, and the slip."""
+        """Return the distance from the line but for the radius, and the slip."""
         return self.distance(ends, poses), self.slip(ends, poses)
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
-        """Rows of distance, slip and displacement."""
+        """Return the rows of distance, slip and displacement."""
         return table(*self.rows(ends, poses))
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """Along the line and out to the wheel's middle."""
+        """Return the way along the line and out to the wheel's middle."""
         free, radius = Unknown("displacement", self.name), ends[1].measure
         on, wheel = (angle_of(name) for name in self.members)
         along, side = on.plus(direction(ends[0])), int(np.sign(first_entry(radius)))
@@ -107,7 +109,10 @@ class Rolling(OnLine, Drivable):
         return LoopTerms(points, labels, (Vector("", Sum(0.0, ((1.0, free),)), along), out), (free,), (rolled,))
 
     def placed(self, ends: Ends, free: Series) -> Pose:
-        """The wheel's middle moved along the line by the given displacement, and turned as it rolls."""
+        """Return the wheel rolled along the line by the given displacement.
+
+        Its middle moves along the line, and it turns as it rolls.
+        """
         line, wheel = ends
         across = wheel.measure
         theta = (line.measure - free) / across

@@ -32,7 +32,9 @@ from compoundkin.model.pairs.wheel_sizes import radius_problems
 
 @dataclass(frozen=True, eq=False)
 class RollingOnCircle(TurnCounting, Drivable):
-    """The link `link`, a wheel about its point `at`, rolls without slip on a circle of the link `on`.
+    """A wheel that rolls without slip on a circle.
+
+    The wheel is the link `link`, about its point `at`; the circle is one of the link `on`.
 
     The circle is that of radius `circle` about the point `centre_at` of `on`; the wheel rolls outside it, or `inside`
     where it is a ring. With the direction of the line of centres and the wheel's angle both taken from `on`,
@@ -79,7 +81,10 @@ class RollingOnCircle(TurnCounting, Drivable):
         return self.at, self.centre_at
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, radii that are none, a wheel that is not smaller than the ring around it."""
+        """Find unknown links and points, and radii that are none.
+
+        A wheel that is not smaller than the ring around it is a problem too.
+        """
         yield from super().problems(links, where)
         for key in ("circle", "radius"):
             yield from radius_problems(where, key, getattr(self, key))
@@ -93,7 +98,10 @@ class RollingOnCircle(TurnCounting, Drivable):
         return 1.0 + self.circle / (-self.radius if self.inside else self.radius)
 
     def ends(self, geometry: Geometry) -> Ends:
-        """The circle's middle, with the way from there to the wheel's at direction zero, and the phase; the wheel."""
+        """Return the circle's middle, and the wheel's.
+
+        The first has the way to the wheel's at direction zero, and the phase.
+        """
         distance = self.circle + (-self.radius if self.inside else self.radius)
         wheel = End(geometry.points[self.link][self.at], None, self._turns)
         return End(geometry.points[self.on][self.centre_at], distance + 0j, self._phase(geometry)), wheel
@@ -109,31 +117,34 @@ class RollingOnCircle(TurnCounting, Drivable):
         return drawn if self.phase is None else self.phase + whole_turns(drawn - self.phase)
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
-        """A phase that the drawing gave follows the turns of circle and wheel since."""
+        """Return the ends with a drawn phase taken on by turns since. The turns are those of circle and wheel."""
         if any(name not in geometry.drawn for name in self.members):
             return ends
         return ends[0]._replace(measure=ends[0].measure + TURN * (turns[1] - turns[0])), ends[1]
 
     def with_driver_turns(self, ends: Ends, geometry: Geometry, turns: Number) -> Ends:
-        """A phase that the drawing gave belongs to the line of centres after the turns it has made."""
+        """Return the ends with a drawn phase by the driver's turns.
+
+        It belongs to the line of centres after the turns it has made.
+        """
         if self.phase is not None or any(name not in geometry.drawn for name in self.members):
             return ends
         return ends[0]._replace(measure=ends[0].measure - TURN * turns * ends[1].measure), ends[1]
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
-        """The gap in x and y between the wheel's middle and where its angle puts it."""
+        """Return the gap in x and y of the wheel's middle. It is the way from where its angle puts it."""
         on = poses[0].carry(ends[0])
         gap = poses[1].at(ends[1].point) - on.point - on.along * self.coordinate(ends, poses).turn()
         return gap.real, gap.imag
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """The direction of the line of centres that the wheel's angle tells, full turns counted."""
+        """Return the direction of the line of centres, full turns counted. The wheel's angle tells it."""
         turned: Series = poses[1].angle - poses[0].angle - ends[0].measure
         direction: Series = turned / ends[1].measure
         return direction
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
-        """Rows of the gap in x and y, and of the direction."""
+        """Return the rows of the gap in x and y, and of the direction."""
         line = self._line(ends, poses)
         arms = [pose.at(end.point).c[0] - pose.z.c[0] for pose, end in zip(poses, ends, strict=True)]
         slow = 1.0 / ends[1].measure
@@ -150,7 +161,7 @@ class RollingOnCircle(TurnCounting, Drivable):
         return poses[0].carry(ends[0]).along.c[0] * turn
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
-        """Where the wheel touches the circle."""
+        """Return the point where the wheel touches the circle."""
         k = ends[1].measure
         # between the middles where they are, so that it does not take turns counted
         middle, axis = (pose.at(end.point).c[0] for pose, end in zip(poses, ends, strict=True))
@@ -158,7 +169,7 @@ class RollingOnCircle(TurnCounting, Drivable):
         return Point(place.real * k, place.imag * k, k)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
-        """From the middle of the circle to that of the wheel."""
+        """Return the way from the circle's middle to the wheel's."""
         free = Unknown("direction", self.name)
         on, wheel = (angle_of(name) for name in self.members)
         line = Sum(direction(ends[0]), (*on.parts, (1.0, free)))
@@ -169,23 +180,23 @@ class RollingOnCircle(TurnCounting, Drivable):
         return LoopTerms(points, labels, (arm,), (free,), (rolled,))
 
     def placed(self, ends: Ends, free: Series) -> Pose:
-        """The wheel where the line of centres has the given direction."""
+        """Return the wheel where the line of centres has the given direction."""
         on, wheel = ends
         theta = free * wheel.measure + on.measure
         u = theta.turn()
         return Pose(free.turn() * on.along + on.point - u * wheel.point, u, theta)
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """A random circle and wheel."""
+        """Draw a random circle and wheel."""
         middle, line = complex(*rng.standard_normal(2)), complex(*rng.standard_normal(2))
         return End(middle, line, 0.0), End(middle + line, None, rng.uniform(1.5, 4.0))
 
     def driven_by(self, link: str) -> int:
-        """The direction as seen from the link that does not have the driver."""
+        """Return the direction as seen from the link without the driver."""
         return 1 if link == self.link else -1
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """The circle, as a ring where the wheel is inside, and the wheel."""
+        """Return the circle, a ring around a wheel inside, and the wheel."""
         distance, turns = float(abs(ends[0].along.c[0])), float(ends[1].measure)
         # turns = 1 + circle / radius, negative radius inside; the distance is their sum
         radius = distance / turns

@@ -68,20 +68,20 @@ class Slot(Contact):
         return (self.at, self.through) if self.toward is None else (self.at, self.through, self.toward)
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Unknown links and points, a slot without direction."""
+        """Find unknown links and points, a slot without direction."""
         yield from super().problems(links, where)
         if self.toward == self.through:
             yield Problem(f"{where}.toward", f"a slot from {self.through!r} to itself has no direction")
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
-        """Two points of the slot at one place."""
+        """Find two points of the slot at one place."""
         points = geometry.points[self.on]
         if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
             what = f"{self.through!r} and {self.toward!r} are at one place, so that the slot has no direction"
             yield Problem(f"{where}.toward", what, "name another point or give an angle")
 
     def ends(self, geometry: Geometry) -> Ends:
-        """A point and the direction of the slot; the pin."""
+        """Return a point and the direction of the slot; the pin."""
         points = geometry.points[self.on]
         start = points[self.through]
         if self.toward is None:
@@ -91,21 +91,21 @@ class Slot(Contact):
         return End(start + 1j * along * self.offset, along), End(geometry.points[self.link][self.at])
 
     def touch(self, ends: Ends, poses: Poses) -> Touch:
-        """At the pin, across the slot."""
+        """Return the contact at the pin, across the slot."""
         slot, pin = poses[0].carry(ends[0]), poses[1].at(ends[1].point)
         return Touch(pin, slot.along * 1j, slot.along.cross(pin - slot.point))
 
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
-        """The pin passes along the slot."""
+        """Return the row of the pin along the slot."""
         return row(poses, poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0])
 
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
-        """The displacement along the slot."""
+        """Return the displacement along the slot."""
         slot, pin = poses[0].carry(ends[0]), poses[1].at(ends[1].point)
         return slot.along.dot(pin - slot.point)
 
     def equivalent(self, ends: Ends) -> Equivalent:
-        """A block in the slot, pinned to the other link."""
+        """Return a block in the slot, pinned to the other link."""
         block = f"{self.name} (block)"
         pairs = (
             Prismatic(block, on=self.on, at=self.at, through=self.through, name=f"{self.name} (slide)"),
@@ -114,22 +114,22 @@ class Slot(Contact):
         return Equivalent(block, pairs, {pairs[0].name: (ends[0], End(0j, 1 + 0j)), pairs[1].name: (End(0j), ends[1])})
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
-        """The slot is straight, the pin round."""
+        """Return the straight slot and the round pin."""
         return Osculation(None, poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0] * 1j)
 
     def generic(self, rng: np.random.Generator) -> Ends:
-        """A slot in a random direction, the pin somewhere in it."""
+        """Draw a slot in a random direction, the pin somewhere in it."""
         angle = rng.uniform(0.0, 2.0 * np.pi)
         along = complex(np.cos(angle), np.sin(angle))
         start = complex(*rng.standard_normal(2))
         return End(start, along), End(start + along * rng.standard_normal())
 
     def round_at(self, link: str) -> str | None:
-        """The pin may turn in the slot."""
+        """Return the pin, which may turn in the slot."""
         return self.at if link == self.link else None
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
-        """A groove as long as the pin's way, and the pin."""
+        """Return a groove as long as the pin's way, and the pin."""
         travel = np.linspace(*reach(self.coordinate(ends, poses).c[0]), 2)
         return Groove(0, ends[0].point + ends[0].along.c[0] * travel), Stud(1, ends[1].point)
 
@@ -138,7 +138,7 @@ slot = word("slot", Slot)
 
 
 class Loosened(NamedTuple):
-    """A pair with some held coordinates left out: their numbers, what they are in words, and what is left."""
+    """A pair with some held coordinates left out. Their numbers, what they are in words, and what is left."""
 
     coordinates: tuple[int, ...]
     freed: str
@@ -152,14 +152,14 @@ class TurningBlock(Slot):
     slide: Prismatic | None = field(default=None, kw_only=True)
 
     def ends(self, geometry: Geometry) -> Ends:
-        """The guide as the slide has it, offsets read off a drawing included; the point that slides."""
+        """Return the guide as the slide has it; the point that slides. Offsets read off a drawing are included."""
         assert self.slide is not None
         guide, block = self.slide.ends(geometry)
         return guide, End(block.point)
 
 
 def loosened(pair: Pair) -> Iterator[Loosened]:
-    """The ways to leave out part of a written pair, the least first.
+    """List the ways to leave out part of a written pair, the least first.
 
     >>> from compoundkin.model.pairs import slide
     >>> [(way.coordinates, way.freed) for way in loosened(slide("w", on="v", at="A", through="B"))]
@@ -172,7 +172,7 @@ def loosened(pair: Pair) -> Iterator[Loosened]:
 
 
 def pin_in_slot(letter: str, pinned: str, slotted: str, through: str) -> Pair:
-    """A pin that may move along the line from another point of one of its links.
+    """Return a pin that may move along a line. The line goes from another point of one of its links.
 
     >>> pin_in_slot("E", "coupler", "crank", "D").letters
     ('E', 'D', 'E')

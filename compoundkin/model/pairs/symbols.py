@@ -30,7 +30,9 @@ class Stud(NamedTuple):
 
 
 class Sliding(NamedTuple):
-    """A straight guide on the first member, used from `low` to `high` as seen from `at`; a block on the second one.
+    """A straight guide on the first member, and a block on the second.
+
+    It is used from `low` to `high` as seen from `at`.
 
     `turn` is the direction of the guide as the sliding member carries it.
     """
@@ -51,7 +53,7 @@ class Groove(NamedTuple):
 
 
 class Wheel(NamedTuple):
-    """A wheel, a pulley, a roller; one with `teeth` is a gear and shows its pitch circle, `is_ring` an internal one."""
+    """A wheel, a pulley, a roller. One with `teeth` is a gear and shows its pitch circle, `is_ring` an internal one."""
 
     member: int
     at: Number
@@ -61,7 +63,7 @@ class Wheel(NamedTuple):
 
 
 class Track(NamedTuple):
-    """A straight side of a member, used from `low` to `high` as seen from `at`: a rack, a road, a flat face.
+    """A straight side of a member: a rack, a road, a flat face. It is used from `low` to `high` as seen from `at`.
 
     What runs on it is to the left of `along` where `side` is +1. `pitch` is the distance of teeth, 0 if there are none.
     """
@@ -83,7 +85,7 @@ class Strap(NamedTuple):
 
 
 class Outline(NamedTuple):
-    """A profile of a member, an array of points; a hollow one has its material outside, as a ring."""
+    """A profile of a member, an array of points. A hollow one has its material outside, as a ring."""
 
     member: int
     line: Number
@@ -95,7 +97,7 @@ Mark: TypeAlias = Pin | Stud | Sliding | Groove | Wheel | Track | Strap | Outlin
 
 
 def reach(values: Number) -> tuple[float, float]:
-    """The least and the greatest of the values that are known; zeros where none is.
+    """Return the least and the greatest known value; zeros where none is.
 
     >>> reach(np.array([2.0, np.nan, 1.0]))
     (1.0, 2.0)
@@ -106,7 +108,7 @@ def reach(values: Number) -> tuple[float, float]:
 
 
 def arc_line(centre: Number, radius: Number, start: float, stop: float) -> Number:
-    """Points of an arc between two angles (radians), counterclockwise where stop is the greater one.
+    """Return points of an arc between two angles (radians). They run counterclockwise where stop is the greater one.
 
     >>> arc_line(0j, 1.0, 0.0, np.pi).round(6)[[0, -1]].tolist()
     [(1+0j), (-1+0j)]
@@ -116,7 +118,9 @@ def arc_line(centre: Number, radius: Number, start: float, stop: float) -> Numbe
 
 
 def strap_line(centres: tuple[complex, complex], radii: tuple[float, float], crossed: bool) -> Number:
-    """A belt around two pulleys: the common tangents, the inner ones where it is crossed, and the arcs between them.
+    """Return a belt around two pulleys.
+
+    It has the common tangents, the inner ones where it is crossed, and the arcs between them.
 
     >>> strap_line((0j, 4 + 0j), (1.0, 1.0), False).imag.max().round(6)
     np.float64(1.0)

@@ -18,7 +18,7 @@ FITS = 1e-5
 
 
 def two_of(key: str, value: Any) -> Two | None:
-    """Two sizes as numbers or arrays; raises InvalidMechanism naming the key for anything else.
+    """Return two sizes as numbers or arrays. Raises InvalidMechanism naming the key for anything else.
 
     >>> two_of("teeth", (20, 40))
     (20.0, 40.0)
@@ -36,7 +36,7 @@ def two_of(key: str, value: Any) -> Two | None:
 def axis_problems(
     links: Mapping[str, tuple[str, ...]], pinned: tuple[str, str], axis: str, where: str, key: str
 ) -> Iterator[Problem]:
-    """Find an axis that a wheel and its carrier, the links that are `pinned`, do not share."""
+    """Find an axis that a wheel and its carrier do not share. These are the links that are `pinned`."""
     name, carrier = pinned
     shared = [letter for letter in links[name] if letter in links[carrier]]
     if axis and axis not in shared:
@@ -51,7 +51,7 @@ def axis_problems(
 
 
 def size_problems(teeth: Sizes, radii: Sizes, where: str) -> Iterator[Problem]:
-    """Find two sizes that are none, and teeth and radii that do not go together."""
+    """Find two sizes that are none, or do not go together. The latter are teeth and radii."""
     if teeth is None and radii is None:
         yield Problem(where, "it has no sizes", "give teeth = (20, 40) or radii = (10, 20)")
     for key, sizes in (("teeth", teeth), ("radii", radii)):
@@ -67,7 +67,7 @@ def size_problems(teeth: Sizes, radii: Sizes, where: str) -> Iterator[Problem]:
 
 
 def distance_problems(axes: str, distance: Number, wanted: Number, where: str, said: str) -> Iterator[Problem]:
-    """Find wheels whose sizes do not fit the distance of their axes on the carrier."""
+    """Find wheels whose sizes do not fit the distance of their axes. The axes are on the carrier."""
     off = np.abs(wanted - distance) > FITS * np.abs(distance)
     if np.any(off):
         at = int(np.argmax(np.ravel(np.broadcast_to(off, np.shape(off)))))
@@ -85,7 +85,7 @@ def _shown(sizes: Sequence[Number]) -> str:
 
 
 def radius_problems(where: str, key: str, radius: Number | None) -> Iterator[Problem]:
-    """The problem of a radius, or another length or number, that is not positive."""
+    """Find a radius, or another length or number, that is not positive."""
     if radius is not None and not np.all(np.asarray(radius) > 0):
         shown = f"{radius:g}" if np.ndim(radius) == 0 else str(np.asarray(radius).tolist())
         yield Problem(f"{where}.{key}", f"{shown} is not positive", "give the size of the wheel")
