@@ -15,15 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import compoundkin.view  # noqa: F401  (says how objects show themselves)
 from compoundkin.base.version import VERSION
-from compoundkin.kinematics import solve
-from compoundkin.kinematics.gaps import gaps
-from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.elements import drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
-from compoundkin.structure import decompose
-from compoundkin.structure.redundancy import mobility_analysis
 
 if TYPE_CHECKING:
     from compoundkin import advantage as advantage
@@ -44,6 +39,11 @@ if TYPE_CHECKING:
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.files import load, save
+    from compoundkin.kinematics import solve
+    from compoundkin.kinematics.gaps import gaps
+    from compoundkin.kinematics.quantities import quantity
+    from compoundkin.structure import decompose
+    from compoundkin.structure.redundancy import mobility_analysis
     from compoundkin.synthesis.alternatives import alternatives
     from compoundkin.synthesis.inversion import with_driver, with_frame
     from compoundkin.view.animation import animate
@@ -99,20 +99,25 @@ __all__ = [
 import_module("compoundkin.configurations")
 globals().pop("configurations", None)
 
-# What only some programs need is imported when they ask for it: the module of each such word.
+# What writes no mechanism is imported when it is first asked for: the module of each such word.
 _LATE = {
     "alternatives": "synthesis.alternatives",
     "animate": "view.animation",
     "circuits": "configurations.circuit_search",
     "configurations": "configurations.enumeration",
+    "decompose": "structure",
     "draw": "view.sketch",
+    "gaps": "kinematics.gaps",
     "instant_centres": "analysis.centres",
     "load": "files",
     "loop_equations": "analysis.equations",
+    "mobility_analysis": "structure.redundancy",
     "page": "view.report",
     "plot": "view.plot",
+    "quantity": "kinematics.quantities",
     "report": "view.report",
     "save": "files",
+    "solve": "kinematics",
     "verify": "analysis.checks",
     "with_driver": "synthesis.inversion",
     "with_frame": "synthesis.inversion",
@@ -168,7 +173,8 @@ _MOVED = {
 
 def __getattr__(name: str) -> Any:
     if name in _LATE:
-        return getattr(import_module(f"compoundkin.{_LATE[name]}"), name)
+        found = globals()[name] = getattr(import_module(f"compoundkin.{_LATE[name]}"), name)
+        return found
     if name in _MODULES:
         return import_module(f"compoundkin.{name}")
     if name in _MOVED:
