@@ -9,7 +9,6 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.kinematics.assembly.mode_count import laman_number
 from compoundkin.model.pairs.optional_answers import as_drivable
 from compoundkin.synthesis.alternatives import alternatives
 from compoundkin.synthesis.chains import chains, mechanism_from, structure_name
@@ -17,6 +16,7 @@ from compoundkin.synthesis.chains.structure_names import group_count
 from compoundkin.synthesis.inversion import with_driver, with_frame
 from compoundkin.view.report.atlas_sections import alternatives_section
 from tests import catalog
+from tests.kinematics.assembly.laman import laman_number
 
 
 def test_a_four_bar_has_one_frame_and_two_places_for_a_driver():

@@ -72,10 +72,6 @@ class Curve(ABC):
         _, first, second = self.derivatives(s, 2)
         return cross(first, second) / np.abs(first) ** 3
 
-    def covers(self, s: Number) -> Number:
-        """Tell whether parameters belong to the curve; an open one has two ends."""
-        return np.isfinite(s) if self.closed else (self.low <= s) & (s <= self.high)
-
     @property
     def breaks(self) -> tuple[float, ...]:
         """The parameters, within the period, at which derivatives may jump: none of a curve smooth all along."""
@@ -174,10 +170,6 @@ class Curve(ABC):
             return composed(coefficients, s) + along.unit() * (-1j * distance)
 
         return Analytic(parallel, self.low, self.high, self.closed, self.breaks)
-
-    def offset_is_regular(self, distance: float) -> bool:
-        """Tell whether the parallel curve has no cusp: no radius on that side is less than the distance."""
-        return not self.undercut(distance)
 
     def undercut(self, distance: float) -> tuple[tuple[float, float], ...]:
         """Find the spans of s where the parallel curve turns back: ``1 + distance * curvature`` is not positive.

@@ -13,7 +13,7 @@ Math. Soc. 113 (2026) e70438, the number by matroids.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cache, lru_cache, partial
 from typing import TypeAlias
 
@@ -44,18 +44,6 @@ def exact_count(graph: GroupGraph) -> int | None:
     columns = np.concatenate([loops.constant[None], loops.columns])[..., 0]
     rank = _coordinate_rank(columns)
     return intersections(len(columns), rank, rank)
-
-
-def laman_number(edges: Iterable[tuple[int, int]]) -> int:
-    """Count the realizations of a minimally rigid graph in the plane, over the complex numbers.
-
-    Up to direct motions; mirror images are counted apart. Zero where the graph is not minimally rigid.
-
-    >>> laman_number([(0, 1), (1, 2), (2, 0)])
-    2
-    """
-    edges = tuple(edges)
-    return intersections(len(edges), *[_graph_rank(edges)] * 2)
 
 
 def intersections(n: int, first: Rank, second: Rank) -> int:
@@ -125,26 +113,5 @@ def _coordinate_rank(columns: Number) -> Rank:
         others = [k for k in range(n) if not elements >> k & 1]
         spanned: int = int(np.linalg.matrix_rank(columns[others], tol=RANK)) if others else 0
         return n - len(others) - held + spanned
-
-    return rank
-
-
-def _graph_rank(edges: tuple[tuple[int, int], ...]) -> Rank:
-    """Return the ranks of the edges of a graph: nodes less components."""
-
-    def rank(elements: int) -> int:
-        root = {node: node for edge in edges for node in edge}
-
-        def find(node: int) -> int:
-            while root[node] != node:
-                node = root[node]
-            return node
-
-        joined = 0
-        for k, (a, b) in enumerate(edges):
-            if elements >> k & 1 and find(a) != find(b):
-                root[find(a)] = find(b)
-                joined += 1
-        return joined
 
     return rank

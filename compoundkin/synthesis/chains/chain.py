@@ -176,11 +176,6 @@ class Chain:
 
         return tuple(sorted(networkx.articulation_points(self.graph())))
 
-    @property
-    def is_fractionated(self) -> bool:
-        """Whether taking one link away leaves parts that are not joined."""
-        return bool(self.joints_of_parts)
-
     @cached_property
     def variety(self) -> int:
         """The degree of variety. By how much the least mobility of a part with a loop is below the chain's.

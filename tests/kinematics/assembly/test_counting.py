@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from compoundkin.kinematics.assembly import Connection, GroupGeometry, all_configurations, exact_count
-from compoundkin.kinematics.assembly.mode_count import laman_number
+from tests.kinematics.assembly.laman import laman_number
 from tests.kinematics.assembly.trusses import baranov_trusses, random_truss
 from tests.support import reference
 

@@ -7,8 +7,8 @@ import pytest
 
 from compoundkin.kinematics.assembly import all_configurations, exact_count
 from compoundkin.kinematics.assembly.group_geometry import GroupGraph
-from compoundkin.kinematics.assembly.mode_count import laman_number
 from tests.kinematics.assembly.cases import as_drawn, seven_bar, three_legs, triad
+from tests.kinematics.assembly.laman import laman_number
 from tests.kinematics.assembly.trusses import from_graph6, random_truss
 from tests.support import REFERENCE, reference
 

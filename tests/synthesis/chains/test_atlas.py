@@ -73,4 +73,4 @@ def test_larger_lists_are_made_when_they_are_asked_for():
 
 
 def test_trusses_are_rigid_only_as_a_whole():
-    assert all(truss.mobility == 0 and not truss.is_fractionated for truss in trusses(9))
+    assert all(truss.mobility == 0 and not truss.joints_of_parts for truss in trusses(9))

@@ -56,14 +56,14 @@ def test_trusses_are_those_of_another_enumeration(links):
 @pytest.mark.parametrize(("mobility", "links"), NOT_FRACTIONATED)
 def test_chains_of_higher_mobility_that_are_not_fractionated(mobility, links):
     chains = chains_of(links, mobility)
-    whole = [chain for chain in chains if not chain.is_fractionated]
+    whole = [chain for chain in chains if not chain.joints_of_parts]
     assert len(whole) == NOT_FRACTIONATED[mobility, links]
     assert all(nx.is_biconnected(nx.Graph(chain.graph())) for chain in whole)
 
 
 def test_fractionated_chains_are_all_ways_of_joining_smaller_ones():
     """Two chains share a link: one of the equivalent links of the one with one of the other."""
-    apart = [chain for chain in chains_of(9, mobility=2) if chain.is_fractionated]
+    apart = [chain for chain in chains_of(9, mobility=2) if chain.joints_of_parts]
     four, six = chains_of(4), chains_of(6)
     joined = sum(len(chain.inversions) for chain in six) * sum(len(chain.inversions) for chain in four)
     assert len(apart) == joined == 5

@@ -43,7 +43,7 @@ def test_six_bars_have_no_variety_and_their_symmetries():
 
 def test_a_chain_with_a_part_of_less_mobility_has_variety():
     # two four-bars that share the frame: each moves alone, with mobility 1 of 2
-    two = next(chain for chain in chains(7, mobility=2) if chain.is_fractionated)
+    two = next(chain for chain in chains(7, mobility=2) if chain.joints_of_parts)
     assert structure_name(ck.decompose(mechanism_from(two))).variety == 1
 
 
