@@ -77,12 +77,11 @@ def range_of(
     import numpy as np
 
     from compoundkin.base.errors import InvalidInput, Problem
-    from compoundkin.view.report.configurations_section import is_angle
 
     if start is None and stop is None:
         return None
     if start is None or stop is None:
         raise InvalidInput(Problem("--from, --to", "a range has two ends", "give both"))
     name = driver or structure.mechanism.drives[0].name
-    factor = float(np.deg2rad(1.0)) if is_angle(structure, name) else 1.0
+    factor = float(np.deg2rad(1.0)) if structure.driven_angles.get(name, False) else 1.0
     return start * factor, stop * factor

@@ -38,7 +38,7 @@ def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Numb
         if name in shown:
             raise _wrong(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
         shown[name] = _spanned(structure, name, span)
-    angles = _angles(structure)
+    angles = structure.driven_angles
     values = {name: np.deg2rad(v) if angles[name] else v for name, v in shown.items()}
     if asked.get("time") is None:
         _of_one_length(structure, values)
@@ -59,7 +59,7 @@ def of_pose(structure: Structure, given: Sequence[str], option: str = "--at") ->
     names = [drive.name for drive in structure.mechanism.drives]
     if len(names) > 1 and any("=" not in text for text in given):
         raise _wrong(option, f"there are {len(names)} drivers", f"write NAME=VALUE, NAME one of {', '.join(names)}")
-    found, angles = _first(structure), _angles(structure)
+    found, angles = _first(structure), structure.driven_angles
     shown = list(_named(structure, option, given))
     for name, text in shown:
         if sum(other == name for other, _ in shown) > 1:
@@ -80,7 +80,7 @@ def _values_of(structure: Structure, drive: Drive) -> Number | None:
         time = structure.mechanism.time
         first = float(first_entry(time)) if time is not None else (drive.law.span or (0.0,))[0]
         return drive.law.coordinate(np.array([first]), 0).c[0]
-    return FULL_TURN if drive.values is None and _angles(structure)[drive.name] else drive.values
+    return FULL_TURN if drive.values is None and structure.driven_angles[drive.name] else drive.values
 
 
 def _single(text: str, where: str, is_angle: bool) -> float:
@@ -129,7 +129,7 @@ def stepped(start: float, stop: float, step: float, where: str) -> Number:
 
 def of_rates(structure: Structure, option: str, given: Sequence[str]) -> dict[str, float] | None:
     """Return rates by driver; None where none is given."""
-    angles = _angles(structure)
+    angles = structure.driven_angles
     named = _named(structure, option, given)
     return {name: _rate(text, f"{option} {name}", angles[name]) for name, text in named} or None
 
@@ -181,7 +181,7 @@ def _spanned(structure: Structure, name: str, span: Mapping[str, Any]) -> Number
 def _own(structure: Structure, name: str) -> tuple[float, float, float] | None:
     """First value, last value and step of a driver as the mechanism has it; the first design's of several."""
     drive = next(drive for drive in structure.mechanism.drives if drive.name == name)
-    is_angle = _angles(structure)[name]
+    is_angle = structure.driven_angles[name]
     if drive.values is None and not is_angle:
         return None
     values = np.atleast_1d(FULL_TURN if drive.values is None else drive.values)
@@ -190,11 +190,6 @@ def _own(structure: Structure, name: str) -> tuple[float, float, float] | None:
         return None
     shown = degrees(values) if is_angle else values
     return float(shown[0]), float(shown[-1]), float(shown[1] - shown[0])
-
-
-def _angles(structure: Structure) -> dict[str, bool]:
-    """Which drivers drive an angle."""
-    return {name: step.pair.free_is_angle for name, step in structure.driven.items()}
 
 
 def _of_one_length(structure: Structure, values: Mapping[str, Number]) -> None:

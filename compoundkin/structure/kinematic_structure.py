@@ -48,6 +48,11 @@ class Structure(ShowsPicture):
         return {step.drive.name: step for body in self.bodies for step in body.driven if not step.is_passive}
 
     @cached_property
+    def driven_angles(self) -> dict[str, bool]:
+        """Which drivers drive an angle; the others drive a length."""
+        return {name: step.pair.free_is_angle for name, step in self.driven.items()}
+
+    @cached_property
     def redundant(self) -> tuple[Pair, ...]:
         """The pairs that no driver and no group uses as they are. The others hold what they hold."""
         if self.relaxation is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,7 +20,7 @@ from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
-from compoundkin.view.animation.films import gif, mp4, require_ffmpeg, require_pillow
+from compoundkin.view.animation.films import Frames, Progress, gif, mp4, require_ffmpeg, require_pillow
 from compoundkin.view.animation.frame_caption import Caption
 from compoundkin.view.animation.moving_svg import smil
 from compoundkin.view.animation.overlays import Arrows, MovingCentre, moving_centres, with_arrows
@@ -33,8 +33,6 @@ from compoundkin.view.sketch.sketches import asked_labels, asked_paths
 from compoundkin.view.sketch.svg import NATURAL, pixel_size, pixels, require_cairo
 from compoundkin.view.sketch.vectors import wanted
 
-# What is told of progress: how many frames are done, of how many.
-Progress = Callable[[int, int], None]
 # A mechanism's own range is shown in at least so many steps, as a full turn is.
 FEWEST = 72
 
@@ -112,7 +110,7 @@ class Animation(Savable):
         def drawn(k: int) -> Number:
             return pixels(self.frame(k).svg, *size)
 
-        return write(drawn, len(self), self.timeline.hold, size, progress or _untold)
+        return write(Frames(drawn, len(self), self.timeline.hold, size), progress or _untold)
 
     @cached_property
     def longer(self) -> float:

@@ -7,11 +7,12 @@ import shutil
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -35,6 +36,20 @@ CLOCK = 90_000
 QUALITY = 18
 # The last lines of what ffmpeg says tell why it fails.
 TOLD = 4
+
+
+# What is told of progress: how many frames are done, of how many.
+Progress: TypeAlias = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Frames:
+    """The frames of a film, made one by one as arrays of pixels of one size, each shown for `hold` seconds."""
+
+    frame: Callable[[int], Number]
+    count: int
+    hold: float
+    size: tuple[int, int]
 
 
 def palette(pixels: Number, most: int) -> Number:
@@ -71,29 +86,24 @@ def indices(pixels: Number, table: Number) -> Number:
     return np.asarray(table[(red * LEVELS + green) * LEVELS + blue])
 
 
-def gif(
-    frame: Callable[[int], Number],
-    count: int,
-    hold: float,
-    size: tuple[int, int],
-    progress: Callable[[int, int], None],
-) -> bytes:
-    """Frames, arrays of pixels shown for `hold` seconds each, as the bytes of a GIF.
+def gif(frames: Frames, progress: Progress) -> bytes:
+    """Return frames as the bytes of a GIF.
 
     Raises InvalidInput where Pillow is not installed, and for more frames a second than a GIF can have.
     """
     image = require_pillow()
-    if count > 1 and 100.0 * hold < SHORTEST - 1e-9:
+    count = frames.count
+    if count > 1 and 100.0 * frames.hold < SHORTEST - 1e-9:
         what = f"a GIF has at most {100 // SHORTEST} frames a second"
         raise InvalidInput(Problem("fps", what, "ask for fewer, for more seconds, or for an .mp4"))
-    known = {k: frame(k) for k in sorted({count * n // SAMPLED for n in range(SAMPLED)})}
+    known = {k: frames.frame(k) for k in sorted({count * n // SAMPLED for n in range(SAMPLED)})}
     colours = palette(np.concatenate(list(known.values())), MOST_COLOURS)
     table = nearest_table(colours)
 
     def images() -> Iterator[Any]:
         for k in range(count):
-            numbers = indices(known.pop(k) if k in known else frame(k), table)
-            shown = image.frombytes("P", size, numbers.tobytes())
+            numbers = indices(known.pop(k) if k in known else frames.frame(k), table)
+            shown = image.frombytes("P", frames.size, numbers.tobytes())
             shown.putpalette(colours.astype(np.uint8).tobytes())
             yield shown
             progress(k + 1, count)
@@ -101,7 +111,13 @@ def gif(
     first, *others = images()
     written = io.BytesIO()
     first.save(
-        written, "GIF", save_all=True, append_images=others, duration=_durations(count, hold), loop=0, optimize=False
+        written,
+        "GIF",
+        save_all=True,
+        append_images=others,
+        duration=_durations(count, frames.hold),
+        loop=0,
+        optimize=False,
     )
     return written.getvalue()
 
@@ -136,23 +152,17 @@ def require_ffmpeg() -> str:
     return found
 
 
-def mp4(
-    frame: Callable[[int], Number],
-    count: int,
-    hold: float,
-    size: tuple[int, int],
-    progress: Callable[[int, int], None],
-) -> bytes:
-    """Frames, arrays of pixels shown for `hold` seconds each, as the bytes of an MP4 file.
+def mp4(frames: Frames, progress: Progress) -> bytes:
+    """Return frames as the bytes of an MP4 file.
 
     Raises InvalidInput where ffmpeg is not installed or fails, with what it says.
     """
     with TemporaryDirectory() as folder, TemporaryFile() as said:
         path = Path(folder) / "film.mp4"
-        words = _words(require_ffmpeg(), size, Fraction(CLOCK, max(1, round(CLOCK * hold))), path)
+        words = _words(require_ffmpeg(), frames.size, Fraction(CLOCK, max(1, round(CLOCK * frames.hold))), path)
         with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said) as process:
             try:
-                _hand_over(process, frame, count, progress)
+                _hand_over(process, frames, progress)
             except BaseException:
                 process.kill()
                 raise
@@ -173,14 +183,12 @@ def _words(program: str, size: tuple[int, int], rate: Fraction, path: Path) -> S
     return [*start, *read, "-i", "-", "-an", *even, *code, *colours, *same, str(path)]
 
 
-def _hand_over(
-    process: subprocess.Popen[bytes], frame: Callable[[int], Number], count: int, progress: Callable[[int, int], None]
-) -> None:
+def _hand_over(process: subprocess.Popen[bytes], frames: Frames, progress: Progress) -> None:
     assert process.stdin is not None
     try:
-        for k in range(count):
-            process.stdin.write(frame(k).tobytes())
-            progress(k + 1, count)
+        for k in range(frames.count):
+            process.stdin.write(frames.frame(k).tobytes())
+            progress(k + 1, frames.count)
         process.stdin.close()
     except BrokenPipeError:
         # it has ended by itself, and says why

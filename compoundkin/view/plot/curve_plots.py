@@ -94,12 +94,7 @@ def hodograph(
     shared = planar.drawing(motion, designs, every)
     with plot_style.styled():
         figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or HODOGRAPH)
-        shades: Any = plot_style.colours(len(vectors), shared.designs)
-        for k, one in enumerate(vectors):
-            for d in range(shared.designs):
-                colour = shades[k if shared.designs == 1 else d]
-                planar.curve(axes[0], shared, d, one.values[d], colour, one.name)
-                planar.marks(axes[0], shared, d, one.values[d], colour, shared.designs == len(vectors) == 1)
+        planar.curves(axes[0], shared, [one.values for one in vectors], [one.name for one in vectors])
         axes[0].plot([0.0], [0.0], marker="+", markersize=11, color=plot_style.INK, linestyle="none", zorder=6)
         unit, names_ = readable(vectors[0].unit), ", ".join(one.name for one in vectors)
         canvas.plane(axes[0], f"{names_}, x [{unit}]", f"y [{unit}]")

@@ -51,12 +51,7 @@ def paths(
     shared = planar.drawing(motion, designs, every)
     with plot_style.styled():
         figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or SIZE)
-        shades: Any = plot_style.colours(len(curves), shared.designs)
-        for k, rows in enumerate(curves):
-            for d in range(shared.designs):
-                colour = shades[k if shared.designs == 1 else d]
-                planar.curve(axes[0], shared, d, rows[d], colour, names[k])
-                planar.marks(axes[0], shared, d, rows[d], colour, shared.designs == len(curves) == 1)
+        planar.curves(axes[0], shared, curves, names)
         fixed_points(axes[0], motion, on, shared)
         unit = unit_of(motion.mechanism.unit, "length")
         canvas.plane(axes[0], f"x [{unit}]", f"y [{unit}]")

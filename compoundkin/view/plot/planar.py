@@ -56,6 +56,16 @@ def curve(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, name:
     canvas.ring(axes, z.real[beside], z.imag[beside], colour)
 
 
+def curves(axes: Any, shared: SharedCurves, drawn: Sequence[Number], names: Sequence[str]) -> None:
+    """Draw curves of all designs with their marks, in colours of their own or, where there are several, of designs."""
+    shades: Any = plot_style.colours(len(drawn), shared.designs)
+    for k, (rows, name) in enumerate(zip(drawn, names, strict=True)):
+        for d in range(shared.designs):
+            colour = shades[k if shared.designs == 1 else d]
+            curve(axes, shared, d, rows[d], colour, name)
+            marks(axes, shared, d, rows[d], colour, shared.designs == len(drawn) == 1)
+
+
 def marks(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, labelled: bool = True) -> None:
     """Draw dots at every so many poses, with the value of the driver or the time there; none on large families."""
     if shared.designs > canvas.LISTED:

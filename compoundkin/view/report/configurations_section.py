@@ -60,17 +60,14 @@ def _count(found: Configurations, real: int) -> str:
 
 
 def _drivers(structure: Structure, values: Mapping[str, float]) -> str:
-    shown = (f"{name} = {_with_unit(is_angle(structure, name), value)}" for name, value in values.items())
+    shown = (
+        f"{name} = {_with_unit(structure.driven_angles.get(name, False), value)}" for name, value in values.items()
+    )
     return ", ".join(shown) or "Without a driver"
 
 
 def _with_unit(angle: bool, value: float) -> str:
     return f"{number(float(degrees(value)))} degrees" if angle else number(value)
-
-
-def is_angle(structure: Structure, driver: str) -> bool:
-    """Tell whether a driver drives an angle."""
-    return driver in structure.driven and structure.driven[driver].pair.free_is_angle
 
 
 def circuits_report(found: Circuits) -> Report:
@@ -119,7 +116,7 @@ class _Page:
 
     def __init__(self, found: Circuits) -> None:
         self.found = found
-        self.angle = is_angle(found.structure, found.driver)
+        self.angle = found.structure.driven_angles.get(found.driver, False)
         self.value = Column(found.driver, "deg" if self.angle else "", "fixed", FLOOR)
 
     def circuits(self) -> Section:

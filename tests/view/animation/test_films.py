@@ -134,7 +134,7 @@ def test_a_gif_has_no_more_frames_a_second_than_browsers_show() -> None:
 def test_a_turn_of_the_six_bar_is_well_below_a_megabyte(tmp_path: Path) -> None:
     animation = six_bar(73).animate(size=640, seconds=4)
     some = [pixels(animation.frame(k).svg, *(640, 640)) for k in range(0, 72, 12)]
-    whole = gif_module.gif(lambda k: some[k], len(some), 0.05, (640, 640), lambda done, total: None)
+    whole = gif_module.gif(gif_module.Frames(lambda k: some[k], len(some), 0.05, (640, 640)), lambda done, total: None)
     assert len(whole) / len(some) * 72 < 850_000
 
 
