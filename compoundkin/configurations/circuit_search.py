@@ -18,7 +18,7 @@ from compoundkin.configurations.chain_circuits import built, toggles_of
 from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit, Toggle
 from compoundkin.configurations.driver_range import range_of, starting_values
 from compoundkin.configurations.enumeration import AllModes, closed_redundant
-from compoundkin.configurations.routes import Route, located, route
+from compoundkin.configurations.routes import Route, located, place_of, route
 from compoundkin.configurations.segment_poses import SegmentPoses, Sweep
 from compoundkin.configurations.segments import Segments, chains_of
 from compoundkin.kinematics.configuration import Configuration
@@ -140,12 +140,7 @@ def circuits(
         placing = SegmentPoses(sweep, segments, design)
         found = built(placing, chains_of(segments), period)
         start = starting_configuration(solving_order, known, design)
-        place = None
-        if start is not None:
-            try:
-                place = located(placing, found, period, start)
-            except InvalidInput:
-                place = None
+        place = None if start is None else place_of(placing, found, period, start)
     consistent = good and not lost
     return Circuits(solving_order.structure, name, fixed, found, FRESH, consistent, place, period, placing)
 

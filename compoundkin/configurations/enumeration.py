@@ -42,14 +42,14 @@ HALVINGS = 40
 class AllModes:
     """The choice of all modes at once: the block has a leading axis for each group with several.
 
-    `modes[k]` are the names of the modes of group k, `expected[k]` their number over the complex numbers (0 unknown).
+    `modes[k]` are the names of the modes of group k, `possible[k]` their number over the complex numbers (0 unknown).
     """
 
     solving_order: SolvingOrder
     given: Inputs
     block: Block
     modes: dict[int, tuple[str, ...]] = field(default_factory=dict)
-    expected: dict[int, int] = field(default_factory=dict)
+    possible: dict[int, int] = field(default_factory=dict)
     certified: dict[int, Number] = field(default_factory=dict)
 
     @classmethod
@@ -82,14 +82,14 @@ class AllModes:
         states = np.moveaxis(states.reshape(*batch, *states.shape[-2:]), -2, 0)
         if not len(states):
             states = np.full((1, *states.shape[1:]), np.nan)
-        self._branch(solver.index, tuple(str(n + 1) for n in range(len(states))), found.expected)
+        self._branch(solver.index, tuple(str(n + 1) for n in range(len(states))), found.possible)
         self.certified[solver.index] = found.certified
         return equations_of(solver).state(bodies_at(states))
 
-    def _branch(self, k: int, names: tuple[str, ...], expected: int) -> None:
+    def _branch(self, k: int, names: tuple[str, ...], possible: int) -> None:
         """Give the block an axis for the modes of a group."""
         self._limited(len(names))
-        self.modes[k], self.expected[k] = names, expected
+        self.modes[k], self.possible[k] = names, possible
         self.block.shape = (len(names), *self.block.shape)
 
     def _limited(self, more: int) -> None:
@@ -126,12 +126,12 @@ class AllModes:
             found = self.block.world[link]
             return Pose.of(shaped(found.z.c[0]), shaped(found.u.c[0]))
 
-        possible = prod(self.expected.values())
+        kept = last(real)
         return Configurations(
             Named("link", tuple(self.block.world), pose),
-            last(real),
-            possible,
-            possible,
+            kept,
+            kept.sum(axis=-1),
+            prod(self.possible.values()),
             all(bool(np.all(found)) for found in self.certified.values()),
             self.solving_order.structure,
             {name: values[0] for name, values in self.given.drives.items()},

@@ -137,13 +137,26 @@ def _steps(links: Mapping[str, tuple[Number, Number]], size: float) -> Number:
 
 def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration) -> CircuitPlace:
     """Return the place of a configuration; raises InvalidInput where it lies on none of the circuits."""
-    sweep, segments = placing.sweep, placing.segments
+    sweep = placing.sweep
     if one.structure.mechanism != sweep.solving_order.structure.mechanism:
         raise InvalidInput(Problem("configuration", "it is one of another mechanism"))
     moved = [name for name, value in sweep.fixed.items() if abs(one.values[name] - value) > STANDING * (1 + abs(value))]
     if moved:
         what = f"{', '.join(moved)} stand elsewhere than in these circuits"
         raise InvalidInput(Problem("configuration", what, "find the circuits with these values of the other drivers"))
+    place = place_of(placing, circuits, period, one)
+    if place is None:
+        raise InvalidInput(
+            Problem("configuration", "it does not close, or lies on none of the circuits that were found")
+        )
+    return place
+
+
+def place_of(
+    placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration
+) -> CircuitPlace | None:
+    """Return the place of a configuration of the same mechanism; None where it lies on none of the circuits."""
+    sweep, segments = placing.sweep, placing.segments
     value = one.values[sweep.driver]
     shift = period * np.floor((value - np.min(segments.low)) / period) if period else 0.0
     candidates = [(row, value - s) for s in ((shift, shift + period, shift - period) if period else (0.0,))
@@ -156,7 +169,7 @@ def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float,
         best = int(np.argmin(np.nan_to_num(gaps, nan=np.inf)))
         if gaps[best] < MATCHED:
             return _place(circuits, int(rows[best]), float(s[best]), value)
-    raise InvalidInput(Problem("configuration", "it does not close, or lies on none of the circuits that were found"))
+    return None
 
 
 def _crossed(placing: SegmentPoses, s: float) -> list[int]:

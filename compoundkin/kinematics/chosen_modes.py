@@ -1,12 +1,14 @@
-"""What a call and a mechanism say of assembly modes: signs and numbers by link or by name, and hints."""
+"""What a call and a mechanism say of assembly modes: signs and numbers by link or by name, hints and drawings."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics.configuration import BETWEEN, ONLY, Configuration, label
 from compoundkin.kinematics.groups import GroupSolver
@@ -73,6 +75,44 @@ def _mode(solver: GroupSolver, text: str) -> int | None:
     if solver.is_numbered:
         return int(text) if text.strip().isdecimal() and int(text) > 0 else None
     return {"+": 1, "-": -1}.get(text)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Where a mechanism is shown, to which the nearest mode is chosen.
+
+    `source` is what shows it: `configuration`, `hint` or `drawing`. The drivers' values at which it is shown are read
+    off the `poses` of links, else off the points `beside` them.
+    """
+
+    source: str
+    points: Mapping[str, Number]
+    poses: Mapping[str, Pose]
+    beside: Mapping[str, Number]
+
+
+def shown_by(
+    solving_order: SolvingOrder,
+    modes: Mapping[str, int] | str | Configuration | None = None,
+    hint: Mapping[str, object] | None = None,
+) -> Shown:
+    """Return where a call shows the mechanism, else its drawing; a name of modes is one at the motion's first pose.
+
+    Raises InvalidInput for a configuration of another mechanism, and for hints that do not fit.
+    """
+    mechanism, relaxation = solving_order.structure.mechanism, solving_order.structure.relaxation
+    if isinstance(modes, Configuration) and list(modes.structure.mechanism.links) != list(mechanism.links):
+        raise InvalidInput(Problem("modes", "the configuration is one of another mechanism"))
+    hinted = read_hint(solving_order, hint)
+    if isinstance(modes, Configuration):
+        return Shown("configuration", modes.points, modes.poses, modes.points)
+    if hinted:
+        return Shown("hint", hinted, {}, {})
+    points = {**(relaxation.places if relaxation else {}), **mechanism.sketch}
+    if isinstance(modes, str):
+        return Shown("drawing", points, {}, {})
+    poses = relaxation.poses if relaxation and not mechanism.sketch else mechanism.geometry.drawn
+    return Shown("drawing", points, poses, mechanism.geometry.sketch)
 
 
 def read_hint(solving_order: SolvingOrder, hint: Mapping[str, object] | None) -> dict[str, Number]:

@@ -22,17 +22,18 @@ class Configurations(Shows):
     """All configurations of a group or a mechanism: arrays (..., m) over poses and, last, configurations.
 
     `bodies` are the poses (..., m) of a group's bodies by their numbers, or of a mechanism's links by their names; NaN
-    where there are fewer, and without a picture where they are not `real`. `count` (...) are found over the complex
-    numbers; `expected` is their number for generic dimensions (0 unknown), `exact` whether it is known by theory or
-    from a generic instance solved numerically. Those of a mechanism are kept where they are real somewhere; they have
-    their driver `values`, the `modes` of the groups of each, and the `margins` of the groups with signs.
+    where there are fewer, and without a picture where they are not `real`. `count` (...) are found: of a group over the
+    complex numbers, of a mechanism the real ones. `possible` is their number over the complex numbers for generic
+    dimensions (0 unknown). Where they are `certified` none is missing: closed forms, or as many were found as theory
+    knows. Those of a mechanism are kept where they are real somewhere; they have their driver `values`, the `modes` of
+    the groups of each, and the `margins` of the groups with signs.
     """
 
     bodies: Mapping[Any, Pose]
     real: Number
     count: Number
-    expected: int
-    exact: bool
+    possible: int
+    certified: Any
     of: Structure | None = None
     values: Mapping[str, Number] = field(default_factory=dict)
     modes: tuple[Mapping[int, str], ...] = ()
@@ -46,7 +47,7 @@ class Configurations(Shows):
             return np.moveaxis(np.broadcast_to(value, shape), 0, -1)
 
         poses = {k: Pose.of(last(pose.z.c[0]), last(pose.u.c[0])) for k, pose in enumerate(bodies)}
-        return cls(poses, last(real), np.full(shape[1:], shape[0]), shape[0], True)
+        return cls(poses, last(real), np.full(shape[1:], shape[0]), shape[0], np.full(shape[1:], True))
 
     @classmethod
     def of_states(cls, states: Number) -> Configurations:
@@ -54,7 +55,7 @@ class Configurations(Shows):
         theta, z = states[..., 2::3], states[..., 0::3] + 1j * states[..., 1::3]
         u, real = np.cos(theta) + 1j * np.sin(theta), np.isfinite(states).all(axis=-1)
         bodies = {k: Pose.of(z[..., k], u[..., k]) for k in range(z.shape[-1])}
-        return cls(bodies, real, real.sum(axis=-1), 0, False)
+        return cls(bodies, real, real.sum(axis=-1), 0, np.full(real.shape[:-1], False))
 
     @property
     def structure(self) -> Structure:
@@ -67,16 +68,6 @@ class Configurations(Shows):
     def shape(self) -> tuple[int, ...]:
         """The shape of the poses: for a mechanism of the driver values and dimensions."""
         return np.shape(self.real)[:-1]
-
-    @property
-    def certified(self) -> Any:
-        """Where no configuration is missing: closed forms, or as many were found as theory knows."""
-        return self.exact & (self.count == self.expected)
-
-    @property
-    def possible(self) -> int:
-        """How many there are over the complex numbers, for generic dimensions; 0 where that is not known."""
-        return self.expected
 
     @property
     def real_count(self) -> Number:

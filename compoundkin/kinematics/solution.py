@@ -13,7 +13,7 @@ from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, P
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
-from compoundkin.kinematics.chosen_modes import read_hint, signs_of
+from compoundkin.kinematics.chosen_modes import shown_by, signs_of
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
 from compoundkin.kinematics.driver_values import by_name, inputs, times_of
 from compoundkin.kinematics.inputs import Inputs
@@ -72,31 +72,30 @@ def solve(
     >>> solve(crank, {"crank": [0.0, np.pi / 2]}, speed=3.0).points["B"].velocity.xy.round(12).tolist()
     [[0.0, 6.0], [-6.0, 0.0]]
     """
-    if isinstance(order, bool) or not isinstance(order, int) or order not in range(HIGHEST_ORDER + 1):
-        raise InvalidInput(
-            Problem("order", f"{order!r} is not an order", "0 position, 1 velocity, 2 acceleration, 3 jerk")
-        )
+    _check_order(order)
     solving_order = solving_order_of(mechanism)
     with np.errstate(all="ignore"):
         values = by_name(solving_order.structure.mechanism, values)
         times = times_of(solving_order.structure.mechanism, values, time)
         given = inputs(solving_order, values, speed, acceleration, jerk, times, order)
-        start = _start(solving_order, modes)
-        named = isinstance(modes, str)
+        signs, shown = signs_of(solving_order, modes), shown_by(solving_order, modes, hint)
         with diagnosing(solving_order.structure):
-            tracker = Tracker(
-                solving_order, given, signs_of(solving_order, modes), read_hint(solving_order, hint), start, named
-            )
+            tracker = Tracker(solving_order, given, signs, shown)
         motion = replace(_settled(solving_order, tracker.given, tracker, order), time=times)
         if solving_order.structure.relaxation:
             check_redundant(motion)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
-        text = (
-            f"{missing} of {motion.failed.size} poses cannot be assembled: Motion.assembled masks them, gaps() explains"
-        )
-        warnings.warn(text, UnassembledPoses, stacklevel=2)
+        how_many = f"{missing} of {motion.failed.size} poses cannot be assembled"
+        warnings.warn(f"{how_many}: Motion.assembled masks them, gaps() explains", UnassembledPoses, stacklevel=2)
     return motion
+
+
+def _check_order(order: int) -> None:
+    """Raise InvalidInput for what is no order of derivatives."""
+    if isinstance(order, bool) or not isinstance(order, int) or order not in range(HIGHEST_ORDER + 1):
+        remedy = "0 position, 1 velocity, 2 acceleration, 3 jerk"
+        raise InvalidInput(Problem("order", f"{order!r} is not an order", remedy))
 
 
 def solving_order_of(mechanism: Mechanism | Structure) -> SolvingOrder:
@@ -114,15 +113,6 @@ def solving_order_of(mechanism: Mechanism | Structure) -> SolvingOrder:
             raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved{rank_diagnosis(structure)}")
         solving_order = owner.__dict__["_solving_order"] = SolvingOrder(structure)
     return solving_order
-
-
-def _start(solving_order: SolvingOrder, modes: Any) -> Configuration | None:
-    """Return the configuration that is given; raises InvalidInput for one of another mechanism."""
-    if not isinstance(modes, Configuration):
-        return None
-    if list(modes.structure.mechanism.links) != list(solving_order.structure.mechanism.links):
-        raise InvalidInput(Problem("modes", "the configuration is one of another mechanism"))
-    return modes
 
 
 def _settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> Motion:
@@ -161,7 +151,7 @@ def starting_configuration(
     """Return the configuration in which `solve` begins at these values; None where it does not close there."""
     given = inputs(solving_order, values, None, None, None)
     try:
-        tracker = Tracker(solving_order, given, signs_of(solving_order), {})
+        tracker = Tracker(solving_order, given, signs_of(solving_order), shown_by(solving_order))
     except NotAssembled:
         return None
     block = tracker.run(tracker.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))

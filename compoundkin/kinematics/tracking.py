@@ -11,7 +11,7 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import CLOSE, approach_path
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.first_pose import distance, first_state, shown
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
 from compoundkin.kinematics.group_paths import GroupPath, track
@@ -24,27 +24,11 @@ from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 class Tracker(PrintsShort):
     """Chooses and keeps the configuration of every group, for given inputs."""
 
-    def __init__(
-        self,
-        solving_order: SolvingOrder,
-        given: Inputs,
-        signs: Mapping[int, int],
-        hint: Mapping[str, Number],
-        start: Configuration | None = None,
-        from_first: bool = False,
-    ) -> None:
+    def __init__(self, solving_order: SolvingOrder, given: Inputs, fixed: Mapping[int, int], shown: Shown) -> None:
         self.solving_order = solving_order
         self.given = given
-        geometry = solving_order.structure.mechanism.geometry
-        relaxation = solving_order.structure.relaxation
-        known = relaxation.places if relaxation else {}
-        self.sketch = dict(hint) if hint else {**known, **solving_order.structure.mechanism.sketch}
-        self.drawn = geometry.drawn if not hint else {}
-        if relaxation and not hint and not solving_order.structure.mechanism.sketch:
-            self.drawn = relaxation.poses
-        if start is not None:
-            self.sketch, self.drawn = dict(start.points), start.poses
-        self.shown_by = "configuration" if start else "hint" if hint else "drawing"
+        self.fixed = fixed
+        self.shown = shown
         self.signs: dict[int, Number] = {}
         self.paths: dict[int, GroupPath] = {}
         self.approach_paths: dict[int, GroupPath] = {}
@@ -54,22 +38,16 @@ class Tracker(PrintsShort):
         # where along the approach path and the motion each group passes a change point, (designs, count), padded
         self.approach_flips: dict[int, Number] = {}
         self.flips: dict[int, Number] = {}
-        if from_first:
-            self.drawn = {}
-        sketch = {} if hint or from_first else geometry.sketch
-        self.approach_path, self.at, self.reference = approach_path(
-            solving_order, given, self.drawn, start.points if start else sketch
-        )
-        if solving_order.turning and geometry.drawn:
+        self.approach_path, self.at, self.reference = approach_path(solving_order, given, shown.poses, shown.beside)
+        if solving_order.turning and solving_order.structure.mechanism.geometry.drawn:
             first = self.approach_path.cut(slice(None), slice(0, 1))
             self.given, self.approach_path = recounted(solving_order, (given, self.approach_path), first)
-        self.fixed = signs
-        if self.sketch or solving_order.numbered or solving_order.turning:
+        if shown.points or solving_order.numbered or solving_order.turning:
             self.choose()
         else:
             for k in range(len(solving_order.solvers)):
-                self.signs[k] = signs.get(k, 1)
-                self.chosen_by[k] = "sign" if k in signs else "default"
+                self.signs[k] = fixed.get(k, 1)
+                self.chosen_by[k] = "sign" if k in fixed else "default"
 
     def run(
         self,
@@ -151,8 +129,8 @@ class _First:
             tracker.signs[k], tracker.chosen_by[k] = self._sign(block, solver)
             return tracker.signs[k]
         number = tracker.fixed.get(k)
-        state, by = first_state(tracker.solving_order, solver, block, tracker.sketch, number)
-        tracker.chosen_by[k] = tracker.shown_by if by == "drawing" else by
+        state, by = first_state(tracker.solving_order, solver, block, tracker.shown.points, number)
+        tracker.chosen_by[k] = tracker.shown.source if by == "drawing" else by
         tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, equations_of(solver), state)
         return state
 
@@ -166,7 +144,7 @@ class _First:
         tracker, solving_order = self.tracker, self.tracker.solving_order
         if solver.index in tracker.fixed or solver.modes == 1:
             return tracker.fixed.get(solver.index, 1), "sign" if solver.index in tracker.fixed else "only one"
-        letters = shown(solving_order, solver, tracker.sketch)
+        letters = shown(solving_order, solver, tracker.shown.points)
         closing = solving_order.closing(solver)
         if not letters and not closing:
             return 1, "default"
@@ -175,11 +153,11 @@ class _First:
             trial = block.copy()
             solver.close(trial, sign)
             cost.append(
-                residual(closing, trial) if closing else distance(solving_order, letters, tracker.sketch, trial)
+                residual(closing, trial) if closing else distance(solving_order, letters, tracker.shown.points, trial)
             )
         best = np.where(cost[1] < cost[0], -1.0, 1.0)
         chosen = float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
-        return chosen, "redundant" if closing else tracker.shown_by
+        return chosen, "redundant" if closing else tracker.shown.source
 
 
 def _parity(passed: Number) -> Number:

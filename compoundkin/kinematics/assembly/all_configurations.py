@@ -29,7 +29,7 @@ def all_configurations(geometry: GroupGeometry) -> Configurations:
 
     The real ones come first, ordered by the angles of the bodies one after another, in (-pi, pi].
 
-    Fewer than `expected` are found where, for special dimensions, some coincide or lie at infinity. Raises
+    Fewer than `possible` are found where, for special dimensions, some coincide or lie at infinity. Raises
     `InvalidInput` where the connections leave a body free or holds it twice. Work grows as the cube of C(2 l, l) for l
     loops.
 
@@ -46,24 +46,24 @@ def all_configurations(geometry: GroupGeometry) -> Configurations:
     batch_loops = rotation_equations_of(geometry)
     loops, graph = batch_loops.flat, geometry.graph()
     exact = exact_count(graph)
-    expected = homotopy.generic_count(graph) if exact is None else exact
-    if not expected:
+    possible = homotopy.generic_count(graph) if exact is None else exact
+    if not possible:
         what = "the bodies are not fixed in finitely many ways where pins or guides coincide as they do here"
         raise InvalidInput(Problem("connections", what, "place the pins of each body apart"))
-    x = _known(loops, graph, expected)
+    x = _known(loops, graph, possible)
     x, real = _real(loops, x)
     order = _order(loops, x, real)
     x, real = np.take_along_axis(x, order[..., None], axis=1), np.take_along_axis(real, order, axis=1)
-    there = np.isfinite(x).all(axis=-1)
     turns, origins = loops.bodies(x)
     batch = batch_loops.batch
     turns, origins = (v.reshape(*batch, *v.shape[1:]) for v in (turns, geometry.size * origins))
+    count = np.isfinite(x).all(axis=-1).sum(axis=-1).reshape(batch)[()]
     return Configurations(
         {body: Pose.of(origins[..., body], turns[..., body]) for body in range(geometry.n)},
         real.reshape(*batch, -1),
-        there.sum(axis=-1).reshape(batch)[()],
-        expected,
-        exact is not None,
+        count,
+        possible,
+        (count == possible) & (exact is not None),
     )
 
 

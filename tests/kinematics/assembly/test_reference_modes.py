@@ -70,8 +70,8 @@ def test_numbers_of_triads_with_slides():
     assert len(words) == 16
     for word in words:
         found = all_configurations(triad(word, np.random.default_rng(len(word))))
-        assert (found.expected, found.count) == (expected[word], expected[word]), word
-        assert found.exact == ("P" not in word)
+        assert (found.possible, found.count) == (expected[word], expected[word]), word
+        assert found.certified == ("P" not in word)
 
 
 def test_numbers_of_small_graphs():
