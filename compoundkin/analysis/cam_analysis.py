@@ -86,7 +86,10 @@ class CamAnalysis(Shows):
 
     @property
     def allowed_pressure_angle(self) -> float:
-        """The customary limit of the pressure angle. 30 degrees for a follower that translates, 35 for another one."""
+        """The customary limit of the pressure angle.
+
+        It is 30 degrees for a follower that translates, 35 for another one.
+        """
         return float(np.deg2rad(TRANSLATING if self.oscillates is False else OSCILLATING))
 
     @property

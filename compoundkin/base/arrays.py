@@ -18,7 +18,7 @@ TURN = 2.0 * np.pi
 
 
 def joined(x: Number, y: Number) -> Number:
-    """Join two parts to a complex number or array; twice as fast as ``x + 1j * y``, which converts both.
+    """Join two parts to a complex number or array. This is twice as fast as ``x + 1j * y``, which converts both.
 
     >>> joined(1.0, 2.0)
     (1+2j)
@@ -54,7 +54,7 @@ def cross(a: Number, b: Number) -> Number:
 
 
 def is_number(value: Number, number: int) -> bool:
-    """Tell whether a coefficient is a Python number of this value; an array never is, whatever its entries."""
+    """Tell whether a coefficient is a Python number of this value. An array never is, whatever its entries."""
     return isinstance(value, (float, complex, int)) and value == number
 
 
@@ -115,7 +115,7 @@ def whole_turns(angle: Number, turn: Number = TURN) -> Number:
 
 
 def turns_above(angle: Number, low: Number, turn: Number = TURN) -> Number:
-    """Return the turns by which an angle lies above the one that begins at `low`.
+    """Return the turns of an angle above the one that begins at `low`.
 
     >>> turns_above(np.array([-10.0, 350.0, 370.0]), 0.0, 360.0).tolist()
     [-360.0, 0.0, 360.0]
@@ -166,7 +166,7 @@ def first_entry(value: Number) -> Number:
 
 
 def column(value: Number, designs: int) -> Number:
-    """Return one number for each design at one pose, of a value that broadcasts with them.
+    """Return one number per design, at one pose. The value broadcasts with them.
 
     >>> column(2.0, 3).tolist()
     [2.0, 2.0, 2.0]
@@ -175,7 +175,7 @@ def column(value: Number, designs: int) -> Number:
 
 
 def row(value: Number, poses: int) -> Number:
-    """Return one number for each pose of one design, of a value that broadcasts with them.
+    """Return one number per pose, of one design. The value broadcasts with them.
 
     >>> row(np.array([[1.0]]), 2).tolist()
     [1.0, 1.0]

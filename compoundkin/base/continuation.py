@@ -16,7 +16,7 @@ from compoundkin.base.newton import NewtonResult, System, newton
 
 
 class StepLengths(NamedTuple):
-    """How long steps are: halved where one fails, doubled after `easy` successes in a row.
+    """The lengths of steps. One is halved where a step fails, doubled after `easy` successes in a row.
 
     A path is given up where its step falls to `shortest`, or after `most` steps of all.
     """
@@ -29,7 +29,7 @@ class StepLengths(NamedTuple):
 
 
 class Taken(NamedTuple):
-    """Steps of some paths: their lengths, whether they are good, and whether their paths have arrived."""
+    """The steps of some paths. Their lengths, whether they are good, and whether their paths have arrived."""
 
     length: Number
     good: Number
@@ -40,7 +40,7 @@ Step: TypeAlias = Callable[[Number, Number], Taken]
 
 
 def follow(step: Step, alive: Number, lengths: StepLengths) -> Number:
-    """Step along the paths that are `alive` until they arrive or fail; return which arrived.
+    """Step along the paths that are `alive` until they arrive or fail. Return which arrived.
 
     `step(i, h)` tries one step of the paths `i` (indices), of the lengths `h` or less, and keeps the good ones.
 
@@ -70,7 +70,7 @@ def follow(step: Step, alive: Number, lengths: StepLengths) -> Number:
 
 
 def runge_kutta(slope: Callable[[Number, Number], Number], x: Number, t: Number, h: Number) -> Number:
-    """Predict ``x(t + h)`` (paths, d) along dx/dt = slope(x, t) by the classical step of fourth order.
+    """Predict ``x(t + h)`` by the classical step of fourth order. The paths (paths, d) obey dx/dt = slope(x, t).
 
     >>> runge_kutta(lambda x, t: x, np.array([[1.0]]), np.zeros(1), np.array([0.1])).round(6).tolist()
     [[1.105171]]
@@ -84,7 +84,10 @@ def runge_kutta(slope: Callable[[Number, Number], Number], x: Number, t: Number,
 
 
 def corrected_across(system: System, guess: Number, across: Number, converged: float, steps: int) -> NewtonResult:
-    """Solve systems of d - 1 equations for d unknowns, in hyperplanes across a direction through guesses."""
+    """Solve d - 1 equations for d unknowns, in hyperplanes across a direction.
+
+    The hyperplanes go through the guesses.
+    """
 
     def closed(y: Number) -> tuple[Number, Number]:
         residual, matrix = system(y)
@@ -95,7 +98,7 @@ def corrected_across(system: System, guess: Number, across: Number, converged: f
 
 
 def tangent(matrix: Number, along: Number) -> tuple[Number, Number]:
-    """Return unit null vectors of matrices (paths, d - 1, d) along a direction, and sides of a singularity.
+    """Return unit null vectors along a direction, and sides of a singularity. The matrices are (paths, d - 1, d).
 
     >>> tangent(np.array([[[0.0, 2.0]]]), np.array([[-1.0, 0.0]]))[0].tolist()
     [[-1.0, 0.0]]

@@ -54,7 +54,10 @@ _PRINTED, _OF_PARTS, _OF_ALL = 4, 80, 400
 
 
 class PrintsShort:
-    """A dataclass that prints its arrays as their shapes, what is long as its length or its class."""
+    """A dataclass that prints in short.
+
+    It prints its arrays as their shapes, what is long as its length or its class.
+    """
 
     __slots__ = ()
 

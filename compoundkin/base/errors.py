@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong: its place, what it is, what is known there, how to mend it.
+    """The place and nature of one thing that is wrong. It also says what is known there, how to mend it.
 
     >>> print(Problem("drives[0].link", "there is no link 'crnk'", "did you mean 'crank'?"))
     drives[0].link: there is no link 'crnk'; did you mean 'crank'?
@@ -24,7 +24,7 @@ class Problem:
 
 
 class CompoundkinError(Exception):
-    """The root of every error compoundkin raises on purpose; `problems` lists all that was found.
+    """The root of every error compoundkin raises on purpose. `problems` lists all that was found.
 
     `exit_code` is what the command line answers with.
     """
@@ -74,7 +74,7 @@ class UnassembledPoses(UserWarning):
 
 
 def nearest(name: str, known: Sequence[str]) -> str:
-    """Return the remedy for an unknown name: the closest known one, or the list of what there is.
+    """Return the remedy for an unknown name. It is the closest known one, or the list of what there is.
 
     >>> nearest("crnk", ["crank", "rod"])
     "did you mean 'crank'?"

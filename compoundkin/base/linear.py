@@ -14,7 +14,7 @@ Row: TypeAlias = dict[int, Number]
 
 
 class Inverse:
-    """The inverse of a batch of matrices given by rows, for any number of right-hand sides.
+    """The inverse of a batch of matrices given by rows. It takes any number of right-hand sides.
 
     >>> halves = Inverse([{0: 2.0}, {1: 4.0}, {2: np.array([8.0, 0.0])}], 3)
     >>> [x.tolist() for x in halves.times([2.0, 4.0, 8.0])[2:]]
@@ -72,7 +72,7 @@ def stacked(rows: Sequence[Row], size: int) -> Number:
 
 
 def solve(matrix: Number, right: Number) -> Number:
-    """Solve a batch of linear systems; a singular one gives NaN instead of an error.
+    """Solve a batch of linear systems. A singular one gives NaN instead of an error.
 
     >>> solve(np.eye(2)[None] * 2.0, np.ones((1, 2))).tolist()
     [[0.5, 0.5]]

@@ -40,7 +40,7 @@ def newton(
     size: Callable[[Number, Number], Number] = largest,
     limited: Callable[[Number], Number] | None = None,
 ) -> NewtonResult:
-    """Solve square systems from many starts at once, until no step is larger than `converged`.
+    """Solve square systems from many starts at once. It goes on until no step is larger than `converged`.
 
     `size` measures a step at the unknowns that it led to; `limited` may shorten it before it is made. A start whose
     matrix is singular gets NaN, and holds up no other.
@@ -64,7 +64,7 @@ def newton(
 
 
 class ChordStop(NamedTuple):
-    """When chord steps stop, and how they are taken; steps are weighted, so that they are pure numbers.
+    """The rule by which chord steps are taken and stop. Steps are weighted, so that they are pure numbers.
 
     A start has `converged` where no unknown's last step was larger and no residual is above `closed`. After a step
     below `chord` the matrix has hardly changed and is used once more. No single step is longer than `longest`.
@@ -84,7 +84,9 @@ ListSystem: TypeAlias = Callable[[list[Number]], tuple[list[Number], Callable[[]
 def chord_newton(
     system: ListSystem, start: list[Number], weights: Number, stop: ChordStop
 ) -> tuple[list[Number], Number]:
-    """Solve square systems from many starts, each unknown an array of its own: the unknowns, and which converged.
+    """Solve square systems from many starts, each unknown an array of its own.
+
+    Return the unknowns, and which converged.
 
     For few unknowns this is much faster than `newton`, as no matrix is stacked and one serves several steps.
 
@@ -139,7 +141,7 @@ class Rest(NamedTuple):
 
 
 class Fitted(NamedTuple):
-    """The best that least-squares steps led to, its largest residual, and how many steps it took."""
+    """The best that least-squares steps led to. It has its largest residual, and how many steps it took."""
 
     x: Number
     residual: float
@@ -149,7 +151,7 @@ class Fitted(NamedTuple):
 def gauss_newton(
     system: System, step_of: Callable[[Number, Number], Number], start: Number, steps: int, rest: Rest
 ) -> Fitted:
-    """Reduce the residual of one system, of any rank, by Gauss's and Newton's steps; keep the best.
+    """Reduce the residual of one system, of any rank, by Gauss's and Newton's steps. Keep the best.
 
     `step_of(matrix, right)` is the least solution of the linear system, as far as it has one. A start whose residual is
     rounding already is taken as it is, with no step.

@@ -11,7 +11,7 @@ from compoundkin.base.series import Series, constant
 
 
 class End(NamedTuple):
-    """One link's side of a pair: a point; for a guide or its block the direction; a number that belongs to it.
+    """One link's side of a pair: a point. It has a direction for a guide or its block; a number that belongs to it.
 
     In a link's own frame point and direction are constants; in a driven composite link or in the world they are
     series. The `measure` is a radius, a number of teeth or a phase: the same in every frame.
@@ -32,7 +32,7 @@ class End(NamedTuple):
 
 
 class Pose(PrintsShort):
-    """A link's pose: origin `z` and orientation `u`, a unit vector; a point p of the link is at ``z + u p``.
+    """A link's pose: origin `z` and orientation `u`, a unit vector. A point p of the link is at ``z + u p``.
 
     `theta` is the angle of `u` where full turns are counted, None where only the orientation is known.
 
@@ -53,7 +53,7 @@ class Pose(PrintsShort):
         return cls(constant(z), constant(u))
 
     def at(self, p: Series | Number) -> Series:
-        """Return where the point that is `p` in the link's frame is in the world."""
+        """Return the place in the world of the link's point `p`. The point is given in the link's frame."""
         if isinstance(p, (complex, float, int)) and p == 0:
             return self.z
         if self is FIXED:
@@ -62,7 +62,7 @@ class Pose(PrintsShort):
 
     @property
     def angle(self) -> Series:
-        """The angle of its orientation: with full turns where they are counted, else between -pi and pi.
+        """The angle of its orientation. It has full turns where they are counted, else is between -pi and pi.
 
         >>> FIXED.angle.c
         (0.0,)
@@ -70,7 +70,7 @@ class Pose(PrintsShort):
         return self.u.angle() if self.theta is None else self.theta
 
     def counted(self, near: Number) -> Pose:
-        """Return the pose with full turns counted: its angle is the one nearest to `near`.
+        """Return the pose with full turns counted. Its angle is the one nearest to `near`.
 
         >>> Pose.of(0j, 1j).counted(8.0).angle.c[0].round(6)
         np.float64(7.853982)

@@ -170,7 +170,7 @@ class Series:
         return Series((np.angle(self.c[0]), *[rate / k for k, rate in enumerate(rates, 1)]))
 
     def turning(self) -> Series:
-        """Return the rate at which a unit vector turns, ``Im(conj(u) u')``, one order lower than the vector."""
+        """Return the rate at which a unit vector turns. It is ``Im(conj(u) u')``, one order lower than the vector."""
         u = self.c
         back = [x.conjugate() for x in u[: len(u) // 2]]
         out = []

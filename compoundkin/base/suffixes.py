@@ -36,7 +36,7 @@ WITHOUT: Mapping[Kind, str] = MappingProxyType({"page": "html", "report": "text"
 
 
 def form_of(kind: Kind, path: str | os.PathLike[str]) -> str:
-    """Return the form that a file's suffix tells; raises InvalidInput where such a thing is not saved so.
+    """Return the form that a file's suffix tells. Raises InvalidInput where such a thing is not saved so.
 
     >>> form_of("animation", "six-bar.GIF"), form_of("page", "six-bar")
     ('gif', 'html')
@@ -59,7 +59,7 @@ def everything() -> str:
 
 
 def suffix_of(path: str | os.PathLike[str]) -> str:
-    """Return the suffix of a file's name in small letters, empty where it has none."""
+    """Return the suffix of a file's name in small letters, or nothing."""
     return Path(path).suffix.lower()
 
 

@@ -96,7 +96,7 @@ SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 @click.group(cls=Verbs, epilog=EPILOG, context_settings=SETTINGS)
 @click.option("--version", is_flag=True, expose_value=False, is_eager=True, callback=_version, help="Show the version.")
 def cli() -> None:
-    """Takes compound planar mechanisms apart into Assur groups and solves them group by group.
+    """Take compound planar mechanisms apart into Assur groups and solve them group by group.
 
     Wherever a FILE is expected, the name of a shipped mechanism does too; `compoundkin catalog` lists them.
     """

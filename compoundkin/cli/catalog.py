@@ -47,7 +47,7 @@ def show(name: str) -> int:
 @click.argument("destination", required=False, type=click.Path())
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 def copy(name: str, destination: str | None, force: bool) -> int:
-    """Copy the file of a mechanism to DESTINATION (a file or a folder; here if left out), to change it."""
+    """Copy the file of a mechanism to DESTINATION, to change it. It is a file or a folder; here if left out."""
     from compoundkin.cli.mechanism_argument import write_new
     from compoundkin.files.shipped_mechanisms import path
 

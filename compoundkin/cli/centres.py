@@ -35,7 +35,7 @@ Examples:
 def command(
     file: str, at: tuple[str, ...], design: int, derivation: bool, form: str | None, path: str | None, **asked: Any
 ) -> int:
-    """Print the instant centres of every two links at one pose, and the velocities that follow from them.
+    """Print the instant centres of every two links at one pose. The velocities that follow from them are added.
 
     Primary centres, which pairs give, come first; then each secondary one with the two lines that give it.
     Exit code 3: the pose cannot be assembled.
@@ -62,7 +62,7 @@ def command(
 
 
 def solved_at_pose(structure: Structure, at: Sequence[str], asked: Mapping[str, Any], option: str = "--at") -> Motion:
-    """Return the motion at one pose, with velocities; raises InvalidInput for values that do not fit the drivers."""
+    """Return the motion at one pose, with velocities. Raises InvalidInput for values that do not fit the drivers."""
     from compoundkin.cli import typed_values
 
     driven = typed_values.of_pose(structure, at, option)

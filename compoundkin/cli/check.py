@@ -28,7 +28,7 @@ Examples:
 @drive_options
 @report_options
 def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
-    """Verify a motion in ways that do not use the formulas that solved it, and print a table of all findings.
+    """Verify a motion and print a table of all findings. It uses ways without the formulas that solved it.
 
     Exit code 3: some poses cannot be assembled; 4: a check failed, and the pair or link, its group and the pose
     where it is worst are named.

@@ -44,7 +44,7 @@ def command(
     form: str | None,
     path: str | None,
 ) -> int:
-    """Find all circuits that a driver moves a mechanism through: branches, limit positions, whether it turns fully.
+    """Find all circuits that a driver moves a mechanism through. Print branches, limits, whether it turns fully.
 
     On a circuit the mechanism gets from any configuration to any other without being taken apart. Limit positions are
     told with the group that comes to the end of its reach there. Exit code 3: the mechanism cannot be assembled.

@@ -23,7 +23,7 @@ Examples:
 @AT
 @report_options
 def command(file: str, at: tuple[str, ...], form: str | None, path: str | None) -> int:
-    """List all configurations of a mechanism at one pose: how many of how many possible, their names and angles.
+    """List all configurations of a mechanism at one pose. It says how many of how many possible, names and angles.
 
     A name of the list chooses a configuration in Python: solve(..., modes="..."). Exit code 3: there is none.
     """

@@ -52,7 +52,7 @@ LABELS = click.option("--labels/--no-labels", default=True, help="Letters at poi
 
 
 def drive_options(command: F) -> F:
-    """Add the options of a command that solves a mechanism; values in degrees or lengths."""
+    """Add the options of a command that solves a mechanism. Values are degrees or lengths."""
     for option in reversed(OPTIONS):
         command = option(command)
     return command
@@ -75,7 +75,7 @@ def names(given: Sequence[str]) -> tuple[str, ...]:
 
 
 def solved(structure: Structure, asked: Mapping[str, Any]) -> Motion:
-    """Return the motion that the options ask for; what cannot be assembled is said on stderr.
+    """Return the motion that the options ask for. What cannot be assembled is said on stderr.
 
     Raises InvalidInput for options that do not fit the mechanism, and whatever `solve` raises.
     """

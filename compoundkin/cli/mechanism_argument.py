@@ -35,7 +35,7 @@ def mechanism_argument(command: F) -> F:
 
 
 def loaded(file: str) -> Mechanism:
-    """Load the mechanism of a file or of a name; raises what is wrong with it."""
+    """Load the mechanism of a file or of a name. Raises what is wrong with it."""
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.files import load
     from compoundkin.files.shipped_mechanisms import resolve
@@ -47,7 +47,7 @@ def loaded(file: str) -> Mechanism:
 
 
 def write_new(path: Path, content: bytes, force: bool) -> None:
-    """Write a file; raises InvalidInput where there is one already, unless forced, or it cannot be written."""
+    """Write a file. Raises InvalidInput where there is one already, unless forced, or it cannot be written."""
     from compoundkin.files.atomic import write_atomically
 
     if path.exists() and not force:

@@ -76,7 +76,7 @@ Examples:
 @click.argument("path", type=click.Path(), default="mechanism.toml")
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 def command(path: str, force: bool) -> int:
-    """Write a commented mechanism file (a four-bar linkage) to PATH, to be changed into your own."""
+    """Write a commented mechanism file to PATH, to be changed into your own. It has a four-bar linkage."""
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.base.suffixes import suffix_for, suffix_of
     from compoundkin.cli.mechanism_argument import write_new

@@ -25,7 +25,7 @@ Examples:
 @asking_options
 @click.option("-o", "--to-file", "path", metavar="PATH", help="Write the page here; else to a temporary file.")
 def command(file: str, path: str | None, **asked: Any) -> int:
-    """Show the report of a mechanism in the browser: one page with the moving sketch, plots and tables.
+    """Show the report of a mechanism in the browser. It is one page with the moving sketch, plots and tables.
 
     The page is a file that needs no network and no server. Exit codes are those of `report`.
     """

@@ -66,7 +66,7 @@ Examples:
     "-o", "--to-file", "path", metavar="PATH", help=f"Write a {alternatives('plot')} file; SVG on stdout if left out."
 )
 def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: Any) -> int:
-    """Draw quantities of a motion: over its driver, over time, against each other, or as curves in the plane.
+    """Draw quantities of a motion. They go over its driver, over time, against each other, or as curves in the plane.
 
     QUANTITY is such as G.velocity, G.velocity.x, bar.angle, slot.rate; with --path a point. Without any, the file's own
     outputs. What cannot be assembled is shaded; stderr says why, and the exit code is 3.

@@ -15,7 +15,7 @@ REFRESH = 0.5
 
 @contextmanager
 def working(what: str, patience: float = PATIENCE) -> Iterator[None]:
-    """Say what is being done and for how long, on stderr, once it takes long and if that is a terminal.
+    """Say what is being done and for how long, on stderr. It says so once it takes long and if that is a terminal.
 
     >>> with working("counting"):
     ...     sum(range(3))
@@ -50,7 +50,7 @@ def _tick(what: str, patience: float, done: threading.Event) -> None:
 
 @contextmanager
 def counting(what: str, things: str, patience: float = PATIENCE) -> Iterator[Callable[[int, int], None]]:
-    """Yield a function to be told how much is done, of how much; it shows a bar on stderr as `working` shows a line.
+    """Yield a function to be told how much is done, of how much. It shows a bar on stderr as `working` shows a line.
 
     >>> with counting("drawing", "frames") as progress:
     ...     progress(1, 2)

@@ -44,7 +44,7 @@ Examples:
 @asking_options
 @report_options
 def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
-    """Report a mechanism: its structure, its motion over the cycle, the checks, and published numbers.
+    """Report a mechanism. It covers its structure, motion over the cycle, the checks, and published numbers.
 
     Angles are in degrees and lengths in the unit of the file. An .html file is a page with the moving sketch and plots.
     Exit code 3: some poses cannot be assembled; 4: a check failed or a published number was not reproduced.
@@ -55,7 +55,7 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
 
 
 def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, bool]:
-    """Return the report of a mechanism, and whether every pose that was asked for is assembled."""
+    """Return the report of a mechanism, and whether every asked pose is assembled."""
     from dataclasses import replace
 
     from compoundkin.cli.progress import working

@@ -14,7 +14,7 @@ Example:
 """
 )
 def command() -> int:
-    """Print the JSON Schema of mechanism files; editors check and complete TOML and JSON with it."""
+    """Print the JSON Schema of mechanism files. Editors check and complete TOML and JSON with it."""
     import json
 
     from compoundkin.files import schema

@@ -24,7 +24,7 @@ class NotWritten(CompoundkinError):
 
 
 def guarded(run: Callable[[], Any]) -> NoReturn:
-    """Run a command and exit: with its code, or with a message and the code of what went wrong."""
+    """Run a command and exit. Exit with its code, or with a message and the code of what went wrong."""
     try:
         code = run()
     except click.ClickException as error:
@@ -90,7 +90,7 @@ def has_colour(stream: Any) -> bool:
 
 
 def width() -> int:
-    """Return the width of a report: the terminal's within bounds, 80 where there is none."""
+    """Return the width of a report. It is the terminal's within bounds, 80 where there is none."""
     if not sys.stdout.isatty():
         return WIDTH
     return max(NARROWEST, min(WIDEST, shutil.get_terminal_size((WIDTH, 24)).columns))

@@ -29,7 +29,7 @@ Examples:
 @drive_options
 @click.option("-o", "--to-file", "path", metavar="PATH", help=f"Write a table here: {alternatives('table')}.")
 def command(file: str, path: str | None, **asked: Any) -> int:
-    """Solve a mechanism and print a table: a row per pose, a column per quantity (CSV).
+    """Solve a mechanism and print a table (CSV). It has a row per pose, a column per quantity.
 
     Without --output, everything there is. Angles are in degrees in CSV and JSON, in radians in NPZ and Parquet.
     Where a pose cannot be assembled its numbers are nan (null in JSON); stderr says why, and the exit code is 3.

@@ -55,7 +55,7 @@ def of_times(text: str | None) -> Number | None:
 
 
 def of_pose(structure: Structure, given: Sequence[str], option: str = "--at") -> dict[str, float]:
-    """Return one value of every driver, radians or lengths: the one given, else the first of its own range."""
+    """Return one value of every driver, radians or lengths. It is the one given, else the first of its own range."""
     names = [drive.name for drive in structure.mechanism.drives]
     if len(names) > 1 and any("=" not in text for text in given):
         raise _wrong(option, f"there are {len(names)} drivers", f"write NAME=VALUE, NAME one of {', '.join(names)}")
@@ -118,7 +118,10 @@ def number(text: str, where: str, how: str = HOW) -> float:
 
 
 def stepped(start: float, stop: float, step: float, where: str) -> Number:
-    """From start to stop in steps; raises InvalidInput where the step leads elsewhere or is too small."""
+    """Return the values from start to stop in steps.
+
+    Raises InvalidInput where the step leads elsewhere or is too small.
+    """
     if not all(map(isfinite, (start, stop, step))) or step == 0 or (stop - start) * step < 0:
         raise _wrong(where, f"steps of {step:g} do not lead from {start:g} to {stop:g}")
     found = spaced(start, stop, step)

@@ -137,7 +137,7 @@ class _Maker:
 
 
 def toggles_of(placing: SegmentPoses, circuits: tuple[Circuit, ...]) -> tuple[Toggle, ...]:
-    """Return all toggle positions, by circuit and branch, in the order in which the circuit passes them."""
+    """Return all toggle positions, by circuit and branch. They are in the order in which the circuit passes them."""
     found: dict[int, list[tuple[float, Toggle]]] = {}
     with np.errstate(all="ignore"):
         for link, pair in _on_frame(placing):

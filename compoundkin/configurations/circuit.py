@@ -10,7 +10,7 @@ from compoundkin.kinematics.configuration import Configuration
 
 @dataclass(frozen=True, eq=False)
 class Limit:
-    """A limit position (driver dead point): where the driver turns back, for a group comes to the end of its reach.
+    """A limit position (driver dead point). There the driver turns back, for a group comes to the end of its reach.
 
     `value` is the driver's (radians between -pi and pi, or a length), `greatest` whether the driver comes from lesser
     values. `group` is the index of the group responsible, `links` are its links. Of `branches` that meet there the
@@ -28,7 +28,7 @@ class Limit:
 
 @dataclass(frozen=True, eq=False)
 class ChangePoint:
-    """Where two modes of a group meet while the motion goes on: from there it may go on in either of them."""
+    """A place where two modes of a group meet. The motion goes on, from there in either of them."""
 
     value: float
     group: int
@@ -40,7 +40,7 @@ class ChangePoint:
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """A part of a circuit between turning points of the driver: one configuration for each driver value.
+    """A part of a circuit between turning points of the driver. It has one configuration for each driver value.
 
     `low` and `high` bound the driver's value; of a branch that turns fully they are one or more full turns apart.
     `ends` are the limit positions at both, None where the branch ends otherwise, which `open_ends` tell: at the end of
@@ -89,7 +89,7 @@ class Circuit:
 
 @dataclass(frozen=True)
 class CircuitPlace:
-    """Where a configuration lies: the numbers of its circuit and branch, and the driver's value."""
+    """The place of a configuration. It has the numbers of its circuit and branch, and the driver's value."""
 
     circuit: int
     branch: int
@@ -100,7 +100,7 @@ class CircuitPlace:
 
 @dataclass(frozen=True, eq=False)
 class Toggle:
-    """A toggle position: where a link on the frame stands still and turns back while the driver goes on."""
+    """A toggle position. There a link on the frame stands still and turns back while the driver goes on."""
 
     value: float
     link: str

@@ -70,7 +70,7 @@ class Circuits(Shows):
 
     @cached_property
     def toggles(self) -> tuple[Toggle, ...]:
-        """Where links on the frame stand still and turn back while the driver goes on."""
+        """The places where links on the frame turn back. They stand still there while the driver goes on."""
         return toggles_of(self.placing, self.circuits)
 
     def at(self, configuration: Configuration) -> CircuitPlace:
@@ -81,7 +81,7 @@ class Circuits(Shows):
         return located(self.placing, self.circuits, self.period, configuration)
 
     def path(self, start: Configuration | int, end: Configuration | int, poses: int = 200) -> Route:
-        """Return the shorter way along a circuit from one configuration, or the middle of a branch, to another.
+        """Return the shorter way along a circuit between configurations. It may start in the middle of a branch.
 
         Raises InvalidInput where they lie on different circuits.
         """

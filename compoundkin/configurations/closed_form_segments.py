@@ -28,14 +28,14 @@ STEPS = 60
 
 
 class Event(NamedTuple):
-    """A zero of the margin at an angle along a segment; `touching` where it does not change sign."""
+    """A zero of the margin at an angle along a segment. It is `touching` where the sign does not change."""
 
     phi: float
     touching: bool
 
 
 class Cut(NamedTuple):
-    """A segment of the lifted curve: its parent row, its angles there, its ends (None: the parent's), its sign."""
+    """A segment of the lifted curve. Its parent row, its angles there, its ends (None: the parent's), its sign."""
 
     parent: int
     first: float
@@ -46,7 +46,10 @@ class Cut(NamedTuple):
 
 
 def lifted(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> Segments:
-    """The segments of the first `k` groups and group `k`, of one mode or two; cells are divided by `fineness`."""
+    """Return the segments of the first `k` groups and group `k`.
+
+    The group is of one mode or two; cells are divided by `fineness`.
+    """
     margins = _Margins(sweep, segments, k, CELLS * fineness)
     events = _events(margins)
     modes = (1, -1) if sweep.solving_order.solvers[k].modes == 2 else (1,)

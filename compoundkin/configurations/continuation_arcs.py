@@ -34,7 +34,7 @@ MOST_TRIALS = 40
 
 @dataclass
 class ContinuationArc:
-    """A path from a slice: its states from start to end; `turns` are the indices of turning points among them.
+    """A path from a slice: its states from start to end. `turns` are the indices of turning points among them.
 
     `end` is the slice at which it arrives, None where it was lost. `changes` counts the change points passed.
     """
@@ -46,7 +46,7 @@ class ContinuationArc:
 
 
 class ContinuationPaths:
-    """Paths in strips: `slices` are the angles, `at` the slice where each begins and `ahead` +1 or -1."""
+    """Paths in strips. `slices` are the angles, `at` the slice where each begins and `ahead` +1 or -1."""
 
     def __init__(self, closure: SegmentClosure, rows: Number, y: Number, at: Number, ahead: Number, slices: Number):
         self.closure, self.rows, self.slices = closure, rows, slices

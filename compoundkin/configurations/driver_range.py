@@ -34,7 +34,9 @@ BEYOND = 1.25
 
 
 def range_of(sweep: Sweep, between: Sequence[float] | None, start: float) -> tuple[Segments, float]:
-    """The segment of the driver alone, and the period of its value (0 where it has none); `start` is one of its values.
+    """Return the segment of the driver alone, and its value's period.
+
+    The period is 0 where it has none; `start` is one of its values.
 
     Raises InvalidInput for a range that is none, and for gears whose turns cannot be told.
     """
@@ -63,7 +65,7 @@ def _checked(between: Sequence[float]) -> tuple[float, float]:
 
 
 def reach_of(solving_order: SolvingOrder) -> float:
-    """A length that no displacement of links that are pinned to one another exceeds: the sum of their extents."""
+    """Return a length that no displacement of pinned links exceeds. It is the sum of the links' extents."""
     points = solving_order.structure.mechanism.geometry.points.values()
     return float(sum(_extent(list(placed.values())) for placed in points)) or solving_order.size
 
@@ -127,7 +129,7 @@ def _apart(sweep: Sweep, one: Number, other: Number) -> Number:
 
 
 def starting_values(solving_order: SolvingOrder, values: Mapping[str, Any], moved: str) -> dict[str, float]:
-    """Return one value of each driver: that given, else where it is drawn, else the first of its own.
+    """Return one value of each driver. It is that given, else where it is drawn, else the first of its own.
 
     Raises InvalidInput for names that are no driver's, and values that are no single number.
     """

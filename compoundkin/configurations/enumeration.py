@@ -40,7 +40,7 @@ HALVINGS = 40
 
 @dataclass
 class AllModes:
-    """The choice of all modes at once: the block has a leading axis for each group with several.
+    """The choice of all modes at once. The block has a leading axis for each group with several.
 
     `modes[k]` are the names of the modes of group k, `possible[k]` their number over the complex numbers (0 unknown).
     """
@@ -62,7 +62,7 @@ class AllModes:
         return found
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
-        """Return all modes of a group, along an axis of their own where there are several."""
+        """Return all modes of a group. They are along an axis of their own where there are several."""
         if solver.modes == 1:
             return 1.0
         if solver.is_numbered:
@@ -99,7 +99,10 @@ class AllModes:
             raise InvalidInput(Problem("configurations", what, "ask for a part of the mechanism"))
 
     def full(self, array: Number) -> Number:
-        """An array of any of the leading axes as (configurations, designs, poses), the first group varying slowest."""
+        """Return an array of any of the leading axes as (configurations, designs, poses).
+
+        The first group varies slowest.
+        """
         axes = [len(modes) for modes in self.modes.values()]
         whole = np.broadcast_to(array, self.block.shape)
         count = len(axes)
@@ -112,7 +115,7 @@ class AllModes:
         return self.full((np.asarray(self.block.failed) == 0) & closed)
 
     def kept(self, real: Number, shape: tuple[int, ...]) -> Configurations:
-        """Return those of the configurations that are `real` somewhere, with the driver values in a shape."""
+        """Return the configurations that are `real` somewhere. They come with the driver values in a shape."""
         which = np.flatnonzero(real.any(axis=(1, 2)))
         every = [dict(zip(self.modes, names, strict=True)) for names in product(*self.modes.values())]
 
@@ -141,13 +144,15 @@ class AllModes:
 
 
 def closed_redundant(solving_order: SolvingOrder, block: Block) -> Number:
-    """Where the pairs that are left out as redundant are closed: not all configurations of the others close them."""
+    """Tell where the pairs left out as redundant are closed. Not all configurations of the others close them."""
     pairs = solving_order.structure.redundant
     return residual(pairs, block) <= (CLOSED * solving_order.size) ** 2 if pairs else True
 
 
 def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] | None = None) -> Configurations:
-    """All configurations of a mechanism at driver values (radians or lengths; arrays; those of `solve` if left out).
+    """Find all configurations of a mechanism at driver values.
+
+    These are radians or lengths; arrays; those of `solve` if left out.
 
     Groups of pins and slides give all their configurations; others those that a search finds, so that `certified` is
     False. Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,

@@ -18,7 +18,7 @@ from compoundkin.kinematics.configuration_arrays import state_distance
 
 @dataclass(frozen=True)
 class CurvePiece:
-    """A part of the lifted curve between turning points or ends of the parent segment, by increasing angle.
+    """A part of the lifted curve, by increasing angle. It lies between turning points or ends of the parent segment.
 
     `y` are states with the angle last; `before` and `after` the numbers of the pieces that are glued to its ends at
     turning points, NONE at ends of the parent.
@@ -31,7 +31,10 @@ class CurvePiece:
 
 
 def lifted(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> tuple[Segments, int]:
-    """The segments of the first `k` groups and group `k`, slices `fineness` times as dense; how many arcs were lost."""
+    """Return the segments up to group `k`; how many arcs were lost.
+
+    They are those of the first `k` groups and group `k`, slices `fineness` times as dense.
+    """
     roadmap = Roadmap(SegmentClosure(sweep, segments, k), STRIPS * fineness)
     pieces: list[CurvePiece] = []
     seen: set[tuple[int, int, int]] = set()

@@ -26,7 +26,7 @@ ROUNDS = 6
 
 
 class Port(NamedTuple):
-    """A way out of a configuration: the row of the segment, the slice, the number there, +1 ahead or -1 back."""
+    """A way out of a configuration. The row of the segment, the slice, the number there, +1 ahead or -1 back."""
 
     row: int
     slice: int
@@ -40,7 +40,7 @@ class Port(NamedTuple):
 
 
 class Roadmap:
-    """The configurations at all slices and the arcs between them; `lost` counts arcs that ended nowhere."""
+    """The configurations at all slices and the arcs between them. `lost` counts arcs that ended nowhere."""
 
     def __init__(self, closure: SegmentClosure, strips: int) -> None:
         self.closure = closure

@@ -24,7 +24,7 @@ STANDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Route:
-    """Poses in order along a circuit: `values` of the driver (poses,), `links` the poses of all links.
+    """Poses in order along a circuit. `values` of the driver (poses,), `links` the poses of all links.
 
     `along` is the arc length travelled at each pose: of all links, parts of the mechanism's size and radians together.
     `branches` are the numbers of the branches passed, in order.
@@ -46,7 +46,7 @@ class Route:
 
 @dataclass(frozen=True)
 class RouteLeg:
-    """A segment passed from one angle to another; 0 is the low end, pi the high one."""
+    """A segment passed from one angle to another. Of the angles, 0 is the low end, pi the high one."""
 
     visit: Visit
     start: float
@@ -136,7 +136,7 @@ def _steps(links: Mapping[str, tuple[Number, Number]], size: float) -> Number:
 
 
 def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration) -> CircuitPlace:
-    """Return the place of a configuration; raises InvalidInput where it lies on none of the circuits."""
+    """Return the place of a configuration. Raises InvalidInput where it lies on none of the circuits."""
     sweep = placing.sweep
     if one.structure.mechanism != sweep.solving_order.structure.mechanism:
         raise InvalidInput(Problem("configuration", "it is one of another mechanism"))
@@ -155,7 +155,7 @@ def located(placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float,
 def place_of(
     placing: SegmentPoses, circuits: tuple[Circuit, ...], period: float, one: Configuration
 ) -> CircuitPlace | None:
-    """Return the place of a configuration of the same mechanism; None where it lies on none of the circuits."""
+    """Return the place of a configuration of the same mechanism. It is None where it lies on none of the circuits."""
     sweep, segments = placing.sweep, placing.segments
     value = one.values[sweep.driver]
     shift = period * np.floor((value - np.min(segments.low)) / period) if period else 0.0

@@ -24,7 +24,7 @@ BESIDE = 1e-5
 
 @dataclass(frozen=True)
 class SegmentClosure:
-    """The equations of group `k`, which has no closed form, on segments of the groups before it."""
+    """The equations of group `k` on segments of the groups before it. The group has no closed form."""
 
     sweep: Sweep
     segments: Segments
@@ -47,7 +47,10 @@ class SegmentClosure:
         return np.tile([1.0 / size, 1.0 / size, 1.0], self.own.n)
 
     def at(self, rows: Number, y: Number) -> tuple[Number, Number]:
-        """The residuals (paths, 3 n) and their Jacobian (paths, 3 n, 3 n + 1), at states `y` of segments `rows`."""
+        """Return the residuals and their Jacobian at states of segments.
+
+        These are (paths, 3 n) and (paths, 3 n, 3 n + 1), the states `y`, the segments `rows`.
+        """
         phi = np.clip(y[:, -1], BESIDE, np.pi - BESIDE)[:, None]
         block = self.block(rows, phi, self.segments.rate(rows, phi))
         found, by_angle, matrix = self._assembled(y, block)
@@ -66,7 +69,7 @@ class SegmentClosure:
         return self.sweep.run(self.segments, rows, self.segments.at(rows, phi), rate, sides, self.k)
 
     def blocks(self, phi: Number) -> Block:
-        """Return what it is attached to on all segments, at angles from one end to the other."""
+        """Return what it is attached to on all segments. The angles go from one end to the other."""
         sides = np.full(len(phi), NONE)
         sides[0], sides[-1] = 0, 1
         return self.block(np.arange(self.segments.rows), phi[None], None, sides)

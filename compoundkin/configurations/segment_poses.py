@@ -23,7 +23,7 @@ from compoundkin.model.pairs.contract import Ends
 
 @dataclass(frozen=True, repr=False)
 class Sweep(PrintsShort):
-    """A solving order, the dimensions of one design, the values of all drivers but one."""
+    """A solving order with one design and all driver values but one. The design gives the dimensions."""
 
     solving_order: SolvingOrder
     ends: Mapping[str, Ends]
@@ -31,7 +31,10 @@ class Sweep(PrintsShort):
     driver: str
 
     def start(self, s: Number, rate: Number | None = None) -> Block:
-        """The frame and the driven links at driver values, with their derivatives by whatever `rate` is taken by."""
+        """Return the frame and the driven links at driver values.
+
+        Their derivatives are by whatever `rate` is taken by.
+        """
         moving = constant(s) if rate is None else Series((s, rate))
         drives = {name: constant(value) for name, value in self.fixed.items()}
         drives[self.driver] = moving
@@ -46,7 +49,10 @@ class Sweep(PrintsShort):
         sides: Number | None = None,
         upto: int | None = None,
     ) -> Block:
-        """Segments `rows` at driver values `s` (rows, columns), up to a group; `sides` says which columns are ends."""
+        """Return segments `rows` at driver values, up to a group.
+
+        The values are `s` (rows, columns); `sides` says which columns are ends.
+        """
         return run(
             self.solving_order, self.start(s, rate), _OnSegments(self.solving_order, segments, rows, s, sides), upto
         )
@@ -76,7 +82,7 @@ class _OnSegments:
 
 
 def drawn_angle(solving_order: SolvingOrder, link: str) -> Number:
-    """Return the drawn angle of a link, from which its full turns count; 0 where it is not drawn."""
+    """Return the drawn angle of a link, from which its full turns count. It is 0 where the link is not drawn."""
     drawn = solving_order.structure.mechanism.geometry.drawn.get(link)
     return 0.0 if drawn is None else drawn.angle.c[0]
 
@@ -90,7 +96,7 @@ class SegmentPoses(PrintsShort):
     design: int
 
     def run(self, rows: Number, s: Number, sides: Number | None = None) -> Block:
-        """Segments at one driver value each, which is their low (0) or high (1) end where `sides` say so."""
+        """Return segments at one driver value each. It is their low (0) or high (1) end where `sides` say so."""
         return self.sweep.run(self.segments, rows, s[:, None], sides=None if sides is None else sides[:, None])
 
     def configurations(self, rows: Number, s: Number, sides: Number | None = None) -> list[Configuration]:
@@ -141,7 +147,10 @@ class SegmentPoses(PrintsShort):
 
 
 def gap_between(one: Configuration, block: Block, rows: int, size: float) -> Number:
-    """Return how far each of `rows` segments is from a configuration: parts of the size, radians; the farthest link."""
+    """Return how far each of `rows` segments is from a configuration.
+
+    It is in parts of the size, radians; the farthest link counts.
+    """
     found = np.zeros(rows)
     for name, pose in one.poses.items():
         z = column(block.world[name].z.c[0] - pose.z.c[0], rows)

@@ -25,7 +25,7 @@ TOUCHING = 1e-12
 
 @dataclass(frozen=True)
 class SegmentCurve:
-    """The states of a group's bodies along a segment: x, y, theta of each at `nodes`, angles from 0 to pi.
+    """The states of a group's bodies along a segment. They are x, y, theta of each at `nodes`, angles from 0 to pi.
 
     By that angle `low` and `high` are the ends of a half circle, so that states are smooth at limit positions.
     """
@@ -77,7 +77,7 @@ class Segments:
         return len(self.low)
 
     def at(self, rows: Number, phi: Number) -> Number:
-        """The driver's values at angles: 0 is the low end, pi the high one; `phi` broadcasts with a column of rows."""
+        """Return the driver's values at angles, 0 (low end) to pi. `phi` broadcasts with a column of rows."""
         low, high = self.low[rows][:, None], self.high[rows][:, None]
         half, cosine = (high - low) / 2.0, np.cos(phi)
         return np.where(cosine > 0, low + half * (1.0 - cosine), high - half * (1.0 + cosine))
@@ -87,7 +87,7 @@ class Segments:
         return ((self.high - self.low)[rows][:, None]) * np.sin(phi) / 2.0
 
     def sign(self, k: int, rows: Number, sides: Number | None) -> Number:
-        """The mode of a group, a column; zero where `sides` (0 low, 1 high, NONE inside) say that its limit is meant.
+        """Return a group's mode, a column. Zero: by `sides` (0 low, 1 high, NONE inside) its limit is meant.
 
         They are those of the columns (columns,), or of every place (rows, columns).
         """
@@ -127,7 +127,7 @@ def driver_segment(low: float, high: float, periodic: bool) -> Segments:
 
 @dataclass(frozen=True)
 class Visit:
-    """A segment as a chain passes it: its row, +1 from the low end to the high one, and how many periods are added."""
+    """A segment as passed: its row, direction (+1 low to high), periods added."""
 
     row: int
     sense: int
@@ -146,7 +146,7 @@ class Visit:
 
 @dataclass(frozen=True)
 class SegmentChain:
-    """The segments of a circuit in order; `closed` where the last one leads to the first."""
+    """The segments of a circuit in order. `closed` where the last one leads to the first."""
 
     visits: tuple[Visit, ...]
     closed: bool

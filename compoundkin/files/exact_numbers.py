@@ -34,7 +34,9 @@ def plain(value: Number) -> Any:
 
 
 def degrees(radians: Number) -> Any:
-    """Degrees from which `numpy.deg2rad` makes exactly these radians, or ``{"rad": ...}`` where none do.
+    """Return degrees that make exactly these radians by `numpy.deg2rad`.
+
+    They are ``{"rad": ...}`` where there are none.
 
     >>> degrees(np.deg2rad(35.0)), degrees(np.deg2rad([0.0, 0.1]))
     (35, [0, 0.1])
@@ -114,7 +116,7 @@ def _from_rpm(rpm: float) -> float:
 
 
 def point(value: Number) -> Any:
-    """``[x, y]``, or ``{"polar": [radius, degrees]}`` where that is shorter and exact.
+    """Return ``[x, y]`` or its shorter form ``{"polar": [radius, degrees]}`` where exact.
 
     >>> point(3 + 0.5j), point(polar(15, np.deg2rad(35)))
     ([3, 0.5], {'polar': [15, 35]})

@@ -38,7 +38,7 @@ RPM = np.pi / 30.0
 
 
 def coordinate(value: Any, where: str, angle: bool | None) -> Number:
-    """Degrees or ``{rad = ...}`` as radians if it is an angle; lengths otherwise."""
+    """Read degrees or ``{rad = ...}`` as radians if it is an angle. Other values are lengths."""
     if isinstance(value, dict):
         return numbers(_unit(value, where, ("rad",), angle)[1], f"{where}.rad")
     out = numbers(value, where)
@@ -46,7 +46,7 @@ def coordinate(value: Any, where: str, angle: bool | None) -> Number:
 
 
 def degrees(value: Any, where: str, angle: bool | None = True) -> Number:
-    """Degrees or ``{rad = ...}`` as radians.
+    """Read degrees or ``{rad = ...}`` as radians.
 
     >>> degrees({"rad": 0.5}, "slides[0].angle")
     0.5
@@ -62,7 +62,7 @@ def values(value: Any, where: str, angle: bool | None) -> Number:
 
 
 def times(value: Any, where: str, angle: bool | None = None) -> Number:
-    """Seconds, also as ``{from, to, step}``.
+    """Read seconds, also as ``{from, to, step}``.
 
     >>> times({"from": 0, "to": 1, "step": 0.5}, "time").tolist()
     [0.0, 0.5, 1.0]
@@ -118,7 +118,7 @@ def _unit(value: dict[str, Any], where: str, known: tuple[str, ...], angle: bool
 
 
 def point(value: Any, where: str, angle: bool | None = None) -> Number:
-    """``[x, y]`` or ``{polar = [radius, degrees]}`` as a complex number or array.
+    """Read ``[x, y]`` or ``{polar = [radius, degrees]}`` as a complex number or array.
 
     >>> point([1, [2, 3]], "drawn.A").tolist()
     [(1+2j), (1+3j)]

@@ -24,7 +24,7 @@ CLOSE = 1e-6
 def approach_path(
     solving_order: SolvingOrder, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> tuple[Inputs, int, float]:
-    """Return the way from the drawn drivers to the motion's pose `at` nearest to them; `at`; and the reference.
+    """Return the way from the drawn drivers to the motion's nearest pose `at`. Return also `at`; and the reference.
 
     The approach path is one pose where the drawing shows no driver. The reference is the place along the motion to
     which the modes belong: just before `at` where the path comes from before, else just after.
@@ -48,7 +48,7 @@ def approach_path(
 def drawn_value(
     solving_order: SolvingOrder, given: Inputs, name: str, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> Number | None:
-    """Return the driver's coordinate as the drawing shows it, a number or (designs, 1); None where it does not."""
+    """Return the driver's coordinate as the drawing shows it, a number or (designs, 1). None where it does not."""
     driven = solving_order.structure.driven[name]
     pair = driven.pair
     if any(link not in drawn for link in pair.members):
@@ -79,7 +79,7 @@ def _side(given: Inputs, at: int, ways: Mapping[str, Number]) -> float:
 
 
 def first_of(value: Number) -> Number:
-    """Return a dimension at the first pose of each design: a number, or an array (designs, 1)."""
+    """Return a dimension at the first pose of each design. It is a number, or an array (designs, 1)."""
     if np.ndim(value) == 0:
         return value
     array = np.asarray(value)
@@ -93,17 +93,20 @@ def column(pose: Pose) -> Pose:
 
 
 def spacings(solving_order: SolvingOrder, name: str, way: Number) -> int:
-    """Return how many spacings the longest of some ways of a driver takes; 0 where it stands still."""
+    """Return how many spacings the longest of some ways of a driver takes. It is 0 where it stands still."""
     return max(0, int(np.ceil(min(_spacings(solving_order, name, way) - CLOSE, MOST))))
 
 
 def between(solving_order: SolvingOrder, given: Inputs) -> int:
-    """Return how many spacings the longest step of a driver from one pose of a motion to the next takes."""
+    """Return the spacings of a driver's longest step between poses of a motion.
+
+    A step goes from one pose to the next.
+    """
     return max((spacings(solving_order, name, steps) for name, steps in _steps(given)), default=0)
 
 
 def pace(solving_order: SolvingOrder, given: Inputs) -> float:
-    """Return how many spacings the longest step of a driver from one pose to the next is, as a fraction."""
+    """Return the spacings of a driver's longest step, as a fraction. A step goes from one pose to the next."""
     return max((_spacings(solving_order, name, steps) for name, steps in _steps(given)), default=0.0)
 
 

@@ -17,7 +17,7 @@ from compoundkin.structure.parts import Body
 
 @dataclass
 class Block:
-    """Some designs x some poses while they are solved: what is known so far, margins and the first failure.
+    """Some designs x some poses while they are solved. What is known so far, margins and the first failure.
 
     `ends[pair]` are the pair's sides on its links, `world[link]` the known poses, `local[link]` the pose of a link in
     its composite body (absent for the body's own base); all have derivatives to `order`. `shape` is designs x poses,
@@ -42,7 +42,7 @@ class Block:
         return replace(self, world=dict(self.world), margins={})
 
     def leading(self, names: Iterable[str] | None = None) -> Block:
-        """Return the same block without derivatives; of what is known the named links only, or all."""
+        """Return the same block without derivatives. What is known is of the named links only, or of all."""
         names = self.world if names is None else names
         world = {name: self.world[name].trimmed(0) for name in names if name in self.world}
         local = {name: pose.trimmed(0) for name, pose in self.local.items()}
@@ -57,7 +57,7 @@ class Block:
         self.world.update(self.links_of(body, pose))
 
     def in_body(self, link: str, end: End) -> End:
-        """Return a link's side of a pair in the frame of its body's base link."""
+        """Return a link's side of a pair in its body's frame. The frame is that of the body's base link."""
         return self.local[link].carry(end) if link in self.local else end
 
     def root(self, index: int) -> Root:
@@ -65,11 +65,11 @@ class Block:
         return double_root(self.doubles[index]) if index in self.doubles else self.limits.root
 
     def fail(self, good: Number, index: int) -> None:
-        """Note that a group does not close where `good` is false, unless one before it did not."""
+        """Note that a group does not close where `good` is false. One that failed before it stays noted."""
         self.failed = np.where(good | (self.failed != 0), self.failed, index + 1)
 
     def extent(self, links: Iterable[str]) -> tuple[int, ...]:
-        """Return the shape over which some known links vary: one in the axes of groups that do not move them."""
+        """Return the shape over which some known links vary. It is one in the axes of groups that do not move them."""
         values = (np.shape(c[0]) for name in links for c in (self.world[name].z.c, self.world[name].u.c))
         return np.broadcast_shapes((1,) * (len(self.shape) - 2) + self.shape[-2:], *values)
 
@@ -85,7 +85,7 @@ def rates(values: tuple[Number, ...], order: int) -> Series:
 
 
 def places(designs: slice, poses: slice) -> tuple[Number, Number]:
-    """Return the places along the motion (a row) and the design indices (a column) of a block.
+    """Return the places along the motion and the design indices of a block. The first is a row, the second a column.
 
     >>> [array.shape for array in places(slice(0, 2), slice(4, 7))]
     [(1, 3), (2, 1)]
@@ -94,7 +94,9 @@ def places(designs: slice, poses: slice) -> tuple[Number, Number]:
 
 
 def blocks(designs: int, poses: int, size: int) -> Iterator[tuple[slice, slice]]:
-    """Rectangles of at most `size` poses, much of one width, that cover designs x poses, along the motion first.
+    """Yield rectangles of at most `size` poses that cover designs x poses.
+
+    They are much of one width, along the motion first.
 
     >>> list(blocks(1, 5, 3))
     [(slice(0, 1, None), slice(0, 3, None)), (slice(0, 1, None), slice(3, 5, None))]

@@ -55,7 +55,7 @@ class _Way:
 
 
 def near_groups(tracker: Tracker) -> set[int]:
-    """The groups that come near a limit position on the approach path, or between the poses of a coarse motion."""
+    """Find groups near a limit position. It is on the approach path, or between a coarse motion's poses."""
     found: set[int] = set()
     upto = 1 + max((k for k, solver in enumerate(tracker.solving_order.solvers) if solver.modes_may_meet), default=-1)
     for way in _ways(tracker) if upto else ():
@@ -67,7 +67,7 @@ def near_groups(tracker: Tracker) -> set[int]:
 
 
 def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
-    """Find the change points of the first group among `near` that has any; whether there is one.
+    """Find the change points of the first group among `near` that has any. Tell whether there is one.
 
     They are noted in the tracker, which changes the group's sign there.
     """
@@ -110,7 +110,10 @@ def _ways(tracker: Tracker) -> Iterator[_Way]:
 
 
 def rates_at(given: Inputs, tracker: Tracker, order: int) -> tuple[Number, Number, Mapping[str, Pose]]:
-    """Return the poses that are change points themselves, solved through the double root: designs, indices, poses."""
+    """Return the poses that are change points themselves, solved through the double root.
+
+    They are designs, indices, poses.
+    """
     spots: dict[tuple[int, int], dict[int, bool]] = {}
     for k, flips in tracker.flips.items():
         place: Number = np.round(flips)

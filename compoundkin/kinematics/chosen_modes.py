@@ -19,7 +19,7 @@ from compoundkin.model.geometry import vector
 def signs_of(
     solving_order: SolvingOrder, modes: Mapping[str, int] | str | Configuration | None = None
 ) -> dict[int, int]:
-    """Return the modes chosen by sign, by group; those of the call go before those of the mechanism."""
+    """Return the modes chosen by sign, by group. Those of the call go before those of the mechanism."""
     mechanism = solving_order.structure.mechanism
     if isinstance(modes, Configuration):
         return {}
@@ -49,7 +49,7 @@ def _by_group(solving_order: SolvingOrder, modes: Mapping[str, int]) -> dict[int
 
 
 def read_name(solving_order: SolvingOrder, name: str) -> dict[int, int]:
-    """Return the signs and numbers that a name gives to groups; raises InvalidInput for parts that name none."""
+    """Return the signs and numbers that a name gives to groups. Raises InvalidInput for parts that name none."""
     return (
         dict(_read(solving_order, part.strip()) for part in name.split(BETWEEN.strip())) if name.strip() != ONLY else {}
     )
@@ -96,7 +96,7 @@ def shown_by(
     modes: Mapping[str, int] | str | Configuration | None = None,
     hint: Mapping[str, object] | None = None,
 ) -> Shown:
-    """Return where a call shows the mechanism, else its drawing; a name of modes is one at the motion's first pose.
+    """Return where a call shows the mechanism, else its drawing. A name of modes is one at the motion's first pose.
 
     Raises InvalidInput for a configuration of another mechanism, and for hints that do not fit.
     """
@@ -116,7 +116,7 @@ def shown_by(
 
 
 def read_hint(solving_order: SolvingOrder, hint: Mapping[str, object] | None) -> dict[str, Number]:
-    """Return a hint as planar vectors; raises InvalidInput for points that the mechanism does not have."""
+    """Return a hint as planar vectors. Raises InvalidInput for points that the mechanism does not have."""
     letters = solving_order.structure.mechanism.carriers
     wrong = [
         Problem(f"hint.{k}", f"there is no point {k!r}", nearest(k, list(letters)))

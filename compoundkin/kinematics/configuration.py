@@ -23,7 +23,7 @@ SIGNS = {1: "+", -1: "-", 0: "±"}
 
 @dataclass(frozen=True, eq=False)
 class Configuration(Shows):
-    """A mechanism assembled at one value of every driver (radians or lengths), in one way.
+    """A mechanism assembled at one value of every driver, in one way. The values are radians or lengths.
 
     `poses` are those of all links. `modes[k]` is, for groups with several configurations, "+", "-" ("±" at the limit
     position) or the number. `margins[k]` tells for groups with signs how far the limit position is (a squared sine).
@@ -38,7 +38,7 @@ class Configuration(Shows):
 
     @cached_property
     def name(self) -> str:
-        """What it is called: the groups with more than one configuration, each with its sign or number."""
+        """The name of the configuration. It has the groups with more than one, each with its sign or number."""
         return named(self.structure, self.modes)
 
     @cached_property
@@ -59,7 +59,7 @@ class Configuration(Shows):
 
 
 def label(structure: Structure, k: int) -> str:
-    """Return what group `k` is called in a configuration's name: its kind and its first link."""
+    """Return the name of group `k` in a configuration's. It has its kind and its first link."""
     group = structure.groups[k]
     return f"{group.name}({group.links[0]})"
 

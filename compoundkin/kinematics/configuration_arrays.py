@@ -19,7 +19,7 @@ from compoundkin.structure.kinematic_structure import Structure
 
 @dataclass(frozen=True, eq=False)
 class Configurations(Shows):
-    """All configurations of a group or a mechanism: arrays (..., m) over poses and, last, configurations.
+    """All configurations of a group or a mechanism. They are arrays (..., m) over poses and, last, configurations.
 
     `bodies` are the poses (..., m) of a group's bodies by their numbers, or of a mechanism's links by their names; NaN
     where there are fewer, and without a picture where they are not `real`. `count` (...) are found: of a group over the
@@ -41,7 +41,7 @@ class Configurations(Shows):
 
     @classmethod
     def of_closed_form(cls, bodies: Sequence[Pose], real: Number, shape: tuple[int, ...]) -> Configurations:
-        """Return those of closed forms, none of which is missing; the first axis of all arrays is theirs."""
+        """Return those of closed forms, none of which is missing. The first axis of all arrays is theirs."""
 
         def last(value: Number) -> Number:
             return np.moveaxis(np.broadcast_to(value, shape), 0, -1)
@@ -51,7 +51,7 @@ class Configurations(Shows):
 
     @classmethod
     def of_states(cls, states: Number) -> Configurations:
-        """Return those that a search found: states (..., m, 3 n), x, y, theta of each body, NaN pads."""
+        """Return those that a search found. Their states are (..., m, 3 n), x, y, theta of each body, NaN pads."""
         theta, z = states[..., 2::3], states[..., 0::3] + 1j * states[..., 1::3]
         u, real = np.cos(theta) + 1j * np.sin(theta), np.isfinite(states).all(axis=-1)
         bodies = {k: Pose.of(z[..., k], u[..., k]) for k in range(z.shape[-1])}
@@ -86,7 +86,7 @@ class Configurations(Shows):
 
     @property
     def states(self) -> Number:
-        """The real configurations as states (..., most real ones, 3 n): x, y, theta of each body; NaN pads."""
+        """The real configurations as states (..., most real ones, 3 n). They are x, y, theta of each body; NaN pads."""
         most = int(self.real_count.max(initial=0))
         shown = self.real[..., :most]
         z, u = self.origins[..., :most, :], self.turns[..., :most, :]
@@ -94,14 +94,17 @@ class Configurations(Shows):
         return np.where(shown[..., None], states.reshape(*shown.shape, 3 * u.shape[-1]), np.nan)
 
     def poses(self, number: int) -> list[Pose]:
-        """Return the bodies' poses (...) in one configuration; NaN at the poses where it is not real."""
+        """Return the bodies' poses (...) in one configuration. They are NaN at the poses where it is not real."""
         shown, bodies = self.real[..., number], self.bodies.values()
         pairs = ((np.where(shown, v.c[0][..., number], np.nan) for v in (pose.z, pose.u)) for pose in bodies)
         return [Pose.of(z, u) for z, u in pairs]
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """What the configurations are called: a sign for each group with two modes, for other groups a number."""
+        """The names of the configurations.
+
+        They have a sign for each group with two modes, for other groups a number.
+        """
         return tuple(named(self.structure, modes) for modes in self.modes)
 
     def points(self, name: str) -> Vectors:
@@ -120,13 +123,13 @@ class Configurations(Shows):
         return np.where(self.real, np.angle(self.bodies[link].u.c[0]), np.nan)
 
     def margin(self, group: int) -> Number:
-        """Return how far a group with signs is from its limit position, a squared sine, (..., m)."""
+        """Return how far a group with signs is from its limit position. It is a squared sine, (..., m)."""
         if group not in self.margins:
             raise UnknownName(Problem(f"group {group}", "it tells no margin"))
         return self.margins[group]
 
     def pick(self, which: int | str, at: tuple[int, ...] | int = 0) -> Configuration:
-        """Return one configuration, by its index or name, at an index of the driver values.
+        """Return one configuration at an index of the driver values. It goes by its index or name.
 
         Raises UnknownName for a name or index that none has, NotAssembled where it cannot be assembled there.
         """
@@ -165,7 +168,10 @@ class Configurations(Shows):
 
 
 def state_distance(one: Number, other: Number, size: float) -> Number:
-    """Return how far states (..., 3 n) are from each other: parts of the size, radians; whole turns do not count."""
+    """Return how far states (..., 3 n) are from each other.
+
+    It is in parts of the size, radians; whole turns do not count.
+    """
     gap = one - other
     turn = np.abs(wrapped(gap[..., 2::3]))
     shift = np.maximum(np.abs(gap[..., 0::3]), np.abs(gap[..., 1::3])) / size

@@ -53,7 +53,7 @@ def inputs(
 
 
 def by_name(mechanism: Mechanism, values: Any) -> Mapping[str, Any] | None:
-    """Return the values of the drivers by name, those of the only one also without; raises InvalidInput."""
+    """Return the values of the drivers by name. Those of the only one may go without; raises InvalidInput."""
     if values is None or isinstance(values, Mapping):
         return values
     if len(mechanism.drives) != 1:

@@ -36,7 +36,7 @@ Letters = list[tuple[str, str]]
 
 
 def shown(solving_order: SolvingOrder, solver: GroupSolver, sketch: Mapping[str, Number]) -> Letters:
-    """Return the letters a sketch shows on the links of a group, each with its link."""
+    """Return the letters a sketch shows on a group's links, with their links."""
     links = solving_order.structure.mechanism.links
     return [(link, letter) for link in solver.group.links for letter in links[link].points if letter in sketch]
 
@@ -54,7 +54,9 @@ def distance(solving_order: SolvingOrder, letters: Letters, sketch: Mapping[str,
 def first_state(
     solving_order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number], number: int | None
 ) -> tuple[Number, str]:
-    """A closed state (designs, 1, width) of a group at a single pose, and what chose it; NaN for designs without.
+    """Find a closed state of a group at a single pose, and its chooser.
+
+    It is (designs, 1, width), NaN for designs without.
 
     With `number` it is that of the real configurations in their order, counted from 1. Raises NotAssembled where no
     design has any.

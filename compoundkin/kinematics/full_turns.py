@@ -29,21 +29,24 @@ BLOCK = 4096
 
 @dataclass(frozen=True)
 class Turns:
-    """A link's angle at samples of the approach path and of the motion, (designs, samples), `per_pose` a pose."""
+    """The angle of a link at samples of the approach path and motion. It is (designs, samples), `per_pose` a pose."""
 
     approach: Number
     motion: Number
     per_pose: int
 
     def near(self, designs: Number, s: Number, on_approach: bool) -> Number:
-        """Return the angle, right to less than half a turn, at places along the motion or the approach path."""
+        """Return the angle, right to less than half a turn, at places.
+
+        They are along the motion or the approach path.
+        """
         samples = self.approach if on_approach else self.motion
         at = np.rint(s * (1 if on_approach else self.per_pose)).astype(int)
         return samples[designs, np.clip(at, 0, samples.shape[1] - 1)]
 
 
 def turns_of(tracker: Tracker, k: int, link: str) -> Turns:
-    """Follow the angle of a link of group `k` from the first pose, where it is nearest to the drawn one or to zero."""
+    """Follow the angle of a link of group `k` from the first pose. There it is nearest to the drawn one or to zero."""
     given = tracker.given
     before = _angles(tracker, k, link, tracker.approach_path, 1.0, on_approach=True)
     drawn = tracker.solving_order.structure.mechanism.geometry.drawn.get(link)
@@ -79,7 +82,9 @@ def _unwrapped(angles: Number, start: int, first: Number) -> Number:
 
 
 def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Inputs) -> tuple[Inputs, ...]:
-    """Return the motion and its approach path, phases read off a drawing taken on by the turns that drivers have made.
+    """Return the motion and its approach path with drawn phases taken on.
+
+    They go on by the turns that drivers have made.
 
     A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
     """

@@ -37,7 +37,7 @@ class Gap:
 
 
 def gaps(motion: Motion) -> tuple[Gap, ...]:
-    """Return all gaps of a motion, design by design, in the order of the motion.
+    """Return all gaps of a motion, design by design, in its order.
 
     >>> import warnings
     >>> from compoundkin.model.mechanism import Mechanism

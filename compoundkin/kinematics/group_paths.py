@@ -40,8 +40,11 @@ SLOWEST = 1e-9
 
 @dataclass(frozen=True)
 class GroupPath:
-    """The tracked states of one group: nodes `s`, states (designs, nodes, 3 n), their slopes by s, and the
-    reach (designs, 2) of s within which each design was tracked."""
+    """The tracked states of one group.
+
+    Its nodes are `s`, the states (designs, nodes, 3 n), with their slopes by s, and the reach (designs, 2) of s within
+    which each design was tracked.
+    """
 
     s: Number
     states: Number
@@ -67,7 +70,7 @@ class GroupPath:
 
 
 def track(tracker: Tracker, k: int, equations: GroupEquations, state: Number) -> tuple[GroupPath, GroupPath]:
-    """Follow group `k` along the approach path to the motion, then from there to both ends of the motion."""
+    """Follow group `k` along the approach path to the motion. From there it goes to both ends of the motion."""
     given, approach, at = tracker.given, tracker.approach_path, tracker.at
     alive = np.isfinite(state).all(axis=(1, 2))
     stops = np.arange(approach.poses, dtype=float)

@@ -45,14 +45,14 @@ class Inputs(PrintsShort):
         return self._each(lambda v: _cut(v, designs, poses))
 
     def at(self, s: Number) -> Inputs:
-        """Return all designs at places `s` (1-D) along the motion, fractional ones in between poses.
+        """Return all designs at places `s` (1-D) along the motion. Fractional ones are in between poses.
 
         The drivers' speeds are then the slopes with respect to `s`.
         """
         return self._interpolated(s, np.floor(s))
 
     def before(self, s: Number) -> Inputs:
-        """As `at`, but at a pose itself with the slopes of the way to it."""
+        """Do as `at`, with the slopes of the way to a pose there."""
         return self._interpolated(s, np.ceil(s) - 1.0)
 
     def _interpolated(self, s: Number, start: Number) -> Inputs:
@@ -69,7 +69,7 @@ class Inputs(PrintsShort):
         return self.at(np.linspace(0.0, self.poses - 1.0, count)).of_poses(count)
 
     def pick(self, designs: Number, s: Number) -> Inputs:
-        """Return one pose of each of the given designs, at its own place `s`: a column of poses."""
+        """Return one pose of each of the given designs, at its own place `s`. The poses are a column."""
         i = np.clip(np.floor(s).astype(int), 0, max(self.poses - 2, 0))
         return self._each(lambda v: _picked(v, designs, i, s - i))
 
@@ -99,7 +99,10 @@ class Inputs(PrintsShort):
 
 @dataclass(frozen=True, repr=False)
 class PoseGrid(PrintsShort):
-    """How a motion shows its numbers: its shape, the order it was solved to, and which poses do not close."""
+    """The form in which a motion shows its numbers.
+
+    Its shape, the order it was solved to, and which poses do not close.
+    """
 
     shape: tuple[int, ...]
     order: int
@@ -114,11 +117,11 @@ class PoseGrid(PrintsShort):
             raise InvalidInput(Problem(what, f"the motion was solved to order {self.order}", remedy))
 
     def shaped(self, value: Number) -> Number:
-        """Return a value of the form (1 or designs, 1 or poses) in the motion's shape."""
+        """Return a value (1 or designs, 1 or poses) in the motion's shape."""
         return np.broadcast_to(value, self.failed.shape).reshape(self.shape)
 
     def known(self, value: Number) -> Number:
-        """Return a value in the motion's shape, not a number at poses that are not assembled."""
+        """Return a value in the motion's shape, NaN at unassembled poses."""
         shaped = self.shaped(value)
         if not self.failed.any():
             return shaped
@@ -126,7 +129,7 @@ class PoseGrid(PrintsShort):
         return np.where(self.shaped(self.failed == 0), shaped, nothing)
 
     def fitted(self, value: Number) -> Number:
-        """Return a value that broadcasts with the motion in the form (1 or designs, 1 or poses)."""
+        """Return a value in the form (1 or designs, 1 or poses). It is one that broadcasts with the motion."""
         try:
             np.broadcast_to(value, self.shape)
         except ValueError:
@@ -141,7 +144,7 @@ def mapped(end: End, change: Any) -> End:
 
 
 def fit(shape: tuple[int, ...]) -> Callable[[Number], Number]:
-    """Bring a value into the form (1 or designs, 1 or poses); numbers stay numbers."""
+    """Bring a value into the form (1 or designs, 1 or poses). Numbers stay numbers."""
     designs = prod(shape[:-1])
 
     def fitted(value: Number) -> Number:

@@ -23,7 +23,9 @@ Root: TypeAlias = Callable[[Series, Number], tuple[Series, Number]]
 
 
 def clipped_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
-    """Return the square root, with zero for a discriminant that is zero but for rounding; and the margin.
+    """Return the square root and the margin, zero but for rounding.
+
+    The root is zero for a discriminant that is zero but for rounding.
 
     >>> from compoundkin.base.series import constant
     >>> value, margin = clipped_root(constant(np.array([4.0, -1e-15])), 1.0)
@@ -36,19 +38,24 @@ def clipped_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
 
 
 def nearest_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
-    """Return the square root, or zero: where a group cannot be assembled, its nearest approach."""
+    """Return the square root, or zero. Zero is the nearest approach where a group cannot be assembled."""
     lead = np.maximum(discriminant.c[0], 0.0)
     return Series((lead, *discriminant.c[1:])).sqrt(), np.ones_like(lead)
 
 
 def edge_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
-    """Return the square root, zero beyond a limit position; and the margin itself, whose zero is the limit."""
+    """Return the square root, zero beyond a limit position.
+
+    The margin itself, whose zero is the limit, is returned too.
+    """
     lead = np.maximum(discriminant.c[0], 0.0)
     return Series((lead, *discriminant.c[1:])).sqrt(), np.divide(discriminant.c[0], scale)
 
 
 def double_root(where: Number) -> Root:
-    """Return the root that takes, where asked, the discriminant to be a square: zero, and so is its first rate.
+    """Return the root that takes, where asked, the discriminant to be a square.
+
+    It is zero then, and so is its first rate.
 
     There the root is ``t sqrt(c[2] + c[3] t + ...)``: the group passes through its limit position without
     turning back. Two coefficients are lost: the last two of the result mean nothing.
@@ -65,8 +72,10 @@ def double_root(where: Number) -> Root:
 
 @dataclass(frozen=True)
 class LimitRule:
-    """What holds at limit positions: the root of closed forms, how far Newton may go from where it begins, and
-    whether a state from which Newton does not converge is kept as it is, instead of none.
+    """The rule at limit positions.
+
+    It tells the root of closed forms, how far Newton may go from where it begins, and whether a state from which Newton
+    does not converge is kept as it is, instead of none.
     """
 
     root: Root

@@ -111,11 +111,11 @@ class Motion(ShowsPicture):
         return table_of(self, *names).to_pandas()
 
     def plot(self, *names: str, **options: Any) -> Any:
-        """Draw quantities over the driver, the time or any other quantity: `compoundkin.plot` of this motion."""
+        """Draw quantities over the driver, the time or any other quantity. `compoundkin.plot` of this motion."""
         return way("plot")(self, *names, **options)
 
     def animate(self, **options: Any) -> Any:
-        """Return an animation to be saved as GIF, MP4 or SVG: `compoundkin.animate` of this motion."""
+        """Return an animation to be saved as GIF, MP4 or SVG. `compoundkin.animate` of this motion."""
         return way("animation")(self, **options)
 
     @property
@@ -146,7 +146,7 @@ class Motion(ShowsPicture):
         return self.tracker.run(part, order, s, designs)
 
     def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:
-        """Return the motion with some of its poses put in the place of what was solved there."""
+        """Return the motion with some poses in the place of what was solved."""
         if not len(designs):
             return self
         shape = (self.inputs.designs, self.inputs.poses)

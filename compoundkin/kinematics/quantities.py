@@ -53,7 +53,7 @@ class HasQuantities(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Quantity:
-    """One quantity: complex values for a planar vector, real ones otherwise; `unit` is that of `values`.
+    """One quantity: complex values for a planar vector, real ones otherwise. `unit` is that of `values`.
 
     `order` is how many time derivatives it takes of a length, an angle or another `dimension`.
     """
@@ -100,7 +100,7 @@ class Quantity:
 
     @property
     def components(self) -> tuple[Self, ...]:
-        """Its real numbers: both components of a vector; what is no vector, as it is."""
+        """Its real numbers: both components of a vector. What is no vector is as it is."""
         return (self.part("x"), self.part("y")) if self.is_vector else (self,)
 
     def __repr__(self) -> str:
@@ -148,7 +148,7 @@ def quantity(motion: HasQuantities, name: str) -> Quantity:
 
 
 def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
-    """Return the quantity of a name, or a vector and which part is meant; raises UnknownName."""
+    """Return the quantity of a name, or a vector and which part is meant. Raises UnknownName."""
     if not isinstance(name, str):
         raise InvalidInput(
             Problem("quantity", f"{name!r} is no name", 'write "G.velocity", one text for each quantity')
@@ -180,7 +180,7 @@ def _whole(motion: HasQuantities, name: str) -> Quantity:
 
 
 class Owner(NamedTuple):
-    """A point, link, pair or driver of a motion: its name, the attributes it has, the unit of each order."""
+    """A point, link, pair or driver of a motion. Its name, the attributes it has, the unit of each order."""
 
     name: str
     motion: Any

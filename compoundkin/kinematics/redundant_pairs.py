@@ -20,7 +20,7 @@ from compoundkin.structure.redundancy.constraint_equations import ROUNDED
 
 
 def solvable(mechanism: Mechanism) -> Structure:
-    """Take a mechanism apart, without what is redundant where it moves although it is overconstrained.
+    """Take a mechanism apart without what is redundant. This is where it moves although it is overconstrained.
 
     `faults` are those that remain: of what does not move, and of drivers that are too many or missing.
     """
@@ -28,7 +28,7 @@ def solvable(mechanism: Mechanism) -> Structure:
 
 
 def relaxed(structure: Structure) -> Structure:
-    """Return the structure without what is redundant, in groups with closed forms where it can.
+    """Return the structure without what is redundant, in closed forms where it can. The forms are those of its groups.
 
     The structure itself where nothing is overconstrained, or nothing moves.
     """
@@ -36,7 +36,7 @@ def relaxed(structure: Structure) -> Structure:
 
 
 def rank_diagnosis(structure: Structure) -> str:
-    """Say what the dimensions make of an overconstrained mechanism, to be added to a heading."""
+    """Say what the dimensions make of an overconstrained mechanism. The words are to be added to a heading."""
     if not any(fault.kind == "over" for fault in structure.faults):
         return ""
     found = mobility_analysis(structure)
@@ -45,7 +45,7 @@ def rank_diagnosis(structure: Structure) -> str:
 
 @contextmanager
 def diagnosing(structure: Structure) -> Iterator[None]:
-    """Raise NotDetermined with the reason where a group has no pose because its dimensions are special."""
+    """Raise NotDetermined with the reason where a group has no pose. Its dimensions are special there."""
     try:
         yield
     except NotAssembled as error:
@@ -65,7 +65,10 @@ def check_redundant(motion: Motion) -> None:
 
 
 def opening(motion: Motion, pair: Pair) -> Number:
-    """By how much a pair is open at each pose (designs x poses), lengths in the user's unit; 0 where not assembled."""
+    """Return the residual of a redundant pair at each pose (designs x poses).
+
+    Lengths are in the user's unit; 0 where not assembled.
+    """
     poses = tuple(motion.poses[name] for name in pair.members)
     held = pair.closure(motion.inputs.ends[pair.name], poses)
     squares = sum(np.abs(np.broadcast_to(one.c[0], motion.failed.shape)) ** 2 for one in held)

@@ -17,14 +17,14 @@ from compoundkin.model.geometry import vector
 
 
 class PointMotion:
-    """The motion of a point: complex arrays of the motion's shape; `.xy` of each gives (..., 2)."""
+    """The motion of a point: complex arrays of the motion's shape. `.xy` of each gives (..., 2)."""
 
     def __init__(self, grid: PoseGrid, derivative: Any, name: str = "") -> None:
         self._grid, self._name = grid, name
         self._derivative = derivative
 
     def derivative(self, k: int) -> Vectors:
-        """Return the k-th time derivative of the position; raises InvalidInput beyond the order solved for."""
+        """Return the k-th time derivative of the position. Raises InvalidInput beyond the order solved for."""
         self._grid.require(k)
         found: Vectors = self._grid.known(self._derivative(k)).astype(complex, copy=False).view(Vectors)
         return found
@@ -69,7 +69,7 @@ class PointMotion:
 
 
 class LinkMotion:
-    """The motion of a link: its angle from the frame's x axis, and that of any of its points."""
+    """The motion of a link. Its angle from the frame's x axis, and that of any of its points."""
 
     def __init__(self, grid: PoseGrid, pose: Pose, name: str = "") -> None:
         self._grid, self._name = grid, name
@@ -87,7 +87,10 @@ class LinkMotion:
 
     @cached_property
     def angle(self) -> Number:
-        """The angle of its x axis, radians, unwrapped along the motion; of a driven link or a gear as it is counted."""
+        """The angle of its x axis, radians, unwrapped along the motion.
+
+        A driven link or a gear has it as it is counted.
+        """
         return unwrapped(self._rate(0)) if self._pose.theta is None else self._rate(0)
 
     @property
@@ -120,7 +123,10 @@ class LinkMotion:
 
 
 class PairMotion:
-    """The free relative coordinate of a pair: an angle (radians, unwrapped) or a displacement, and its rates."""
+    """The free relative coordinate of a pair.
+
+    It is an angle (radians, unwrapped) or a displacement, and has its rates.
+    """
 
     def __init__(
         self, grid: PoseGrid, coordinate: Series, is_angle: bool, prescribed: bool = False, counted: bool = False
@@ -163,7 +169,7 @@ class PairMotion:
 
 
 class Named(Mapping[str, Any]):
-    """Entries made when they are asked for; an unknown name raises UnknownName with the nearest known."""
+    """Entries made when they are asked for. An unknown name raises UnknownName with the nearest known."""
 
     def __init__(self, kind: str, names: tuple[str, ...], make: Any) -> None:
         self._kind, self._names, self._make = kind, names, make
@@ -191,6 +197,6 @@ class Named(Mapping[str, Any]):
 
 
 def told(part: object, grid: PoseGrid, name: str) -> str:
-    """Return what is told of a part of a motion in short: its name, shape and order."""
+    """Return what is told of a part of a motion in short. It has its name, shape and order."""
     named = f"{name}: " if name else ""
     return f"{type(part).__name__}({named}{grid.shape} poses to order {grid.order})"

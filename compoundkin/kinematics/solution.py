@@ -45,7 +45,7 @@ def solve(
     modes: Mapping[str, int] | str | Configuration | None = None,
     hint: Mapping[str, Any] | None = None,
 ) -> Motion:
-    """Solve a mechanism group by group, for position and all derivatives up to `order` (0 to 3).
+    """Solve a mechanism group by group, for position and its derivatives. They go up to `order` (0 to 3).
 
     `values` gives each driver's coordinate (radians or lengths; arrays, the last axis the motion); `speed`,
     `acceleration`, `jerk` its rates, a number for a single driver or a mapping by name. What is not given
@@ -148,7 +148,7 @@ def _near(block: Block) -> set[int]:
 def starting_configuration(
     solving_order: SolvingOrder, values: Mapping[str, float], design: int
 ) -> Configuration | None:
-    """Return the configuration in which `solve` begins at these values; None where it does not close there."""
+    """Return the configuration in which `solve` begins at these values. None where it does not close there."""
     given = inputs(solving_order, values, None, None, None)
     try:
         tracker = Tracker(solving_order, given, signs_of(solving_order), shown_by(solving_order))
@@ -161,7 +161,7 @@ def starting_configuration(
 
 
 def first_configuration(motion: Motion, design: int) -> Configuration | None:
-    """Return the configuration of the first assembled pose of a motion, without its modes; None where it has none."""
+    """Return the configuration of the first assembled pose of a motion, without its modes. None where it has none."""
     known = np.flatnonzero(motion.failed[design] == 0)
     if not known.size:
         return None

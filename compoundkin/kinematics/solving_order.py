@@ -22,7 +22,10 @@ from compoundkin.structure.parts import DrivenPair
 
 
 class SolvingOrder(PrintsShort):
-    """What solves a structure, in order: the driven links of the frame, then the solvers of its groups."""
+    """The order in which a structure is solved.
+
+    First come the driven links of the frame, then the solvers of its groups.
+    """
 
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
@@ -43,7 +46,10 @@ class SolvingOrder(PrintsShort):
 
     @cached_property
     def turning(self) -> frozenset[str]:
-        """The links whose angles some pair asks for with full turns, and those from which such angles count."""
+        """The links whose angles count with full turns.
+
+        Some pair asks for them; those from which such angles count belong to them.
+        """
         asked = {name for pair in self.pairs.values() if as_turn_counting(pair) for name in pair.members}
         return frozenset(asked.union(*(solver.counted_from for solver in self.solvers)))
 
@@ -60,7 +66,10 @@ class SolvingOrder(PrintsShort):
         shape: tuple[int, ...],
         limits: LimitRule = CLIPPED,
     ) -> Block:
-        """Return a block in which only the frame and the links it drives are known."""
+        """Return a block in which only the frame and driven links are known.
+
+        The latter are those that the frame drives.
+        """
         world: dict[str, Pose] = {}
         local: dict[str, Pose] = {}
         for body in self.structure.bodies:
@@ -74,7 +83,10 @@ class SolvingOrder(PrintsShort):
         return Block(shape, ends, world, local, order, limits)
 
     def closing(self, solver: GroupSolver) -> tuple[Pair, ...]:
-        """Return the redundant pairs that close or open as a group is assembled, all links before it being known."""
+        """Return the redundant pairs that close or open with a group.
+
+        They do so as it is assembled, all links before it being known.
+        """
         if not self.structure.redundant:
             return ()
         before: dict[str, None] = dict.fromkeys(self.structure.ground.links)
@@ -86,17 +98,23 @@ class SolvingOrder(PrintsShort):
 
 
 class Choice(Protocol):
-    """What the loop over the groups is told: which mode each is to be in, and where angles are counted from."""
+    """The choices that the loop over the groups is told.
+
+    Which mode each is to be in, and where angles are counted from.
+    """
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
-        """Return the mode of a group, all before it being assembled: a sign, a state, or anything where it has one."""
+        """Return the mode of a group, all before it being assembled.
+
+        It is a sign, a state, or anything where it has one.
+        """
 
     def angle(self, solver: GroupSolver, link: str) -> Number | None:
-        """Return about which angle, full turns counted, a link of a group has; None where it is not counted."""
+        """Return about which angle, full turns counted, a link of a group has. It is None where it is not counted."""
 
 
 def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None = None) -> Block:
-    """Assemble the groups one after another, up to one, each in the mode that is chosen; return the block."""
+    """Assemble the groups one after another, up to one; return the block. Each is in the mode that is chosen."""
     for solver in solving_order.solvers[:upto]:
         solver.close(block, choose.mode(block, solver))
         for link in solver.group.links if solving_order.turning else ():
@@ -108,7 +126,7 @@ def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | N
 
 
 def residual(pairs: Sequence[Pair], block: Block) -> Number:
-    """Return the sum of the squares of all that pairs, which were left out, ought to hold."""
+    """Return the sum of squares of what left-out pairs ought to hold."""
     total: Number = 0.0
     for pair in pairs:
         poses = tuple(block.world[name] for name in pair.members)

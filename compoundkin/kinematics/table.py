@@ -43,7 +43,7 @@ class AtPoses(HasQuantities, Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Table:
-    """Columns of real quantities, a row for each pose; the last axis of the motion, its poses, runs fastest.
+    """Columns of real quantities, a row for each pose. The last axis of the motion, its poses, runs fastest.
 
     Where the motion has designs, index columns come first: `design`, or `design0`, `design1` ... Then come the time,
     if it has any, drivers, points (.x, .y), links, pairs, and whether each pose is `assembled`. Angles are radians, in

@@ -72,7 +72,7 @@ class Tracker(PrintsShort):
         return run(self.solving_order, block, _Kept(self, designs, s, on_approach), upto)
 
     def sign(self, k: int, designs: Number, s: Number, on_approach: bool = False) -> Number:
-        """Return the sign of a dyad's mode: it changes wherever the dyad passes a change point."""
+        """Return the sign of a dyad's mode. It changes wherever the dyad passes a change point."""
         sign = self.signs[k]
         sign = sign if np.ndim(sign) == 0 else sign[designs, 0]
         if k in self.approach_flips:
@@ -84,7 +84,7 @@ class Tracker(PrintsShort):
         return sign
 
     def choose(self) -> None:
-        """Pass through the groups at the drawn pose, choosing; track those without a closed form."""
+        """Pass through the groups at the drawn pose, choosing. Track those without a closed form."""
         self.turns = {}
         first = self.approach_path.cut(slice(None), slice(0, 1))
         run(

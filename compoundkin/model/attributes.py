@@ -21,7 +21,7 @@ RAISED = {"^2": "²", "^3": "³"}
 
 
 class Attribute(NamedTuple):
-    """What may follow a name: a word, its symbol, and how many time derivatives it takes."""
+    """A word that may follow a name. It has its symbol, and how many time derivatives it takes."""
 
     word: str
     symbol: str
@@ -82,7 +82,7 @@ RATE_OF: Mapping[str, tuple[str, ...]] = MappingProxyType(
 
 
 def unit_of(length: str, dimension: Dimension, order: int = 0) -> str:
-    """Return the unit of a dimension or of its time derivative; `length` is that of lengths, if it has a name.
+    """Return the unit of a dimension or of its time derivative. `length` is that of lengths, if it has a name.
 
     >>> unit_of("mm", "length", 2), unit_of("", "length"), unit_of("", "angle", 1)
     ('mm/s^2', 'length', 'rad/s')
@@ -97,7 +97,7 @@ def coordinate_dimension(is_angle: bool) -> Dimension:
 
 
 def after_number(is_angle: bool, length: str) -> str:
-    """Return the unit of a coordinate as it follows a number; nothing where lengths have none."""
+    """Return the unit of a coordinate as it follows a number. It is empty where lengths have none."""
     return "°" if is_angle else f" {length}".rstrip()
 
 
@@ -119,7 +119,7 @@ def order_of(name: str) -> int:
 
 
 def vector_of(name: str) -> tuple[str, str]:
-    """Return the vector and the part that a name may mean; the part is empty where it can mean none.
+    """Return the vector and the part that a name may mean. The part is empty where it can mean none.
 
     >>> vector_of("G.velocity.x"), vector_of("G.x"), vector_of("G.length")
     (('G.velocity', 'x'), ('G.x', ''), ('G', 'length'))

@@ -71,7 +71,7 @@ class Drive(PrintsShort):
 
 @dataclass(frozen=True)
 class Mode:
-    """The assembly mode of the group that holds `links`. +1 or -1, as the group's kind defines it."""
+    """The assembly mode of the group that holds `links`. It is +1 or -1, as the group's kind defines it."""
 
     links: tuple[str, ...]
     sign: int

@@ -55,7 +55,7 @@ Kind = Literal[
 
 @dataclass(frozen=True)
 class Key:
-    """One key of a table in a mechanism file: its name, what it holds, its default, and a sentence on it."""
+    """One key of a table in a mechanism file. It has its name, what it holds, its default, and a sentence on it."""
 
     name: str
     kind: Kind
@@ -75,7 +75,7 @@ def link_key(doc: str) -> dict[str, Any]:
 
 
 def point_key(link: str, doc: str) -> dict[str, Any]:
-    """Return the metadata of a field that names a point of the link that the field `link` names.
+    """Return the metadata of a field that names a point of a link. The field `link` names the link.
 
     Where the field may be empty, the only point of the link is meant.
     """
@@ -117,7 +117,7 @@ def link_fields(kind: type[Any]) -> tuple[str, ...]:
 
 
 def point_fields(kind: type[Any]) -> Mapping[str, str]:
-    """Return the fields that name points, with those that name their links; first those that may be empty."""
+    """Return the fields that name points, with those that name their links. Those that may be empty come first."""
     points = [field for field in fields(kind) if "link" in field.metadata]
     return {field.name: field.metadata["link"] for field in sorted(points, key=lambda field: field.default != "")}
 
@@ -134,7 +134,7 @@ class NameWording:
 def name_problems(
     item: Any, links: Mapping[str, tuple[str, ...]], where: str, wording: NameWording
 ) -> Iterator[Problem]:
-    """Find links that there are not, one link twice, and points that their link does not have."""
+    """Find unknown links, one link twice, and points that a link lacks."""
     members = {field: getattr(item, field) for field in link_fields(type(item))}
     missing = [(field, name) for field, name in members.items() if name not in links]
     for field, name in missing:
@@ -155,7 +155,7 @@ def name_problems(
 
 
 def only_points(item: Any, links: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
-    """Return the points that are left to be understood: the only ones of their links."""
+    """Return the points that are left to be understood. They are the only ones of their links."""
     found = {}
     for field, link in point_fields(type(item)).items():
         points = links.get(getattr(item, link), ())
@@ -169,7 +169,7 @@ Made = TypeVar("Made")
 
 
 def word(name: str, kind: Callable[P, Made]) -> Callable[P, Made]:
-    """Return the function by which users write a kind: its fields are the arguments, their sentences the text.
+    """Return the function by which users write a kind. Its fields are the arguments, their sentences the text.
 
     >>> from compoundkin.model.pairs.slot import Slot
     >>> word("slot", Slot)("crank", on="arm", at="B", through="C").name

@@ -85,7 +85,7 @@ def fitted_pose(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> P
 
 
 def deg(angle: Any) -> Number:
-    """Degrees as radians: a number, a list, a range or an array.
+    """Return degrees as radians: a number, a list, a range or an array.
 
     >>> round(deg(180), 6)
     3.141593

@@ -19,7 +19,7 @@ _LISTED = 6
 
 
 def closed_drives(system: System) -> Iterator[Fault]:
-    """Composites that close on themselves. Driven pairs in a ring, or pairs across a driven chain."""
+    """Find composites that close on themselves. Driven pairs in a ring, or pairs across a driven chain."""
     body_of = system.bodies.body_of
     pairs: dict[int, list[Pair]] = {}
     for pair in held_pairs(system.mechanism, system.dropped):

@@ -68,7 +68,7 @@ class Diagram:
         return tuple((p.links[0], other, k) for k, p in enumerate(self.primaries) for other in p.links[1:])
 
     def generic(self) -> list[Number]:
-        """Random homogeneous coordinates for every primary, of its kind; the same ones every time."""
+        """Draw random homogeneous coordinates for every primary, of its kind. They are the same every time."""
         rng = np.random.default_rng(len(self.links))
         places = [_unit(rng.standard_normal(3), p.kind) for p in self.primaries]
         for k, primary in enumerate(self.primaries):

@@ -40,7 +40,7 @@ class DriverRates:
         self.errors: dict[int, Number] = {}
 
     def run(self, units: Sequence[Number], rates: Sequence[Number]) -> None:
-        """Along the derivation's moves; then, where those are poor, through whichever links are best."""
+        """Follow the derivation's moves. Where those are poor, go through whichever links are best."""
         given = [np.ones(1)] if len(rates) == 1 else list(rates)
         carried = transport(self.derivation.moves, self.derivation, self.points, self.spread, units, given)
         poses = np.broadcast_shapes(*[unit.shape[1:] for unit in units])

@@ -49,7 +49,9 @@ def norm(a: Number) -> Number:
 
 
 def sine_between(a: Number, b: Number) -> Number:
-    """Return the sine of the angle between two homogeneous vectors of any length. 0 where they are the same place.
+    """Return the sine of the angle between two homogeneous vectors.
+
+    They are of any length; it is 0 where they are the same place.
 
     >>> float(sine_between(np.array([1.0, 0.0, 1.0]), np.array([-2.0, 0.0, -2.0])))
     0.0

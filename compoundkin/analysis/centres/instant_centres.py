@@ -156,7 +156,7 @@ class Centres(CentreVectors, Shows):
         return velocity_check(self.velocities, motion)
 
     def collinearity(self) -> dict[tuple[str, str, str], Number]:
-        """Return how far three links' centres are from one line. 0 to 1, NaN where one is poor or unknown."""
+        """Return how far three links' centres are from one line. It is 0 to 1, NaN where one is poor or unknown."""
         return collinearity_of(self)
 
     @cached_property

@@ -150,7 +150,7 @@ def pair_amplitudes(p: Number, q: Number, gap: Number) -> tuple[Number, Number]:
 
 
 def ring_amplitudes(p: Number, r: Number, q: Number, gap: Number) -> tuple[Number, Number, Number]:
-    """Return a, c, b in ``gap = a p + c r + b q``.
+    """Return the amplitudes of ``gap = a p + c r + b q``. They are a, c, b.
 
     The three places are not on one line.
 

@@ -53,7 +53,7 @@ class _PoorPoses:
         self.bodies = tuple(dict.fromkeys(whole.derivation.body))
 
     def run(self, crossed: list[Couple]) -> None:
-        """Until nothing gets better; at most once for each centre."""
+        """Recompute until nothing gets better; at most once for each centre."""
         for _ in crossed:
             better = [self._recross(c) for c in crossed]
             if not any(better):

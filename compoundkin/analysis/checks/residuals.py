@@ -129,7 +129,7 @@ def _scale(motion: Motion, k: int, counted: Number) -> Number:
 
 
 def centre_findings(motion: Motion) -> Iterator[Finding]:
-    """Velocities from centres, and the theorem itself, at poses where they are well conditioned.
+    """Find what velocities from centres leave, where poses are well conditioned. The theorem itself is checked too.
 
     Nothing for a motion without velocities, without drivers, or of more than MOST_LINKS links.
     """

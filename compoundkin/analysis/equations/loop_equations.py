@@ -46,33 +46,33 @@ MOST_LOOPS = 200
 
 @dataclass(frozen=True, eq=False, repr=False)
 class VectorLoop(PrintsShort):
-    """A closed loop of links: the sum of its vectors is zero, in x and in y."""
+    """A closed loop of links, whose vectors have the sum zero. The sum is so in x and in y."""
 
     loop: Loop
     terms: tuple[Term, ...]
 
     def at(self, values: Values) -> Number:
-        """What is to be zero, complex."""
+        """Return what is to be zero, complex."""
         return sum((term.at(values) for term in self.terms), 0j)
 
 
 @dataclass(frozen=True, eq=False)
 class DriverEquation:
-    """A driver's equation: a sum of unknowns has the value that the driver is given."""
+    """The equation of a driver: a sum of unknowns has its given value."""
 
     driver: str
     sum: Sum
     is_angle: bool
 
     def at(self, values: Values, given: Number) -> Number:
-        """What is to be zero; angles but for whole turns."""
+        """Return what is to be zero; angles but for whole turns."""
         gap = self.sum.at(values) - given
         return wrapped(gap) if self.is_angle else gap
 
 
 @dataclass(frozen=True, eq=False)
 class LoopEquations:
-    """All equations of a mechanism, the unknowns they are for, and the lengths that are known, by their symbols."""
+    """All equations of a mechanism, their unknowns and known lengths. The lengths go by their symbols."""
 
     structure: Structure
     loops: tuple[VectorLoop, ...]
@@ -97,7 +97,7 @@ class LoopEquations:
 
 
 def loop_equations(mechanism: Mechanism | Structure) -> LoopEquations:
-    """The vector-loop equations of a mechanism.
+    """Return the vector-loop equations of a mechanism.
 
     Each link has a vector from pair to pair, at the link's angle; a slide adds its displacement along its guide, and
     ties the angles of block and guide. A pin in a slot, a disc cam and the like are crossed by the block or bar that
@@ -136,11 +136,11 @@ class _Walk:
         self.lengths: dict[str, Number] = {}
 
     def around(self, loop: Loop) -> Iterator[Term]:
-        """The vectors of a loop."""
+        """Return the vectors of a loop."""
         yield from self._through(loop.links, loop.pairs, self._side(loop.pairs[-1], loop.links[0]))
 
     def along(self, links: Sequence[str], pairs: Sequence[Pair], start: Side, end: Side) -> Iterator[Term]:
-        """The vectors of an open way, from a point of its first link to one of its last."""
+        """Return the vectors of an open way. It runs from a point of its first link to one of its last."""
         last = yield from self._through(links, pairs, start)
         yield from self._on(links[-1], *last, *end)
 

@@ -18,7 +18,7 @@ Equation: TypeAlias = VectorLoop | Auxiliary | Implicit | DriverEquation
 
 
 def text(equation: Equation) -> str:
-    """An equation as a line of text.
+    """Write an equation as a line of text.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.analysis.equations import loop_equations
@@ -29,7 +29,7 @@ def text(equation: Equation) -> str:
 
 
 def latex(equation: Equation) -> str:
-    """An equation as LaTeX, without the dollar signs."""
+    """Write an equation as LaTeX, without the dollar signs."""
     return _equation(equation, _LATEX)
 
 

@@ -25,7 +25,7 @@ TRIED = 7
 
 
 class Curve(ABC):
-    """A smooth plane curve in a link's own frame: points C(s), complex, for s between `low` and `high`.
+    """A smooth plane curve in a link's own frame. Its points are C(s), complex, for s between `low` and `high`.
 
     A closed curve is periodic: any s is meant modulo ``high - low``. An open one goes on smoothly beyond its ends;
     what is searched for (`foot`, `support`) stays on it. Series are in time, their coefficients numbers or arrays of
@@ -41,15 +41,15 @@ class Curve(ABC):
         """Return the Taylor coefficients of C at parameters within the period, an array of any shape."""
 
     def expansion(self, s: Number, order: int) -> tuple[Number, ...]:
-        """Return the Taylor coefficients 0 .. order of C at the parameters `s`: complex, of the shape of `s`."""
+        """Return C's Taylor coefficients 0 .. order at `s`. They are complex, of the shape of `s`."""
         return self._expansion(self.wrapped(s), order)
 
     def derivatives(self, s: Number, order: int) -> list[Number]:
-        """Return C and its derivatives by s up to an order: complex, of the shape of `s`."""
+        """Return C and its derivatives by s up to an order. They are complex, of the shape of `s`."""
         return [c * factorial(k) for k, c in enumerate(self.expansion(s, order))]
 
     def wrapped(self, s: Number) -> Number:
-        """Return the same parameters between `low` and `high` on a closed curve; on an open one as they are."""
+        """Return the same parameters between `low` and `high` if closed. On an open curve they stay as they are."""
         s = np.asarray(s, dtype=float)[()]
         return s - turns_above(s, self.low, self.high - self.low) if self.closed else s
 
@@ -64,21 +64,21 @@ class Curve(ABC):
         return composed(differentiated(self.expansion(s.c[0], s.order + 1)), s).unit()
 
     def normal(self, s: Series | Number) -> Series:
-        """Return the unit vector to the right of the tangent: outward on a counterclockwise curve."""
+        """Return the unit vector to the right of the tangent. It points outward on a counterclockwise curve."""
         return self.tangent(s) * -1j
 
     def curvature(self, s: Number) -> Number:
-        """Return the curvature, 1 / length: positive where the curve turns left, as counterclockwise convex ones do."""
+        """Return the curvature, 1 / length. Left turns, as those of counterclockwise convex curves, are positive."""
         _, first, second = self.derivatives(s, 2)
         return cross(first, second) / np.abs(first) ** 3
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """The parameters, within the period, at which derivatives may jump: none of a curve smooth all along."""
+        """The parameters, within the period, at which derivatives may jump. A curve smooth all along has none."""
         return ()
 
     def smooth_piece(self, s: Number, more: tuple[float, ...] = ()) -> Number:
-        """Return on which smooth piece between two `breaks`, or some `more`, parameters lie: an index."""
+        """Return the index of the parameters' smooth piece. Pieces are between two `breaks`, or some `more`."""
         breaks = np.sort([*self.breaks, *more])
         found = np.searchsorted(breaks, self.wrapped(s))
         return found % breaks.size if self.closed and breaks.size else found
@@ -104,7 +104,7 @@ class Curve(ABC):
 
     @property
     def is_counterclockwise(self) -> bool:
-        """Whether the area inside is on the left; an open curve is closed by its chord."""
+        """Whether the area inside is on the left. An open curve is closed by its chord."""
         return self.samples.area > 0.0
 
     @cached_property
@@ -122,7 +122,7 @@ class Curve(ABC):
     # --- what touches the curve ---
 
     def foot(self, p: Series | Number) -> Series:
-        """Find the parameter of the point of the curve nearest to a point that moves.
+        """Find the parameter of the curve's point nearest to a moving point.
 
         The nearest of the whole curve; of two places equally near within the square of the samples' distance, either.
         Where it is an end of an open curve and the point lies beyond (`beyond`), it stays there. Coefficients after the
@@ -135,7 +135,7 @@ class Curve(ABC):
         return foot(self, as_series(p))
 
     def support(self, n: Series | Number) -> Series:
-        """Find the parameter of the point farthest in a direction that turns: where a face with this normal touches.
+        """Find the parameter of the point farthest in a direction that turns. A face with this normal touches there.
 
         `n` is the face's normal away from the curve, of any length. Where an end of an open curve is farthest, it stays
         there. Of several points equally far, any; coefficients after the first are not finite where the curve is
@@ -148,14 +148,14 @@ class Curve(ABC):
         return farthest(self, as_series(n))
 
     def beyond(self, p: Series | Number, known: Series | None = None) -> Number:
-        """Tell whether points lie beyond an end of an open curve, which then is their foot (`known`, if it is)."""
+        """Tell whether points lie beyond an end of an open curve. Their foot is that end then (`known`, if it is)."""
         p = as_series(p).c[0]
         s = (self.foot(p) if known is None else known).c[0]
         place, along = self.expansion(s, 1)
         return held(self, s, dot(p - place, along) / np.abs(along) / self.size)
 
     def offset(self, distance: float) -> Analytic:
-        """Return the parallel curve at a distance along the normal: outside a counterclockwise curve if positive.
+        """Return the parallel curve at a distance along the normal. It is outside a counterclockwise one if positive.
 
         Its own direction turns back where the curve is undercut, see `undercut`.
 
@@ -172,7 +172,7 @@ class Curve(ABC):
         return Analytic(parallel, self.low, self.high, self.closed, self.breaks)
 
     def undercut(self, distance: float) -> tuple[tuple[float, float], ...]:
-        """Find the spans of s where the parallel curve turns back: ``1 + distance * curvature`` is not positive.
+        """Find the spans of s where the parallel curve turns back. There ``1 + distance * curvature`` is not positive.
 
         On a closed curve a span may run past `high`; spans shorter than the distance of two samples are not seen.
         Differentiating C + d n with Frenet's ``n' = curvature |C'| tangent`` gives ``|C'| (1 + d curvature)`` along it.
@@ -182,7 +182,7 @@ class Curve(ABC):
 
 @dataclass(frozen=True)
 class Analytic(Curve):
-    """A curve by a formula in series arithmetic: `function` takes the parameter as a `Series` and gives the point.
+    """A curve by a formula in series arithmetic. `function` takes the parameter as a `Series` and gives the point.
 
     Derivatives of any order are those of the formula, exact to rounding. Raises `InvalidMechanism` if the range of s is
     empty, a point is not finite, or a closed curve does not close.

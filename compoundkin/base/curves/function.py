@@ -23,7 +23,7 @@ FEWEST_PIECES, MOST_PIECES = 32, 16384
 
 @dataclass(frozen=True)
 class Function(Curve):
-    """The curve that a function gives: `function` takes an array of parameters and gives complex points.
+    """The curve that a function gives. `function` takes an array of parameters and gives complex points.
 
     It is called at once, for as many parameters as a spline needs to follow it within 1e-11 of its size. Raises
     `InvalidMechanism` if the function does not take arrays or gives another shape, points are not finite, a closed

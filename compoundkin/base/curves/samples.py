@@ -24,7 +24,7 @@ CLOSES = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Points of a curve at equally spaced parameters `s`; of a closed curve the last is the one before the first."""
+    """Points of a curve at equally spaced parameters `s`. On a closed curve the last is the one before the first."""
 
     s: Number
     points: Number
@@ -54,7 +54,7 @@ class Samples:
         return float(np.sum(speed(places) @ weights) * 0.5 * self.step)
 
     def around(self, index: Number) -> tuple[Number, Number, Number]:
-        """Return the parameters of samples between those of their neighbours; ends of an open curve are bounds."""
+        """Return the parameters of samples between those of their neighbours. Ends of an open curve are bounds."""
         s = self.s[index]
         if self.closed:
             return s - self.step, s, s + self.step
@@ -88,7 +88,7 @@ class Samples:
 
 
 def convex_hull(points: Number) -> Number:
-    """Find the corners of the convex hull, counterclockwise; two if all points lie on a line.
+    """Find the corners of the convex hull, counterclockwise. There are two if all points lie on a line.
 
     Source: A. M. Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979.
 
@@ -116,7 +116,7 @@ def _turns_left(a: complex, b: complex, c: complex) -> bool:
 def spans(
     samples: Samples, low: float, high: float, margin: Callable[[Number], Number]
 ) -> tuple[tuple[float, float], ...]:
-    """Find the spans of parameters where `margin` is not positive; on a closed curve the last may run past `high`.
+    """Find the spans of parameters where `margin` is not positive. On a closed curve the last may run past `high`.
 
     >>> s = np.linspace(0.0, 1.0, 11)
     >>> ((start, end),) = spans(Samples(s, s + 0j, closed=False), 0.0, 1.0, lambda s: s - 0.25)
@@ -152,7 +152,10 @@ def checked_range(low: float, high: float) -> None:
 
 
 def check_points(s: Number, points: Number, size: float, closed: bool) -> None:
-    """Raise `InvalidMechanism` unless all points are finite and, on a closed curve, the last is the first."""
+    """Raise `InvalidMechanism` unless points are finite and close a closed curve.
+
+    It is closed where the last is the first.
+    """
     lost = ~np.isfinite(points)
     if lost.any():
         raise InvalidMechanism(Problem(f"s = {s[lost][0]:g}", "the point of the curve is not a finite number"))

@@ -18,7 +18,7 @@ STEPS = 6
 
 
 class Crossing(NamedTuple):
-    """A point that a curve passes twice, and the two parameters at which it does."""
+    """A point that a curve passes twice, and the parameters of both."""
 
     point: complex
     first: float

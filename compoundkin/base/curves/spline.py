@@ -73,7 +73,7 @@ def interpolated(s: Number, points: Number, degree: int, closed: bool) -> Pieces
 
 @dataclass(frozen=True)
 class Spline(Curve):
-    """The spline through points in a link's frame: quintic (five points or fewer: cubic), `closed` or open.
+    """The spline through points in a link's frame. It is quintic (five points or fewer: cubic), `closed` or open.
 
     `points` are four or more complex numbers; a closed curve may repeat its first point as the last. The parameter
     is nearly the length of arc from the first point. Raises `InvalidMechanism` for fewer points, points that are not
@@ -122,7 +122,7 @@ class Spline(Curve):
 
 
 def checked_points(given: Sequence[complex] | Number, closed: bool) -> Number:
-    """Return the points as an array, the first not repeated at the end; else raise `InvalidMechanism`."""
+    """Return the points as an array, the first not repeated at the end. Raise `InvalidMechanism` for wrong ones."""
     try:
         points = np.array(given, dtype=complex)
     except (TypeError, ValueError):

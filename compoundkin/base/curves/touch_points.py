@@ -39,17 +39,17 @@ class Searched(Protocol):
         """The length scale of the curve."""
 
     def expansion(self, s: Number, order: int) -> tuple[Number, ...]:
-        """Taylor coefficients of the curve."""
+        """Return the Taylor coefficients of the curve."""
 
     def derivatives(self, s: Number, order: int) -> list[Number]:
-        """The curve and its derivatives."""
+        """Return the curve and its derivatives."""
 
     def wrapped(self, s: Number) -> Number:
-        """Parameters within the period."""
+        """Return the parameters within the period."""
 
 
 def foot(curve: Searched, p: Series) -> Series:
-    """Find the parameter of the point of the curve nearest to a point that moves."""
+    """Find the parameter of the curve's point nearest to a moving point."""
 
     def rise(s: Number, point: Number) -> tuple[Number, Number]:
         place, first, second = curve.derivatives(s, 2)
@@ -61,7 +61,7 @@ def foot(curve: Searched, p: Series) -> Series:
 
 
 def farthest(curve: Searched, n: Series) -> Series:
-    """Find the parameter of the point of the curve farthest in a direction that turns."""
+    """Find the parameter of the curve's point farthest in a turning direction."""
 
     def rise(s: Number, direction: Number) -> tuple[Number, Number]:
         _, first, second = curve.derivatives(s, 2)
@@ -100,7 +100,7 @@ def _touching(
 
 
 def held(curve: Searched, s: Number, ahead: Number) -> Number:
-    """Tell where a search ended at an end of the curve, its aim this far ahead (a pure number)."""
+    """Tell where a search ended at an end of the curve. Its aim is this far ahead (a pure number)."""
     if curve.closed:
         return np.zeros(np.shape(s), dtype=bool)[()]
     return ((s <= curve.low) & (ahead < -BEYOND)) | ((s >= curve.high) & (ahead > BEYOND))

@@ -23,7 +23,9 @@ from compoundkin.kinematics.assembly.rotation_equations import RotationEquations
 
 @dataclass(frozen=True)
 class Sets:
-    """The sets of l and of l - 1 of n = 2 l - 1 indices, as index arrays, and how they go together.
+    """The sets of l and of l - 1 of n indices.
+
+    There are n = 2 l - 1. They are index arrays, and say how they go together.
 
     `large` (A, l) and `small` (B, l - 1), their complements and the signs of their terms. A step is a small set
     and an index that is not in it: `step_small`, `step_index`, `step_large` (their union), `step_sign`.
@@ -80,7 +82,7 @@ def _sign(power: int) -> int:
 
 
 def pencil(loops: RotationEquations, suppressed: int) -> tuple[Number, Number]:
-    """Return the matrices P and Q (..., N, N), N = C(2 l, l); the large sets come first."""
+    """Return the matrices P and Q (..., N, N), N = C(2 l, l). The large sets come first."""
     kept = [k for k in range(loops.rotations) if k != suppressed]
     own = sets(loops.count)
     f, g = loops.columns[..., 0][..., kept, :], loops.columns[..., 1][..., kept, :]
@@ -111,7 +113,7 @@ def _bordered(first: Number, rows: Number, chosen: Number) -> Number:
 
 
 def roots(loops: RotationEquations, suppressed: int, kept: Number, shift: complex) -> Number:
-    """Find candidates for all solutions, (..., candidates, rotations), NaN where an eigenvalue is at infinity.
+    """Find candidates for all solutions, (..., candidates, rotations). They are NaN where an eigenvalue is at infinity.
 
     `kept` are the sets whose rows are not zero; `shift` is a number near which no solution is expected.
     """

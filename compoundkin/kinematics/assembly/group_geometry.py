@@ -21,7 +21,7 @@ SAME = 1e-12
 
 @dataclass(frozen=True)
 class Connection:
-    """A pin or a slide between two bodies, or between a body and what is known.
+    """A pin or a slide between two bodies, or to what is known.
 
     `bodies` are two indices, None for what is known. A pin holds `points[0]` of the first on `points[1]` of the
     second. With `directions` it is a slide: the first carries a guide through its point, along which the
@@ -36,7 +36,9 @@ class Connection:
 
 @dataclass(frozen=True)
 class GroupGeometry:
-    """Bodies 0 to `n` - 1 held by `connections`, exactly as many as fix them all; `size` is a typical length.
+    """Bodies 0 to `n` - 1 with the `connections` that fix them all.
+
+    There are exactly as many as needed; `size` is a typical length.
 
     Raises `InvalidInput` where the number of connections does not fit.
 
@@ -77,14 +79,17 @@ class GroupGeometry:
         return len(known) - 1
 
     def graph(self) -> GroupGraph:
-        """Return what does not depend on dimensions: which bodies are joined, by what, and which pins coincide."""
+        """Return what does not depend on dimensions.
+
+        It tells which bodies are joined, by what, and which pins coincide.
+        """
         slides = tuple(c.directions is not None for c in self.connections)
         return GroupGraph(self.n, tuple(c.bodies for c in self.connections), slides, self.pins())
 
 
 @dataclass(frozen=True)
 class GroupGraph:
-    """A group without its dimensions; it can be hashed, so that what depends on it alone is found once."""
+    """A group without its dimensions. It can be hashed, so that what depends on it alone is found once."""
 
     n: int
     bodies: tuple[tuple[int | None, int | None], ...]
@@ -92,7 +97,9 @@ class GroupGraph:
     pins: tuple[tuple[int, int], ...]
 
     def tree(self) -> tuple[tuple[tuple[int, int], ...], tuple[int, ...]]:
-        """Build a spanning tree outward from what is known: (connection, new body) in order, and the other connections.
+        """Build a spanning tree outward from what is known.
+
+        It has (connection, new body) in order, and the other connections.
 
         Breadth first, so that loops are short.
         """
@@ -116,7 +123,9 @@ class GroupGraph:
                 yield k, a
 
     def random(self, rng: np.random.Generator) -> tuple[Number, Number]:
-        """Draw random dimensions with the same coinciding pins: points and directions (connections, 2 sides, 2).
+        """Draw random dimensions with the same coinciding pins.
+
+        They are points and directions (connections, 2 sides, 2).
 
         In isotropic coordinates, the two of a point independent, as a generic complex instance needs.
         """
@@ -134,7 +143,7 @@ class GroupGraph:
 
 
 def from_group(group: Group, block: Block, size: float) -> GroupGeometry:
-    """Return the group as it is attached in a block, at all its poses; body k is the group's body k.
+    """Return the group as it is attached in a block, at all its poses. Body k is the group's body k.
 
     A composite body is taken in the frame of its base link, `links[0]`, with its shape at each pose. Raises
     `InvalidInput` where the group holds higher pairs, whose configurations are not finitely many rotations.

@@ -39,7 +39,9 @@ LENGTHS = StepLengths(first=0.02, longest=0.1, shortest=1e-9, easy=3, most=2000)
 
 
 class MovingSystem(NamedTuple):
-    """A system H(x, t) = 0 of paths: residuals (paths, d), its derivatives by x (paths, d, d) and by t (paths, d).
+    """A system H(x, t) = 0 of paths.
+
+    It gives residuals (paths, d), its derivatives by x (paths, d, d) and by t (paths, d).
 
     Each is called with the indices of some paths, their x (paths, d) and t (paths,).
     """
@@ -64,7 +66,7 @@ def generic_count(graph: GroupGraph) -> int:
 
 
 def roots(loops: RotationEquations, graph: GroupGraph) -> Number:
-    """Find candidates for all solutions (poses, candidates, unknowns), NaN for paths that go to infinity."""
+    """Find candidates for all solutions (poses, candidates, unknowns). Paths that go to infinity give NaN."""
     start, x = generic(graph)
     poses = len(loops.constant)
     ends = follow_paths(_between(start, loops, len(x)), np.tile(x, (poses, 1)))
@@ -178,7 +180,7 @@ def _random(rng: np.random.Generator, *shape: int) -> Number:
 
 
 def follow_paths(moving: MovingSystem, start: Number) -> Number:
-    """Follow paths from `start` (paths, d) at t = 0 to t = 1; those that do not arrive there are NaN."""
+    """Follow paths from `start` (paths, d) at t = 0 to t = 1. Those that do not arrive there are NaN."""
     x, t = np.array(start, dtype=complex), np.zeros(len(start))
 
     def step(i: Number, longest: Number) -> Taken:

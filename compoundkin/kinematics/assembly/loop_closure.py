@@ -11,7 +11,7 @@ from compoundkin.kinematics.assembly.rotation_equations import BodyRotations, Ro
 
 
 def rotation_equations_of(geometry: GroupGeometry) -> RotationEquations:
-    """Write the loop equations of a group at all its poses, lengths divided by its size.
+    """Write the loop equations of a group at all its poses. Lengths are divided by its size.
 
     >>> from compoundkin.kinematics.assembly.group_geometry import Connection
     >>> dyad = GroupGeometry(2, (

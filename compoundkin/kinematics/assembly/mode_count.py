@@ -32,7 +32,7 @@ Rank: TypeAlias = Callable[[int], int]
 
 @lru_cache(maxsize=256)
 def exact_count(graph: GroupGraph) -> int | None:
-    """Count the configurations over the complex numbers for generic dimensions; None where slides are held.
+    """Count the configurations over the complex numbers for generic dimensions. None where slides are held.
 
     >>> from compoundkin.kinematics.assembly.group_geometry import GroupGraph
     >>> exact_count(GroupGraph(2, ((None, 0), (0, 1), (None, 1)), (False,) * 3, ((0, 0), (1, 0), (1, 1))))
@@ -47,7 +47,7 @@ def exact_count(graph: GroupGraph) -> int | None:
 
 
 def intersections(n: int, first: Rank, second: Rank) -> int:
-    """Count how often a generic linear space meets the inverse of another, by the ranks of coordinates.
+    """Count how often a generic linear space meets the inverse of another. The ranks of coordinates tell it.
 
     `n` coordinates; the ranks of all of them must add up to n + 1, else the count is zero.
     """

@@ -26,7 +26,7 @@ BLOCK = 1 << 21
 
 
 def distinct(x: Number) -> Number:
-    """Keep every solution once, from (poses, found, unknowns); NaN rows are none, and pad the poses that have fewer.
+    """Keep every solution once, from (poses, found, unknowns). NaN rows are none, and pad the poses that have fewer.
 
     >>> distinct(np.array([[[1.0], [np.nan], [2.0], [1.0]]])).ravel().tolist()
     [1.0, 2.0]
@@ -43,7 +43,7 @@ def distinct(x: Number) -> Number:
 
 
 def packed(x: Number, kept: Number) -> Number:
-    """Put the kept rows of every pose first, cut to the most that any has."""
+    """Put every pose's kept rows first, cut to the most of any."""
     order = np.argsort(~kept, axis=-1, kind="stable")
     most = int(kept.sum(axis=-1).max(initial=0))
     out = np.take_along_axis(np.where(kept[..., None], x, np.nan), order[..., None], axis=1)
@@ -56,7 +56,7 @@ def padded(x: Number, width: int) -> Number:
 
 
 def solutions(loops: RotationEquations, expected: int, solved: Callable[[RotationEquations], Number]) -> Number:
-    """Find all solutions (poses, solutions, unknowns), padded with NaN; `solved` finds those of some poses anew."""
+    """Find all solutions (poses, solutions, unknowns), padded with NaN. `solved` finds those of some poses anew."""
     poses = len(loops.constant)
     found = np.full((poses, expected, loops.columns.shape[-3]), np.nan, dtype=complex)
     first = np.unique([*range(0, poses, STRIDE), poses - 1])

@@ -36,7 +36,7 @@ SMALL = 1e-2
 
 @dataclass(frozen=True)
 class BodyRotations:
-    """Which rotation each body has: `rotation[b]` an index or None for a known one, and the bodies' factors.
+    """The rotation of each body. `rotation[b]` is an index or None for a known one, and the bodies' factors follow.
 
     `factors` (..., n, 2) are the isotropic unit numbers by which a body is turned from its rotation.
     """
@@ -47,7 +47,9 @@ class BodyRotations:
 
 @dataclass(frozen=True)
 class RotationEquations:
-    """Loop equations: `constant` (..., l, 2), `columns` (..., unknowns, l, 2), the last axis f and f*.
+    """The loop equations in f and f*, the last axis.
+
+    `constant` (..., l, 2) and `columns` (..., unknowns, l, 2) are their coefficients.
 
     The first `rotations` unknowns are rotations; unknown `rotations` + i is the displacement of a slide whose
     guide has the rotation `guides[i]` (None for a known one). `origins` (..., n, 1 + unknowns, 2) give every
@@ -93,13 +95,16 @@ class RotationEquations:
         )
 
     def changed(self, other: RotationEquations, part: float) -> RotationEquations:
-        """Move the dimensions by a part of those of another instance of the same graph."""
+        """Move the dimensions a part of the way to another instance's. Its graph is the same."""
         return replace(
             self, constant=self.constant + part * other.constant, columns=self.columns + part * other.columns
         )
 
     def bodies(self, x: Number) -> tuple[Number, Number]:
-        """Return orientations and origins (poses, solutions, n) of the bodies from unknowns (poses, solutions, ...)."""
+        """Return orientations and origins of the bodies from unknowns.
+
+        They are (poses, solutions, n), the unknowns (poses, solutions, ...).
+        """
         full = np.concatenate([np.where(np.isfinite(x[..., :1]), 1.0, np.nan), x], axis=-1)
         rows = [0 if k is None else 1 + k for k in self.body_rotations.rotation]
         return full[..., rows] * self.body_rotations.factors[:, None, :, 0], full @ np.swapaxes(
@@ -118,7 +123,10 @@ def isotropic(z: Number) -> Number:
 
 
 def conjugates(loops: RotationEquations, x: Number) -> Number:
-    """Return the conjugate unknowns: 1 / Theta, and S / Theta^2 for a displacement on a guide that turns by Theta."""
+    """Return the conjugate unknowns.
+
+    They are 1 / Theta, and S / Theta^2 for a displacement on a guide that turns by Theta.
+    """
     r = loops.rotations
     inverse = 1 / x[..., :r]
     shifts = [x[..., r + i] * (1.0 if g is None else inverse[..., g] ** 2) for i, g in enumerate(loops.guides)]
@@ -141,7 +149,7 @@ def terms(loops: RotationEquations, x: Number) -> Number:
 
 
 def jacobian(loops: RotationEquations, x: Number) -> Number:
-    """Return the derivatives of the equations by the unknowns, (poses, starts, 2 l, 2 l)."""
+    """Return the derivatives of the equations, (poses, starts, 2 l, 2 l). They are by the unknowns."""
     r = loops.rotations
     rows = np.swapaxes(loops.columns, -3, -2)
     f = np.broadcast_to(rows[:, None, ..., 0], (*x.shape[:2], *rows.shape[-3:-1]))
@@ -173,7 +181,7 @@ def polish(loops: RotationEquations, x: Number, steps: int = STEPS) -> Number:
 
 
 def holds(loops: RotationEquations, x: Number) -> Number:
-    """Tell where the loop equations hold, (poses, starts), at rotations that are finite and not zero."""
+    """Tell where the loop equations hold, (poses, starts). The rotations must be finite and not zero."""
     size = np.abs(x[..., : loops.rotations])
     finite = np.all((size < FARTHEST) & (size > 1 / FARTHEST), axis=-1)
     return finite & np.all(np.abs(residual(loops, x)) <= HOLDS * terms(loops, x), axis=-1)

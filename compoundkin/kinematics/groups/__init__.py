@@ -23,7 +23,7 @@ DYADS: dict[str, type[DyadSolver]] = {kind.name: kind for kind in SOLVERS if iss
 
 
 def solver_of(index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> GroupSolver:
-    """Return the solver of a group: of the first way that fits; the last one fits all."""
+    """Return the solver of a group, of the first way that fits. The last one fits all."""
     found = (kind.of(index, group, size, ends) for kind in SOLVERS)
     return next(solver for solver in found if solver is not None)
 

@@ -16,7 +16,7 @@ from compoundkin.model.pairs import Pair
 
 @dataclass(frozen=True)
 class Member:
-    """One side of a pair: the link, and the index of its body in the group or None for a known link."""
+    """One side of a pair. The link, and the index of its body in the group or None for a known link."""
 
     link: str
     body: int | None
@@ -31,7 +31,7 @@ class Member:
 
 @dataclass(frozen=True)
 class BarPin:
-    """A pin of a bar: its number among the group's pairs, its sides, and which of them is the bar's."""
+    """A pin of a bar. Its number among the group's pairs, its sides, and which of them is the bar's."""
 
     number: int
     pair: Pair
@@ -53,13 +53,16 @@ class BarPin:
 
 @dataclass(frozen=True)
 class Bar:
-    """A body with two pins: it holds one coordinate, the distance of the points at their other sides."""
+    """A body with two pins. It holds one coordinate, the distance of the points at their other sides."""
 
     body: int
     pins: tuple[BarPin, BarPin]
 
     def residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> Number:
-        """Return the k-th coefficient of half the squared distance less the squared length, by the length."""
+        """Return the k-th coefficient of half the squared distance, by the length.
+
+        The squared length is subtracted from that of the distance.
+        """
         (_, one), (_, two) = (pin.at_other(bodies, block, k) for pin in self.pins)
         length2 = self._length2(block)
         gap = (two - one).abs2() - Series(length2.c[: k + 1])
@@ -88,7 +91,7 @@ class Bar:
 
 
 def bars_of(n: int, pairs: Sequence[Pair], members: Sequence[Sequence[Member]]) -> tuple[Bar, ...]:
-    """Return as many of `n` bodies with two pins as can be left out together: no two of them on one pin.
+    """Return as many two-pin bodies as can be left out together. They are of `n` bodies; no two of them are on one pin.
 
     Those with fewest such neighbours first; the others remain bodies like any.
     """
@@ -121,7 +124,7 @@ def _neighbours(bar: Bar) -> list[int]:
 
 
 def add_point(row: Row, column: int, along: Number, arm: Number) -> None:
-    """Add what a body's x, y, theta move its point, at an arm from its origin, in a direction."""
+    """Add what a body's x, y, theta move its point in a direction. The point is at an arm from the body's origin."""
     add(row, column, (along.real, along.imag, along.imag * arm.real - along.real * arm.imag))
 
 

@@ -25,7 +25,7 @@ from compoundkin.structure.parts import Body, Group
 
 
 class GroupSolver(ABC):
-    """A group of a structure, made ready to be solved on any block: what it needs is bound once.
+    """A group of a structure, made ready to be solved on any block. What it needs is bound once.
 
     `index` is its place in the solving order. `ends` are those of lower pairs that stand for others, `counted_from`
     the links from whose angles, full turns counted, its own are taken.
@@ -65,7 +65,7 @@ class GroupSolver(ABC):
 
     @abstractmethod
     def why(self, block: Block, at: int) -> str:
-        """Say why the group cannot be assembled at a pose, given by its flat index."""
+        """Say why the group cannot be assembled at a pose's flat index."""
 
     @property
     def is_numbered(self) -> bool:
@@ -79,11 +79,11 @@ class GroupSolver(ABC):
 
     @property
     def modes_may_meet(self) -> bool:
-        """Whether it may pass from one mode to the other, where its margin is zero."""
+        """Whether it may pass between its modes, where its margin is zero."""
         return self.modes == 2 and self.tells_margin
 
     def margin(self, block: Block) -> Number | None:
-        """Return how far it is from its limit position, negative beyond; None where it does not say."""
+        """Return how far it is from its limit position, negative beyond. It is None where it does not say."""
         return block.margins.get(self.index)
 
     def in_modes(self, block: Block) -> Configurations:
@@ -108,7 +108,7 @@ def equations_of(solver: GroupSolver) -> GroupEquations:
 
 @dataclass(frozen=True)
 class Side:
-    """One group body's part in a pair: the pair, and which of its members the group's link is."""
+    """One group body's part in a pair. The pair, and which of its members the group's link is."""
 
     pair: Pair
     own: int
@@ -134,7 +134,7 @@ def side_of(pair: Pair, body: Body) -> Side:
 
 
 class MountedBody:
-    """A body on a lower pair to a link that is known, as a value of the pair's coordinate places it."""
+    """A body on a lower pair to a known link. A value of the pair's coordinate places it."""
 
     def __init__(self, lower: Drivable, higher: Pair, body: Body) -> None:
         self.lower = lower

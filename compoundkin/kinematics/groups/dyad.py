@@ -30,14 +30,14 @@ COINCIDENT = 1e-13
 
 
 class OuterPair(NamedTuple):
-    """An outer pair: its side in the world, and its side in the frame of the group's body."""
+    """The two sides of an outer pair. One is in the world, and one in the frame of the group's body."""
 
     world: End
     local: End
 
 
 class Closed(NamedTuple):
-    """A group solved: the poses of its two bodies, and the margin, negative where it cannot be assembled.
+    """A group solved. The poses of its two bodies, and the margin, negative where it cannot be assembled.
 
     For a group of two modes the margin is the squared sine of the angle in which the modes differ. `meeting`
     is a squared length whose zero leaves the pose undetermined, for groups that have such a place.
@@ -49,7 +49,10 @@ class Closed(NamedTuple):
 
 
 class DyadSolver(GroupSolver):
-    """A group of two bodies; or one body on a higher pair for which lower pairs and a body between them stand."""
+    """The solver of a group of two bodies.
+
+    One body on a higher pair does, for which lower pairs and a body between them stand.
+    """
 
     name: ClassVar[str]
     follows_inner: ClassVar[bool] = False  # whether the first body must carry the inner pair's first member
@@ -60,7 +63,7 @@ class DyadSolver(GroupSolver):
     def assemble(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, sign: Number, root: Root = clipped_root
     ) -> Closed:
-        """Assemble the bodies; `inner` is the inner pair's side on the first and on the second body.
+        """Assemble the bodies. `inner` is the inner pair's side on the first and on the second body.
 
         `root` takes the square root of the discriminant, given a scale of its terms, and gives the margin.
         """
@@ -70,7 +73,7 @@ class DyadSolver(GroupSolver):
     def explain(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:
-        """Say why it cannot be assembled at the flat pose index `at`; `names` are the letters of its pairs."""
+        """Say why it cannot be assembled at the flat pose index `at`. `names` are the letters of its pairs."""
 
     def __init__(self, index: int, group: Group, size: float, dyad: Group, ends: Mapping[str, Ends]) -> None:
         super().__init__(index, group)
@@ -85,7 +88,7 @@ class DyadSolver(GroupSolver):
 
     @classmethod
     def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self | None:
-        """Return the solver of a dyad of this kind, and of a body for whose higher pair such a dyad stands."""
+        """Return the solver of a dyad of this kind. A body is one for whose higher pair such a dyad stands."""
         if group.name == cls.name:
             return cls(index, group, size, group, {})
         dyad, more = _by_lower_pairs(group, ends)
@@ -144,7 +147,7 @@ def placed_at(point: Series, u: Series, local: Series | Number) -> Pose:
 
 
 def element(value: Number, at: int) -> float:
-    """Return one element, by its flat index, of an array; or the number that holds for all."""
+    """Return one element, by its flat index, of an array. Or the number that holds for all."""
     flat = np.asarray(value).ravel()
     return float(flat[at if flat.size > 1 else 0])
 

@@ -31,7 +31,9 @@ HALVINGS = 40
 
 
 class FollowerSolver(GroupSolver):
-    """A contact has two places at most that count; what the modes mean is that of the dyad for a round disc.
+    """The solver of a contact with two places at most that count.
+
+    What the modes mean is that of the dyad for a round disc.
 
     On a slide mode +1 is farthest along the guide. On a pin it is the most clockwise place for a roller or edge; a face
     touches in its own direction, seen from the foot of the pin on it.
@@ -51,7 +53,7 @@ class FollowerSolver(GroupSolver):
 
     @classmethod
     def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self | None:
-        """Return the solver of a body on a pin or slide and on a profile for which no lower pairs stand."""
+        """Return the solver of a body on a pin or slide and a profile. No lower pairs stand for the profile."""
         if len(group.bodies) != 1 or len(group.outer) != 2:
             return None
         lower, higher = sorted(group.outer, key=lambda pair: -pair.held)

@@ -25,7 +25,9 @@ UNIT = Series((0.0, 1.0))
 
 
 class GearTrainSolver(GroupSolver):
-    """Bodies on pins, all of whose angles gear pairs give together; or one that a gear or rack moves in proportion.
+    """The solver of bodies on pins whose angles gear pairs give together.
+
+    It also takes one that a gear or rack moves in proportion.
 
     The closures where all coordinates are zero, by their slopes, give the coordinates: linear equations.
     Source: Willis's equation for every pair, e.g. R. L. Norton, Design of Machinery, section 9.8.
@@ -43,7 +45,10 @@ class GearTrainSolver(GroupSolver):
 
     @classmethod
     def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self | None:
-        """Return the solver of a wheel, and of bodies that hang on pins one after another, joined by gear pairs."""
+        """Return the solver of a wheel, and of bodies that gear pairs join.
+
+        The bodies hang on pins one after another.
+        """
         pairs = (*group.inner, *group.outer)
         if len(group.bodies) == 1 and len(group.outer) == 2:
             lower, higher = sorted(pairs, key=lambda pair: -pair.held)
@@ -107,7 +112,7 @@ class GearTrainSolver(GroupSolver):
         return self.in_modes(block)
 
     def why(self, block: Block, at: int) -> str:
-        """Say what leaves it free: else it can be assembled wherever what it hangs on can."""
+        """Say what leaves it free. Otherwise it can be assembled wherever what it hangs on can."""
         if len(self.mounted) == 1:
             return f"{self.mounted[0].side.pair.name} may move without any effect on {self.highers[0].name}"
         return f"the ratios of {', '.join(pair.name for pair in self.highers)} do not determine it"

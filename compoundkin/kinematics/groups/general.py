@@ -30,7 +30,10 @@ SAME = 1e-6
 
 
 class GeneralSolver(GroupSolver):
-    """A group without a closed form: its configurations have no sign, and are followed along the motion."""
+    """The solver of a group without a closed form.
+
+    Its configurations have no sign, and are followed along the motion.
+    """
 
     modes: ClassVar[int] = 0
     equations: GroupEquations
@@ -59,12 +62,15 @@ class GeneralSolver(GroupSolver):
             block.publish(body, pose)
 
     def every(self, block: Block) -> Configurations:
-        """Return the real configurations, where no theory knows them those that are found from random states."""
+        """Return the real configurations.
+
+        Where no theory knows them, they are those that are found from random states.
+        """
         found = known_configurations(self.group, block, self.equations.size)
         return self._searched(block) if found is None else found
 
     def why(self, block: Block, at: int) -> str:
-        """Say that its path has come to a limit position, or a pair to its end."""
+        """Say that its path came to a limit, or a pair to its end. The limit is a limit position."""
         limit = "the tracked configuration ends at a limit position, where the group's equations become singular"
         profiled = (pair for pair in map(as_profiled, self.pairs) if pair and pair.has_ends)
         open_ = [f"{pair.letters[0]} leaves the profile of {pair.members[0]}" for pair in profiled]
@@ -124,7 +130,7 @@ def _distinct(states: Number, size: float) -> Number:
 
 
 def bodies_at(states: Number) -> list[Pose]:
-    """Return the poses of bodies from states (..., 3 n): x, y, theta of each."""
+    """Return the poses of bodies from states (..., 3 n). They are x, y, theta of each."""
     x, y, theta = states[..., 0::3], states[..., 1::3], states[..., 2::3]
     u, z = np.cos(theta) + 1j * np.sin(theta), x + 1j * y
     return [Pose(constant(z[..., k]), constant(u[..., k]), constant(theta[..., k])) for k in range(x.shape[-1])]

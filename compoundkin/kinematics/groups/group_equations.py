@@ -47,7 +47,7 @@ class Solution(NamedTuple):
 
 
 class GroupEquations:
-    """A group of `n` bodies joined and attached by `pairs`; `members` tells each pair's sides.
+    """A group of `n` bodies joined and attached by `pairs`. `members` tells each pair's sides.
 
     Its state (..., width) is x, y, theta of each body in `kept`: all that are no bars, or with ``bars=False`` all.
     """
@@ -72,7 +72,7 @@ class GroupEquations:
 
     @property
     def weights(self) -> Number:
-        """What makes a change of the state a pure number: parts of the size, radians."""
+        """The weights that make a change of the state a pure number. They are parts of the size, radians."""
         return np.tile([1.0 / self.size, 1.0 / self.size, 1.0], len(self.kept))
 
     def state(self, bodies: list[Pose]) -> Number:
@@ -112,7 +112,9 @@ class GroupEquations:
         return [found[k] for k in range(self.n)]
 
     def rates(self, state: Number, block: Block, order: int) -> tuple[list[Number], Number]:
-        """Return the state's coefficients 1 to `order`, each (..., width), in a block of that order; and its side.
+        """Return the state's coefficients 1 to `order` in a block; and its side.
+
+        Each is (..., width), the block of that order.
 
         The side is the sign of the determinant of the equations: it changes across a singularity.
         """

@@ -25,7 +25,7 @@ class RPP(DyadSolver):
     def assemble(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, sign: Number, root: Root = clipped_root
     ) -> Closed:
-        """Slide the second body along its known guide until the first one's guide passes through."""
+        """Slide the second body along its guide until the first's passes through."""
         track = second.world.along
         v = track * second.local.along.conj()
         guide = v * inner[1].along

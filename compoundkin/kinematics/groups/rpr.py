@@ -17,7 +17,7 @@ from compoundkin.kinematics.limits import Root, clipped_root
 
 
 class RPR(DyadSolver):
-    """Mode +1: along the guide's direction, the outer pin of the block lies beyond that of the guide."""
+    """Mode +1: the block's outer pin lies beyond that of the guide. It does so along the guide's direction."""
 
     name: ClassVar[str] = "RPR"
     modes: ClassVar[int] = 2

@@ -17,7 +17,7 @@ from compoundkin.kinematics.limits import Root, clipped_root
 
 
 class RRP(DyadSolver):
-    """Mode +1: the inner pin is the one farther along the direction of the guide."""
+    """Mode +1: the inner pin is the one farther along the guide."""
 
     name: ClassVar[str] = "RRP"
     modes: ClassVar[int] = 2
@@ -27,7 +27,7 @@ class RRP(DyadSolver):
     def assemble(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, sign: Number, root: Root = clipped_root
     ) -> Closed:
-        """Intersect the circle about the outer pin with the line on which the inner pin runs."""
+        """Intersect the outer pin's circle with the line of the inner pin."""
         rod, start, guide, v = _line(first, inner, second)
         across, along = guide.cross(start), guide.dot(start)
         rod2 = rod.abs2()

@@ -17,7 +17,10 @@ from compoundkin.kinematics.limits import Root, clipped_root
 
 
 class RRR(DyadSolver):
-    """Mode +1: outer pin of the first link, inner pin, outer pin of the second run counterclockwise."""
+    """Mode +1: the pins run counterclockwise.
+
+    They are the outer pin of the first link, the inner pin, the outer pin of the second.
+    """
 
     name: ClassVar[str] = "RRR"
     modes: ClassVar[int] = 2

@@ -131,7 +131,7 @@ class Discontinuity:
 def jumps(
     pieces: Sequence[PositionPiece], end: float, natural: Sequence[float], goes_on: bool
 ) -> tuple[Discontinuity, ...]:
-    """Find where derivatives of order 1, 2 ... jump from piece to piece, and at both ends.
+    """Find where derivatives of order 1, 2 ... jump. They do from piece to piece, and at both ends.
 
     `natural` is what is natural for each order. If it `goes_on`, the end is joined to the beginning.
     """

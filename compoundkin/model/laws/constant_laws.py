@@ -27,7 +27,7 @@ class Compared:
 
 
 def taylor(values: tuple[Number, ...], t: Number, order: int) -> Series:
-    """Return a coordinate that has this value, speed, acceleration ... at time 0, at times t: with all its derivatives.
+    """Return a coordinate at times t with all its derivatives. It has this value, speed, acceleration ... at time 0.
 
     >>> taylor((1.0, 2.0, 6.0), 2.0, order=2).c
     (17.0, 14.0, 3.0)
@@ -103,7 +103,7 @@ class ConstantSpeed(PrintsShort, Compared):
         hold_numbers(self)
 
     def coordinate(self, t: Number, order: int) -> Series:
-        """Value and derivatives at times t (seconds)."""
+        """Return value and derivatives at times t (seconds)."""
         return taylor((self.start, self.speed), t, order)
 
 
@@ -133,5 +133,5 @@ class ConstantAcceleration(PrintsShort, Compared):
         hold_numbers(self)
 
     def coordinate(self, t: Number, order: int) -> Series:
-        """Value and derivatives at times t (seconds)."""
+        """Return value and derivatives at times t (seconds)."""
         return taylor((self.start, self.speed, self.acceleration), t, order)

@@ -52,7 +52,7 @@ class FunctionLaw(Compared):
         return hash(self.f)
 
     def coordinate(self, t: Number, order: int) -> Series:
-        """Value and derivatives at times t (seconds)."""
+        """Return value and derivatives at times t (seconds)."""
         times = np.asarray(t, dtype=float)
         given = self._called(times)[: order + 1]
         if len(given) <= order:

@@ -88,7 +88,7 @@ class TimeTable(PrintsShort, Compared):
         return make_interp_spline(self.times, level, k=min(self.degree, len(self.times) - 1))
 
     def coordinate(self, t: Number, order: int) -> Series:
-        """Value and derivatives at times t (seconds); raises InvalidInput outside the table."""
+        """Return value and derivatives at times t (seconds). Raises InvalidInput outside the table."""
         first, last = self.span
         x = np.asarray(t, dtype=float)
         if self.repeat:

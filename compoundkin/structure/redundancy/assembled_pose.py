@@ -47,7 +47,7 @@ FIRST = (0, 0)
 
 @dataclass(frozen=True)
 class AssembledPose:
-    """The nearest that was found to an assembled pose: its state, and the largest residual in parts of the size.
+    """The nearest that was found to an assembled pose. It has its state, and the largest residual in parts of the size.
 
     `is_given` says that it needed no correction.
     """
@@ -61,7 +61,7 @@ class AssembledPose:
 def corrected(
     equations: ConstraintEquations, state: Array, goal: Array | None = None, steps: int = STEPS
 ) -> AssembledPose:
-    """Find the nearest assembled pose by least steps; with the drivers' coordinates at `goal` if given."""
+    """Find the nearest assembled pose by least steps. The drivers' coordinates are at `goal` if given."""
     closed, rank = equations.tolerance
     determined = UNDETERMINED if equations.tolerance is STRICT else rank
     found = gauss_newton(partial(_system, equations, goal), partial(_least_step, determined), state, steps, REST)
@@ -93,7 +93,7 @@ def _system(equations: ConstraintEquations, goal: Array | None, state: Array) ->
 
 
 def assemble(equations: ConstraintEquations) -> AssembledPose:
-    """Find an assembled pose near the drawing, the drivers free; without one, at the drivers' first values if any."""
+    """Find an assembled pose near the drawing, the drivers free. Without one, they are at their first values if any."""
     mechanism = equations.mechanism
     if mechanism.sketch:
         return _nearest(equations, None)

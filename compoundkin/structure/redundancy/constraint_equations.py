@@ -26,7 +26,7 @@ SEED = 20260101
 
 
 class Tolerance(NamedTuple):
-    """What counts as closed (residuals in parts of the size), and as dependent (singular values, of the largest)."""
+    """Bounds of closed and dependent: residuals by the size, singular values by the largest."""
 
     closed: float
     rank: float
@@ -41,7 +41,7 @@ ROUNDED = Tolerance(1e-5, 1e-4)
 
 @dataclass(frozen=True)
 class Rows:
-    """Some rows of a Jacobian: which pair they are of, and where they begin and end."""
+    """The rows of a Jacobian that belong to one pair. They tell which pair, and where they begin and end."""
 
     pair: Pair
     first: int
@@ -113,7 +113,7 @@ class ConstraintEquations:
 
     @cached_property
     def ends(self) -> dict[str, Ends]:
-        """The dimensions of every pair; of several designs those of the first, at the first pose."""
+        """The dimensions of every pair. Of several designs they are those of the first, at the first pose."""
         geometry = self.mechanism.geometry
         return {p.name: tuple(map(_first, p.ends(geometry))) for p in (*self.pairs, *self.driven)}
 
@@ -163,13 +163,13 @@ class ConstraintEquations:
         )
 
     def jacobian(self, state: Array) -> tuple[Array, Array]:
-        """Return the rows of all pairs by the state, each of the length 1; and by what each was divided."""
+        """Return the rows of all pairs by the state, each of the length 1. Return also by what each was divided."""
         poses = self.poses(state)
         tables = ((pair, pair.jacobian(self.ends[pair.name], _of(pair, poses))) for pair in self.pairs)
         return self._scaled(self._filled((pair, table[..., : pair.held, :]) for pair, table in tables), self.size)
 
     def driving(self, state: Array) -> Array:
-        """Return the rows of the drivers' coordinates by the state, each of the length 1."""
+        """Return the rows of the drivers' coordinates, each of the length 1. They are by the state."""
         poses = self.poses(state)
         tables = ((pair, pair.jacobian(self.ends[pair.name], _of(pair, poses))) for pair in self.driven)
         coordinate = ((pair, table[..., pair.held : pair.held + 1, :]) for pair, table in tables)
@@ -177,7 +177,7 @@ class ConstraintEquations:
 
     @cached_property
     def generic(self) -> Array:
-        """The rows of all pairs at random geometry: the same kinds of pairs between the same links."""
+        """The rows of all pairs at random geometry. They are the same kinds of pairs between the same links."""
         rng = np.random.default_rng(SEED)
         places: dict[str, Ends] = {}
         tables = []

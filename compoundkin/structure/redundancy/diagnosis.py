@@ -39,7 +39,10 @@ GENERAL = 10
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """A mechanism at its own dimensions: an assembled pose, how it moves, and its states of self-stress."""
+    """The diagnosis of a mechanism at its own dimensions.
+
+    An assembled pose, how it moves, and its states of self-stress.
+    """
 
     equations: ConstraintEquations
     pose: AssembledPose
@@ -51,7 +54,7 @@ class Diagnosis:
 
     @property
     def dependent(self) -> float:
-        """Below which part of the largest a singular value at the assembled pose is zero."""
+        """The part of the largest below which a singular value is zero. It is at the assembled pose."""
         return max(self.equations.tolerance.rank, 0.0 if self.pose.is_given else ITERATED)
 
     @cached_property
@@ -86,7 +89,7 @@ class Diagnosis:
 
 
 def diagnose(mechanism: Mechanism, poses: Mapping[str, Pose] | None = None) -> Diagnosis:
-    """Diagnose a mechanism at its own dimensions; taken to be rounded where exact ones leave no motion."""
+    """Diagnose a mechanism at its own dimensions. They are taken to be rounded where exact ones leave no motion."""
     exact = _diagnosed(mechanism, STRICT, poses)
     if exact.pose.is_closed and (exact.rank == len(exact.rows) or exact.motion.along.shape[1]):
         return exact
@@ -105,7 +108,7 @@ def _diagnosed(mechanism: Mechanism, tolerance: Tolerance, poses: Mapping[str, P
 
 
 def without_redundancy(structure: Structure, closed: Collection[str]) -> Structure:
-    """Return the structure without what is redundant, where its mechanism moves although it is overconstrained.
+    """Return the structure without what is redundant. This is where its mechanism moves although it is overconstrained.
 
     The structure itself where nothing is overconstrained, or nothing moves. `closed` are the names of the groups that
     have closed forms: what remains falls into these where it can.

@@ -33,7 +33,7 @@ STRAIGHT = 1e-6
 
 @dataclass(frozen=True)
 class FiniteMotion:
-    """How a mechanism moves from a pose: at a pose near it that is not special, the tangents of its motions.
+    """The motions of a mechanism from a pose. They are the tangents at a pose near it that is not special.
 
     `along` has an orthonormal column for each of them; `free` counts what the equations leave free there, tangents and
     what is free infinitesimally only.
@@ -62,7 +62,7 @@ def rank_of(rows: Array, tolerance: float = STRICT.rank) -> int:
 
 
 def finite_motion(equations: ConstraintEquations, state: Array, dependent: float) -> FiniteMotion:
-    """Find how a mechanism moves from a pose; singular values below `dependent` of the largest are zero."""
+    """Find how a mechanism moves from a pose. Singular values below `dependent` of the largest are zero."""
     rng = np.random.default_rng(SEED)
     free = null_space(equations.jacobian(state)[0], dependent)
     start, steps, tried = state, 0, 0
@@ -102,7 +102,7 @@ def _persisting(equations: ConstraintEquations, state: Array, free: Array) -> Ar
 
 @dataclass(frozen=True)
 class PassiveFreedom:
-    """A freedom of one link alone, in words: `motion` is "turn about C" or "slide along a line at 30 degrees"."""
+    """A freedom of one link alone, in words. `motion` is "turn about C" or "slide along a line at 30 degrees"."""
 
     link: str
     motion: str
@@ -112,7 +112,7 @@ class PassiveFreedom:
 
 
 def passive_freedoms(equations: ConstraintEquations, state: Array) -> Iterator[PassiveFreedom]:
-    """Find freedoms of single links on two pairs or more while the drivers stand still.
+    """Find passive freedoms of single links while the drivers stand still. The links are on two pairs or more.
 
     A link on one pair only is no passive part: it is left free.
     """

@@ -23,7 +23,7 @@ GENERIC = 1e-12
 
 @dataclass(frozen=True)
 class MobilityGap:
-    """The pair that is open most where no assembled pose was found, and by how much, in its own unit."""
+    """The pair that is open most where nothing is assembled. Its residual is in its own unit."""
 
     pair: str
     amount: float
@@ -31,7 +31,7 @@ class MobilityGap:
 
 @dataclass(frozen=True)
 class MobilityAnalysis(Shows):
-    """The freedoms of a mechanism with its drivers free; passive freedoms of rollers are not counted.
+    """The freedoms of a mechanism with its drivers free. Passive freedoms of rollers are not counted.
 
     `gruebler` is the count, `generic` what pairs of these kinds between these links leave free at general dimensions,
     `at_pose` what they leave free at the assembled pose (None where none was found), and `finite` how many of these
@@ -58,7 +58,7 @@ class MobilityAnalysis(Shows):
 
     @property
     def agrees(self) -> bool:
-        """Whether count, general dimensions and the assembled pose say the same, and nothing is passive."""
+        """Whether count, general dimensions and the assembled pose say the same. Nothing may be passive then."""
         return self.gruebler == self.generic == self.at_pose == self.finite and not self.passive
 
     @property

@@ -31,7 +31,7 @@ ALIKE = 0.02
 
 @dataclass(frozen=True)
 class Candidate:
-    """What may be left out of a pair, and the forces that it carries: a row for each coordinate, of every state.
+    """The part of a pair that may be left out, and its forces. It has a row for each coordinate, of every state.
 
     It is aligned where it carries all the force there is in every pose, as a slot along a bar does.
     """
@@ -42,12 +42,12 @@ class Candidate:
 
     @property
     def place(self) -> tuple[str, tuple[str, ...]]:
-        """The pair or the part of a pin; nothing is left out of one of them twice."""
+        """The pair or the part of a pin. Nothing is left out of one of them twice."""
         return self.dropped.name, self.dropped.off
 
 
 def stresses(equations: ConstraintEquations, state: Array) -> Array:
-    """Return an orthonormal basis of the states of self-stress, in columns, by the rows of the pairs."""
+    """Return an orthonormal basis of the states of self-stress, in columns. It goes by the rows of the pairs."""
     rows, _ = equations.jacobian(state)
     if not len(rows):
         return np.zeros((0, 0))
@@ -138,7 +138,9 @@ def _carries(forces: Array) -> bool:
 
 
 def chosen(given: Sequence[Candidate], states: int) -> list[Candidate]:
-    """Choose candidates that take away all states of self-stress and no more: each time the one that carries most.
+    """Choose candidates that take away all states of self-stress and no more.
+
+    Each time it is the one that carries most.
 
     Aligned ones go before others.
     """
@@ -165,7 +167,7 @@ def chosen(given: Sequence[Candidate], states: int) -> list[Candidate]:
 
 
 def strength(given: Sequence[Candidate]) -> float:
-    """Measure how well the candidates together carry all states: the least singular value of their forces."""
+    """Measure how well the candidates together carry all states. It is the least singular value of their forces."""
     if not given:
         return 0.0
     return float(np.linalg.svd(np.vstack([one.forces for one in given]), compute_uv=False)[-1])

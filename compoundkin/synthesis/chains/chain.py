@@ -147,7 +147,7 @@ class Chain:
         return self.canonical.orbits
 
     def equivalent_pairs(self, frame: int | None = None) -> tuple[tuple[tuple[int, int], ...], ...]:
-        """Classes of pairs that symmetries carry into each other. With a frame, those that leave it where it is.
+        """Return classes of pairs that symmetries carry into each other. With a frame, those that leave it where it is.
 
         With a frame the classes are the essentially different places for a driver.
 

@@ -60,7 +60,7 @@ class Canonical:
 
 
 def orbits(size: int, generators: Sequence[Sequence[int]]) -> tuple[tuple[int, ...], ...]:
-    """Return the classes into which permutations of 0, 1, ... part their points, in the order of their least.
+    """Return the classes into which permutations of 0, 1, ... part their points. They are in the order of their least.
 
     >>> orbits(4, [(1, 0, 2, 3), (0, 1, 3, 2)])
     ((0, 1), (2, 3))

@@ -77,7 +77,7 @@ def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = 
 
 
 def lettered(number: int) -> list[str]:
-    """So many names for points. A to Z, then A2 to Z2 and so on.
+    """Return so many names for points. A to Z, then A2 to Z2 and so on.
 
     >>> lettered(28)[-3:]
     ['Z', 'A2', 'B2']
@@ -121,7 +121,7 @@ def symmetric_drivers(chain: Chain, frame: int) -> Iterator[tuple[int, int]]:
 
 
 def layout(pins: int, links: Sequence[Sequence[int]]) -> list[complex]:
-    """Generic places for pins 0, 1, ..., given the pins of each link. A length of one is that of a link.
+    """Draw generic places for pins 0, 1, ..., given the pins of each link. A length of one is that of a link.
 
     >>> places = layout(4, [(0, 1), (1, 2), (2, 3), (3, 0)])
     >>> len(places), min(abs(places[k] - places[k - 1]) for k in range(4)) > NEAREST
