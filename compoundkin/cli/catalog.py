@@ -47,14 +47,21 @@ def show(name: str) -> int:
 @click.argument("destination", required=False, type=click.Path())
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 def copy(name: str, destination: str | None, force: bool) -> int:
-    """Copy the file of a mechanism to DESTINATION, to change it. It is a file or a folder; here if left out."""
+    """Copy the file of a mechanism to DESTINATION, to change it. It is a file or a folder; here if left out.
+
+    A name that ends in .json becomes a JSON file, without the comments.
+    """
+    from compoundkin.base.suffixes import form_of
     from compoundkin.cli.mechanism_argument import write_new
+    from compoundkin.files.mechanism_files import encoded, load
     from compoundkin.files.shipped_mechanisms import path
 
     source = path(name)
     target = Path(destination or ".")
     target = target / source.name if target.is_dir() else target
-    write_new(target, source.read_bytes(), force)
+    form = form_of("mechanism", target)
+    content = source.read_bytes() if form == form_of("mechanism", source) else encoded(load(source), form, target)
+    write_new(target, content, force)
     say(f"Wrote {target}; see it with: compoundkin report {target}")
     return 0
 

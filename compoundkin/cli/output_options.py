@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from compoundkin.base.suffixes import SUFFIXES, suffix_of
+from compoundkin.base.suffixes import SUFFIXES, form_of
 from compoundkin.cli.shell import has_colour, put, say, width
 
 if TYPE_CHECKING:
@@ -22,10 +22,19 @@ FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
 
 def report_options(command: F) -> F:
     """Add the options --format and -o to a command that prints a report."""
-    file = click.option("-o", "--to-file", "path", metavar="PATH", help="Write the report here instead of printing it.")
+    here = "Write the report here instead of printing it."
+    file = click.option("-o", "--to-file", "path", metavar="PATH", callback=_checked, help=here)
     told = "Text unless PATH ends in .md, .json or .html."
-    form = click.option("--format", "form", type=click.Choice(FORMATS), help=told)
+    # it is read first: a form that is given rules, whatever the suffix
+    form = click.option("--format", "form", type=click.Choice(FORMATS), is_eager=True, help=told)
     return form(file(command))
+
+
+def _checked(context: click.Context, _: click.Parameter, path: str | None) -> str | None:
+    """The path, once its suffix is known to tell a form; nothing is solved for one that does not."""
+    if path is not None and context.params.get("form") is None:
+        form_of("report", path)
+    return path
 
 
 def put_report(report: Report, form: str | None, path: str | None) -> None:
@@ -35,7 +44,7 @@ def put_report(report: Report, form: str | None, path: str | None) -> None:
         return
     from compoundkin.files.atomic import write_atomically
 
-    content = _written(report, form or SUFFIXES["report"].get(suffix_of(path), "text")).encode("utf-8")
+    content = _written(report, form or form_of("report", path)).encode("utf-8")
     write_atomically(path, lambda file: file.write(content))
     say(f"Wrote {path}.")
 

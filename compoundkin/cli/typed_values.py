@@ -20,6 +20,14 @@ from compoundkin.structure import Structure
 HOW = "write 35, 0,35,60 or 0:360:5 (from:to:step)"
 TIMES = "write seconds: 0.5, 0,0.5,1 or 0:2:0.01 (from:to:step)"
 
+# By the option, and whether the driver drives an angle.
+HOW_RATES = {
+    ("--speed", True): "write 10 (rad/s), 300rpm or 90deg (a second)",
+    ("--speed", False): "write 0.5 (lengths a second)",
+    ("--acceleration", True): "write 7 (rad/s^2) or 90deg (a second, each second)",
+    ("--acceleration", False): "write 0.5 (lengths a second, each second)",
+}
+
 
 def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Number]:
     """Return the values asked for, by driver, as `solve` takes them: radians or lengths.
@@ -134,16 +142,17 @@ def of_rates(structure: Structure, option: str, given: Sequence[str]) -> dict[st
     """Return rates by driver; None where none is given."""
     angles = structure.driven_angles
     named = _named(structure, option, given)
-    return {name: _rate(text, f"{option} {name}", angles[name]) for name, text in named} or None
+    return {name: _rate(text, option, name, angles[name]) for name, text in named} or None
 
 
-def _rate(text: str, where: str, is_angle: bool) -> float:
+def _rate(text: str, option: str, name: str, is_angle: bool) -> float:
+    where, how = f"{option} {name}", HOW_RATES[option, is_angle]
     for unit, factor in (("rpm", RPM), ("deg", np.pi / 180.0)):
         if text.endswith(unit):
             if not is_angle:
                 raise _wrong(where, f"{text!r} is no rate of a length", "write lengths a second")
-            return number(text.removesuffix(unit), where) * float(factor)
-    return number(text, where)
+            return number(text.removesuffix(unit), where, how) * float(factor)
+    return number(text, where, how)
 
 
 def _named(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, str]]:

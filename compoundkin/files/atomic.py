@@ -27,14 +27,14 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], A
     if str(path).endswith(os.sep):
         raise InvalidInput(Problem(str(path), "this is the name of a folder", "name a file"))
     try:
-        # a link is followed, so that it stays one
-        target = Path(os.path.realpath(path))
-        if target.exists() and not target.is_file() and not target.is_dir():
-            # a pipe or /dev/stdout is written to, not replaced
-            with target.open("wb") as file:
+        given = Path(path)
+        if given.exists() and not given.is_file() and not given.is_dir():
+            # a pipe or /dev/stdout is written to, not replaced; where it leads may be no path
+            with given.open("wb") as file:
                 write(file)
             return
-        _replace(target, write)
+        # a link is followed, so that it stays one
+        _replace(Path(os.path.realpath(path)), write)
     except (OSError, ValueError) as error:
         what = getattr(error, "strerror", None) or str(error)
         raise InvalidInput(Problem(str(path), f"it cannot be written: {what}")) from None

@@ -130,7 +130,6 @@ def quantity(motion: HasQuantities, name: str) -> Quantity:
     """Return the quantity of a name such as "G.velocity".
 
     "G" alone is G.position, "bar" bar.angle, "slot" slot.value.
-
     Points have position, velocity, acceleration, jerk, x, y, speed; links angle, angular_velocity,
     angular_acceleration, angular_jerk; pairs and drivers value, rate, second, third (and angle or
     displacement for value). A vector has parts: "G.velocity.x", "G.velocity.y", "G.velocity.length".
@@ -150,19 +149,26 @@ def quantity(motion: HasQuantities, name: str) -> Quantity:
 def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
     """Return the quantity of a name, or a vector and which part is meant. Raises UnknownName."""
     if not isinstance(name, str):
-        raise InvalidInput(
-            Problem("quantity", f"{name!r} is no name", 'write "G.velocity", one text for each quantity')
-        )
+        remedy = 'write "G.velocity", one text for each quantity'
+        raise InvalidInput(Problem("quantity", f"{name!r} is no name", remedy))
     try:
         return _whole(motion, name), ""
     except UnknownName:
-        vector, part = vector_of(name)
-        if not part:
+        vector, _, part = name.rpartition(".")
+        if not vector_of(name)[1] and not _is_known(motion, vector):
             raise
     found = _whole(motion, vector)
     if not found.is_vector:
         raise UnknownName(Problem(name, f"{vector} is no vector", f"leave .{part} out"))
+    if part not in PARTS:
+        raise UnknownName(Problem(name, f"{vector} has no {part!r}", nearest(part, list(PARTS))))
     return found, part
+
+
+def _is_known(motion: HasQuantities, name: str) -> bool:
+    """Tell whether a name is that of an owner with one of its attributes."""
+    owner, _, word = name.rpartition(".")
+    return any(owner in getattr(motion, k) and word in owner_of(motion, k, owner).attributes for k in CATALOGUE)
 
 
 def _whole(motion: HasQuantities, name: str) -> Quantity:
@@ -170,8 +176,8 @@ def _whole(motion: HasQuantities, name: str) -> Quantity:
     owner, dot, word = name.rpartition(".") if "." in name else (name, "", "")
     found = [owner_of(motion, kind, owner) for kind in CATALOGUE if owner in getattr(motion, kind)]
     if not found:
-        known = nearest(owner, known_owners(motion))
-        raise UnknownName(Problem(name, f"there is no point, link, pair or driver {owner!r}", known))
+        what = f"there is no point, link, pair or driver {owner!r}"
+        raise UnknownName(Problem(name, what, nearest(owner, known_owners(motion))))
     for one in found:
         if word in one.attributes or not dot:
             return replace(one.read(word if dot else next(iter(one.attributes))), name=name)

@@ -14,7 +14,7 @@ from click.testing import CliRunner, Result
 import compoundkin as ck
 from compoundkin.base.errors import Problem
 from compoundkin.cli import VERBS, cli, shell
-from compoundkin.files import load, shipped_mechanisms
+from compoundkin.files import dumps, load, shipped_mechanisms
 from compoundkin.files.shipped_mechanisms import path
 from tests import catalog
 
@@ -339,6 +339,24 @@ def test_copies_go_here_to_a_folder_or_to_a_name(run: Run, tmp_path: Path) -> No
         assert (tmp_path / target).read_bytes() == content
 
 
+def test_a_copy_is_written_in_the_form_that_its_suffix_tells(run: Run, tmp_path: Path) -> None:
+    assert run("catalog", "copy", "six-bar", "a.json").exit_code == 0
+    assert json.loads((tmp_path / "a.json").read_text())["format"] == 1
+    assert dumps(load(tmp_path / "a.json")) == dumps(load(shipped_mechanisms.path("six-bar")))
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("a.md", "a mechanism is not saved as '.md', a report is"), ("a", "the file has no suffix")],
+)
+def test_a_copy_with_another_suffix_is_refused(run: Run, tmp_path: Path, name: str, told: str) -> None:
+    result = run("catalog", "copy", "six-bar", name)
+    assert result.exit_code == 2
+    assert told in result.stderr
+    assert "mechanism files end in .toml, .json" in result.stderr
+    assert not (tmp_path / name).exists()
+
+
 @pytest.mark.parametrize(
     ("make", "name"), [(("catalog", "copy", "six-bar"), "six-bar.toml"), (("new",), "mechanism.toml")]
 )
@@ -408,6 +426,9 @@ def test_new_writes_toml_only(run: Run) -> None:
         (("solve", "six-bar", "--drive", "crnk=2"), "did you mean 'crank'?"),
         (("solve", "six-bar", "--speed", "crnk=2"), "did you mean 'crank'?"),
         (("solve", "six-bar", "--speed", "fast"), "'fast' is not a number"),
+        (("solve", "six-bar", "--speed", "xrpm"), "write 10 (rad/s), 300rpm or 90deg (a second)"),
+        (("solve", "six-bar", "--acceleration", "x"), "write 7 (rad/s^2)"),
+        (("solve", "hydraulic-crane", "--speed", "fast"), "write 0.5 (lengths a second)"),
         (("solve", "six-bar", "--mode", "bra=1"), "did you mean 'bar'?"),
         (("solve", "six-bar", "--mode", "bar=2"), "'2' is not an assembly mode"),
         (("solve", "six-bar", "--mode", "bar"), "write bar=+1 or bar=-1"),

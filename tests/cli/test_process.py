@@ -35,6 +35,12 @@ def test_piped_output_is_plain_and_the_same_twice() -> None:
     assert max(map(len, first.stdout.decode().splitlines())) <= 80
 
 
+@pytest.mark.skipif(os.name != "posix", reason="there is no /dev/stdout")
+def test_a_report_may_be_written_to_a_piped_stdout() -> None:
+    done = run("structure", "six-bar", "-o", "/dev/stdout")
+    assert (done.returncode, done.stdout) == (0, run("structure", "six-bar").stdout)
+
+
 @pytest.mark.skipif(os.name != "posix", reason="pipes end otherwise")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 def test_a_reader_that_leaves_early_is_no_error(unbuffered: str) -> None:

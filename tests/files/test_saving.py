@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 import compoundkin as ck
-from compoundkin.base.suffixes import SUFFIXES
+from compoundkin.base.suffixes import SUFFIXES, form_of
 from compoundkin.cli import cli
 from compoundkin.files.shipped_mechanisms import load_named
 
@@ -100,6 +100,29 @@ def test_the_command_line_refuses_what_python_refuses_before_it_solves(verb: str
     result = CliRunner().invoke(cli, [verb, "six-bar", "-o", "a.xyz"], standalone_mode=False)
     assert isinstance(result.exception, ck.errors.InvalidInput)
     assert f"a {kind} is not saved as '.xyz'" in str(result.exception)
+
+
+@pytest.mark.parametrize("suffix", [".pdf", ".svg", ".csv", ".toml"])
+@pytest.mark.parametrize("verb", ["report", "structure", "centres", "configurations", "circuits", "check", "atlas"])
+def test_a_report_of_the_command_line_is_refused_before_its_mechanism_is_read(
+    verb: str, suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    what = ["--links", "4"] if verb == "atlas" else ["no-such-mechanism"]
+    result = CliRunner().invoke(cli, [verb, *what, "-o", f"a{suffix}"], standalone_mode=False)
+    with pytest.raises(ck.errors.InvalidInput) as in_python:
+        form_of("report", f"a{suffix}")
+    assert isinstance(result.exception, ck.errors.InvalidInput)
+    assert str(result.exception) == str(in_python.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_report_without_suffix_is_text_and_a_format_that_is_given_rules(tmp_path: Path) -> None:
+    runner, text = CliRunner(), ck.report(ck.decompose(load_named("crank-rocker"))).text()
+    for name, options in (("plain", []), ("a.log", ["--format", "text"])):
+        asked = ["structure", "crank-rocker", "-o", str(tmp_path / name), *options]
+        assert runner.invoke(cli, asked, standalone_mode=False).exception is None
+        assert (tmp_path / name).read_text() == text
 
 
 def test_the_page_on_files_lists_what_can_be_saved_as_what() -> None:

@@ -70,6 +70,9 @@ def test_angles_are_shown_in_degrees_and_rates_are_not(six_bar: ck.results.Motio
         ("G.", "'G' has no ''"),
         ("bar.angle.length", "bar.angle is no vector; leave .length out"),
         ("GG.velocity.x", "did you mean 'G'"),
+        ("G.velocity.z", "G.velocity has no 'z'; known: x, y, length"),
+        ("bar.angle.z", "bar.angle is no vector; leave .z out"),
+        ("G.velocty.z", "there is no point, link, pair or driver 'G.velocty'"),
     ],
 )
 def test_unknown_names_are_told_the_nearest(six_bar: ck.results.Motion, name: str, remedy: str) -> None:

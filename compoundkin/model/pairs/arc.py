@@ -24,7 +24,7 @@ from compoundkin.model.pairs.symbols import Groove, Mark, Stud, arc_line, reach
 class ArcSlot(Contact):
     """A point of `link` that runs along a circular slot in the link `on`.
 
-    The point is `at`, the circle of `radius` about `centre`.
+    The point is `at`, the circle of `radius` about `centre_at`.
 
     A roller on a round disc is the same with the sum of both radii. Held: the distance of the pin from the circle.
     Free: the angle at which the pin is seen from the centre, from the x axis of `on`, and the angle between the links.

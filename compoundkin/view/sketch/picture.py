@@ -67,12 +67,15 @@ class Window:
         return float(np.hypot(self.width, self.height))
 
 
-def fitted(window: Window, points: Number) -> Window:
-    """Return the window of the same scale that just holds some points, with room for letters around them."""
+def fitted(window: Window, points: Number, narrowest: float = NARROWEST) -> Window:
+    """Return the window of the same scale that just holds some points, with room for letters around them.
+
+    It is no narrower than asked, its points in the middle.
+    """
     known = np.asarray(points, dtype=complex)
     low = complex(known.real.min(), known.imag.min()) - MARGIN * (1 + 1j)
     high = complex(known.real.max(), known.imag.max()) + MARGIN * (1 + 1j)
-    extra = complex(max(0.0, NARROWEST - (high - low).real), max(0.0, LOWEST - (high - low).imag)) / 2.0
+    extra = complex(max(0.0, narrowest - (high - low).real), max(0.0, LOWEST - (high - low).imag)) / 2.0
     low, high = low - extra, high + extra
     size = high - low
     return Window(

@@ -20,6 +20,8 @@ ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)
 BESIDE = (0.0, 13.0, -13.0, 20.0, -20.0, 30.0, -30.0)
 # The first of those lines is so far below a sketch.
 BELOW = 7.0
+# Those lines begin so far from the left edge, and end so far from the right one.
+SIDE = 16.0
 # Width of a letter in a long line, in parts of its height.
 NARROW = 0.54
 # Between the parts of a line below a picture.
@@ -133,8 +135,14 @@ def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
     return lines
 
 
+def width_with(texts: Sequence[Shape]) -> float:
+    """Return how wide a picture must be for what stands below it, with the same room at its right."""
+    ends = [shape.at.real + len(shape.text) * SMALL * NARROW for shape in texts if isinstance(shape, Text)]
+    return max(ends, default=0.0) + SIDE
+
+
 def below(lines: Sequence[str], height: float) -> tuple[list[Shape], float]:
     """Return lines of text below a picture of a height, and the height with them."""
-    places = [complex(16.0, height + BELOW + LINE * k) for k in range(len(lines))]
+    places = [complex(SIDE, height + BELOW + LINE * k) for k in range(len(lines))]
     shapes: list[Shape] = [Text(at, line, "note", "start") for at, line in zip(places, lines, strict=True)]
     return shapes, round(height + (BELOW + LINE * len(lines) if lines else 0.0), 1)

@@ -13,11 +13,11 @@ from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY, rea
 from compoundkin.model.elements import FRAME
 from compoundkin.view.sketch.label_places import around, placed, text_half
 from compoundkin.view.sketch.link_shapes import outline
-from compoundkin.view.sketch.picture import Picture, Window, checked_size, fitted
+from compoundkin.view.sketch.picture import NARROWEST, Picture, Window, checked_size, fitted
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Shape, ShapeGroup, Text, arrow, sheet
 from compoundkin.view.sketch.shown_pose import Drawable, Wishes, pose_notes, scene_of
-from compoundkin.view.sketch.sketch_labels import SEPARATOR, below
+from compoundkin.view.sketch.sketch_labels import SEPARATOR, SIDE, below, width_with
 from compoundkin.view.sketch.sketch_style import LETTER, LINE, STUD, style_of
 
 # The kinds of vectors: their derivative, and what they are per.
@@ -108,8 +108,8 @@ def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], s
 def scale_shapes(scale: VectorScale, height: float) -> list[Shape]:
     """Tell what states the scale: an arrow of the round amount, at a height of the picture."""
     length = scale.amount * scale.per_unit
-    line = arrow(complex(16.0, height), complex(16.0 + length, height), scale.kind)
-    return [*line, Text(complex(24.0 + length, height), f"{scale.kind}, {scale.text}", "note", "start")]
+    line = arrow(complex(SIDE, height), complex(SIDE + length, height), scale.kind)
+    return [*line, Text(complex(1.5 * SIDE + length, height), f"{scale.kind}, {scale.text}", "note", "start")]
 
 
 def vector_polygon(what: Drawable, wishes: Wishes) -> Picture:
@@ -133,7 +133,8 @@ def vector_polygon(what: Drawable, wishes: Wishes) -> Picture:
         raise InvalidInput(Problem(kind, "nothing moves at this pose", "choose another pose, or give a speed"))
     window = Window(scale.per_unit, 0j, 0.0, 0.0)
     tips = {letter: complex(np.conjugate(rate)) * scale.per_unit for letter, rate in rates.items()}
-    window = fitted(window, np.array([0j, *tips.values()]))
+    legend, _ = _legend(scene, scale, 0.0)
+    window = fitted(window, np.array([0j, *tips.values()]), max(NARROWEST, width_with(legend)))
     pole = complex(window.at(0j))
     ends = {letter: pole + tip for letter, tip in tips.items()}
     shapes = [*_images(scene, ends, pole), *_rays(ends, pole, kind)]
@@ -176,9 +177,13 @@ def _names(ends: Mapping[str, complex], pole: complex, kind: str) -> list[tuple[
 
 
 def _framed(scene: Scene, window: Window, shapes: list[Shape], scale: VectorScale, size: float | None) -> Picture:
-    texts, height = below([SEPARATOR.join(pose_notes(scene))], window.height)
-    texts += scale_shapes(scale, height)
-    height += LINE
+    texts, height = _legend(scene, scale, window.height)
     paper = sheet(window.width, height)
     title = f"{scene.mechanism.title}: {scale.kind} polygon"
     return Picture((paper, *shapes, *texts), window.width, height, title, "", checked_size(size), window)
+
+
+def _legend(scene: Scene, scale: VectorScale, height: float) -> tuple[list[Shape], float]:
+    """The pose and the scale below a polygon of a height, and the height with them."""
+    texts, height = below([SEPARATOR.join(pose_notes(scene))], height)
+    return [*texts, *scale_shapes(scale, height)], height + LINE

@@ -17,6 +17,7 @@ from compoundkin.files import shipped_mechanisms
 from compoundkin.view.notebook import MOST_LINKS
 from compoundkin.view.sketch.label_places import ROOM, text_half
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, ShapeGroup, Text, leaves
+from compoundkin.view.sketch.sketch_labels import NARROW
 from compoundkin.view.sketch.sketch_style import LETTER, NUMBER, SMALL
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -134,6 +135,19 @@ def test_the_velocity_polygon_has_images_similar_to_the_links() -> None:
     (image,) = [shape for shape in of(picture, "plate1") if isinstance(shape, Polygon)]
     sides = np.sort([abs(a - b) for a, b in pairwise_around(image)])
     assert sides / sides[-1] == pytest.approx(np.array([abs(1.5 + 1j), abs(1.5 + 1j), 3.0]) / 3.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["velocity", "acceleration"])
+@pytest.mark.parametrize("name", ["crank-rocker", "disc-cam-offset-roller", "six-bar", "planetary-train"])
+def test_the_legend_of_a_polygon_is_on_its_picture(name: str, kind: str) -> None:
+    picture = ck.draw(shipped_mechanisms.load_named(name), kind="polygon", vectors=kind)
+    notes = of(picture, "note")
+    assert len(notes) == 2
+    for note in notes:
+        assert 0 < note.at.real < picture.width
+        assert note.at.real + len(note.text) * SMALL * NARROW <= picture.width
+    assert picture.window.width == picture.width
+    assert picture.window.holds(complex(picture.window.at(0j)), room=10.0)
 
 
 def test_instant_centres_of_a_four_bar_lie_on_their_lines() -> None:

@@ -1,0 +1,33 @@
+"""The pages on pictures and on circuits are true: read from the top, their Python runs."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from pathlib import Path
+
+import pytest
+
+import compoundkin as ck
+
+DOCS = Path(__file__).parents[1] / "docs"
+
+
+@pytest.mark.parametrize("page", ["pictures.md", "circuits.md"])
+def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    lines = [line[4:] for line in (DOCS / page).read_text("utf-8").splitlines() if line.startswith("    ")]
+    assert len(lines) > 10
+    exec("\n".join(line for line in lines if not line.startswith("compoundkin ")), {})
+
+
+def test_the_words_for_profiles_are_named_with_their_module() -> None:
+    for page in DOCS.glob("*.md"):
+        bare = re.findall(r"`(?:disc|profile|formula|synthesise|cam_analysis)`", page.read_text("utf-8"))
+        assert bare == [] or page.name == "modules.md", page.name
+
+
+def test_the_help_of_an_arc_names_its_parameters() -> None:
+    named = re.findall(r"`(\w+)`", (ck.arc.__doc__ or "").partition("Held:")[0])
+    assert "centre_at" in named
+    assert set(named) <= set(inspect.signature(ck.arc).parameters)
