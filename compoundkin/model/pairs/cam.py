@@ -83,7 +83,8 @@ class Cam(Profiled):
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
         """Find a hollow run through from inside that is too narrow for the roller."""
         if self.inside and self.profile.circle and not np.all(np.asarray(self.radius) < self.profile.circle[1]):
-            what = f"a roller of radius {self.radius:g} does not fit into a ring of radius {self.profile.circle[1]:g}"
+            ring = self.profile.circle[1]
+            what = f"a roller of radius {self.roller:g} does not fit into a ring of radius {ring:g}"
             yield Problem(f"{where}.radius", what, "take a smaller roller")
 
     def ends(self, geometry: Geometry) -> Ends:

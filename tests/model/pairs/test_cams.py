@@ -183,11 +183,12 @@ def test_a_roller_inside_a_ring(shape: str) -> None:
     assert ck.verify(found).passed
 
 
-def test_a_roller_that_does_not_fit_into_its_ring() -> None:
-    with pytest.raises(ck.errors.InvalidMechanism, match="does not fit into a ring of radius 30"):
+@pytest.mark.parametrize("radius", [31, np.array([[10.0], [31.0]])], ids=["one", "of several designs"])
+def test_a_roller_that_does_not_fit_into_its_ring(radius: Any) -> None:
+    with pytest.raises(ck.errors.InvalidMechanism, match="of radius 31 does not fit into a ring of radius 30"):
         cam_and(
             *slider(),
-            ck.cam("follower", on="cam", profile=ck.profiles.disc(30), radius=31, inside=True),
+            ck.cam("follower", on="cam", profile=ck.profiles.disc(30), radius=radius, inside=True),
             points={"X": 0},
         )
 
