@@ -35,6 +35,7 @@ from tests.source import (
     nodes,
     room,
     rooms_used,
+    tree,
     where,
 )
 
@@ -70,6 +71,17 @@ KEYS_OF_PROBLEMS = {
 PROTOCOLS = re.compile(r"__\w+__|_replace|_asdict|_fields|_repr_\w+_")
 # Nouns of the field among the names that end so.
 NOUNS = {"finding", "bracketing", "sampling", "tracking", "rolling", "matching", "wording", "spring", "bearing"}
+
+# Where a sentence ends: a number or a name in small letters after a full stop goes on with it.
+SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z`(*\"])")
+WORDS_OF_FIRST_SENTENCES = 14
+NO_VERB = """
+    a all also along an and any as at axes axis beyond below between both by degrees each either every first for
+    from generic half how if in it its jacobian lines links nothing of on one or parts points random rows same
+    so some that the their there these this those three to two unknown until value values what when where
+    whether which who whose why with without
+"""
+NO_VERBS = set(NO_VERB.split())
 
 LINES_OF_FUNCTIONS, LINES_OF_MODULES, FILES_AT_MOST, NAMES_AT_MOST, ROOMS_AT_MOST, LEVELS = 30, 220, 290, 40, 14, 10
 
@@ -213,6 +225,42 @@ def test_functions_are_short() -> None:
 def test_modules_are_short() -> None:
     many = {where(path): len(path.read_text(encoding="utf-8").splitlines()) for path in FILES}
     only_shrinks(name for name, lines in many.items() if lines > LINES_OF_MODULES)
+
+
+# --- docstrings -------------------------------------------------------------------------------------------
+
+
+def documented(path: Path) -> Iterator[tuple[str, ast.AST, str]]:
+    """The public classes, functions and methods of a file: name, node, first sentence of the docstring."""
+    waiting: list[tuple[str, ast.AST]] = [("", tree(path))]
+    while waiting:
+        outer, node = waiting.pop()
+        for own in getattr(node, "body", []):
+            if isinstance(own, Function | ast.ClassDef) and not own.name.startswith("_"):
+                waiting.append((f"{outer}{own.name}.", own))
+                text = " ".join((ast.get_docstring(own) or "").split("\n\n")[0].split())
+                yield f"{where(path)}: {outer}{own.name}", own, SENTENCE.split(text)[0]
+
+
+def is_property(node: ast.AST) -> bool:
+    return any("property" in ast.unparse(one) for one in getattr(node, "decorator_list", []))
+
+
+def test_first_sentences_of_docstrings_are_short() -> None:
+    only_shrinks(
+        name for p in FILES for name, _, sentence in documented(p) if len(sentence.split()) > WORDS_OF_FIRST_SENTENCES
+    )
+
+
+def test_docstrings_of_functions_begin_with_a_verb() -> None:
+    """Or at least with none of the words that are no verbs; properties and classes are called by nouns."""
+    only_shrinks(
+        name
+        for path in FILES
+        for name, node, sentence in documented(path)
+        if isinstance(node, Function) and not is_property(node)
+        if sentence and sentence.split()[0].strip("`,.:;").lower() in NO_VERBS
+    )
 
 
 # --- each thing in one place --------------------------------------------------------------------------------

@@ -31,7 +31,7 @@ from compoundkin.structure.kinematic_structure import Structure
 
 # A redundant pair is closed where it opens by less than this part of the size: dimensions are given with few digits.
 CLOSED = 1e-6
-# More configurations than this of one mechanism are not told apart by anybody.
+# More configurations than this of one mechanism are distinguished by nobody.
 MOST = 4096
 # Where nothing can be assembled, so many values of each driver are tried, and the nearest that can is refined.
 TRIED = 721

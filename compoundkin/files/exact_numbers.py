@@ -13,7 +13,7 @@ from compoundkin.model.geometry import polar
 
 Floats: TypeAlias = NDArray[np.float64]
 
-# Whole numbers are written without a decimal point up to here; doubles tell all integers apart up to 2**53.
+# Whole numbers are written without a decimal point up to here; doubles distinguish all integers up to 2**53.
 WHOLE = 10**15
 
 # Points and rates with at most this many characters are plain enough not to look for a nicer form.

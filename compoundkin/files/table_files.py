@@ -29,7 +29,7 @@ def _write_csv(table: Table, text: Any) -> None:
     rows = csv.writer(text, lineterminator="\n")
     shown = table.shown.columns
     rows.writerow([f"{column.name} [{column.unit}]" if column.unit else column.name for column in shown])
-    # lists of Python floats, which are written with as many digits as tell them apart
+    # lists of Python floats, which are written with as many digits as distinguish them
     rows.writerows(zip(*(column.values.tolist() for column in shown), strict=True))
 
 

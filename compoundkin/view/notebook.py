@@ -38,7 +38,7 @@ FITTED = "max-width:100%;height:auto;"
 
 
 def html_of(what: object) -> str | None:
-    """Return what a notebook shows of an object; None where it had better show the text.
+    """Return what a notebook shows of an object. None where it had better show the text.
 
     It never raises: an object that was made without an error is not to end in one because a cell ends with it.
 
@@ -54,7 +54,7 @@ def html_of(what: object) -> str | None:
 
 
 def svg_of(what: Mechanism | Structure | Motion) -> str | None:
-    """Return the picture of a mechanism or of one taken apart; None where it would take long."""
+    """Return the picture of a mechanism or of one taken apart. None where it would take long."""
     mechanism = what if isinstance(what, Mechanism) else what.mechanism
     if len(mechanism.links) > MOST_LINKS:
         return None

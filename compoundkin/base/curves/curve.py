@@ -18,7 +18,7 @@ from compoundkin.base.curves.touch_points import farthest, foot, held
 from compoundkin.base.series import Series, as_series
 
 # Two places of a curve whose distances from a point differ by less than the square of this part of the curve cannot
-# be told apart by samples; Newton starts this close to its answer.
+# be distinguished by samples; Newton starts this close to its answer.
 SAMPLES = 2048
 # Places where what is given as a curve is tried.
 TRIED = 7

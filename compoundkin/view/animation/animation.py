@@ -86,12 +86,12 @@ class Animation(Savable):
 
     @cached_property
     def svg(self) -> str:
-        """Its source as SVG that moves by itself; the first pose where that is not supported."""
+        """Its source as SVG that moves by itself. The first pose where that is not supported."""
         scale = self.shown_size / self.longer
         return smil(self.timeline, self.caption, self.arrows, self.centres, scale)
 
     def save(self, path: str | os.PathLike[str], progress: Progress | None = None) -> None:
-        """Write it to a .gif, .mp4 or .svg file, whole or not at all; `progress(done, total)` is told of every frame.
+        """Write it to a .gif, .mp4 or .svg file, whole or not at all. `progress(done, total)` is told of every frame.
 
         Raises InvalidInput for another suffix, where the file cannot be written, for GIF and MP4 where CairoSVG and
         Pillow are not installed, and for MP4 where there is no ffmpeg or it fails.
@@ -100,7 +100,7 @@ class Animation(Savable):
         write_atomically(path, lambda file: file.write(made))
 
     def content(self, form: str, progress: Progress | None = None) -> bytes:
-        """Return the bytes of a file in the form "gif", "mp4" or "svg"; the same every time."""
+        """Return the bytes of a file in the form "gif", "mp4" or "svg". The same every time."""
         if form == "svg":
             (progress or _untold)(len(self), len(self))
             return self.svg.encode("utf-8")
@@ -130,7 +130,7 @@ class Animation(Savable):
 
 
 def ready_for(path: str | os.PathLike[str]) -> str:
-    """Return the form of a file that can be written; raises InvalidInput where it cannot, before anything is drawn."""
+    """Return the form of a file that can be written. Raises InvalidInput where it cannot, before anything is drawn."""
     form = form_of("animation", path)
     if not Path(path).absolute().parent.is_dir():
         raise InvalidInput(Problem(str(path), "it cannot be written: there is no such folder", "make it first"))
@@ -202,7 +202,7 @@ def _motion(what: Motion | Mechanism | Structure) -> Motion:
 
 
 def finer_values(motion: Motion) -> dict[str, Number] | None:
-    """Return the drivers' values with others evenly between them, where there are too few to be shown.
+    """Return the drivers' values with others evenly between them. Others are added where there are too few to be shown.
 
     None where there are enough, and where rates or dimensions change along the motion with the values.
     """

@@ -44,7 +44,7 @@ Progress: TypeAlias = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Frames:
-    """The frames of a film, made one by one as arrays of pixels of one size, each shown for `hold` seconds."""
+    """The frames of a film, made one by one. They are arrays of pixels of one size, each shown for `hold` seconds."""
 
     frame: Callable[[int], Number]
     count: int
@@ -53,7 +53,7 @@ class Frames:
 
 
 def palette(pixels: Number, most: int) -> Number:
-    """At most so many colours of some pixels, (..., 3), the most frequent first, (colours, 3).
+    """Return at most so many colours of some pixels, (..., 3). The most frequent come first, (colours, 3).
 
     What is drawn in one colour keeps it exactly; edges, whose colours lie between two, go to one nearby.
 
@@ -72,7 +72,7 @@ def palette(pixels: Number, most: int) -> Number:
 
 
 def nearest_table(colours: Number) -> Number:
-    """Tell which colour of a palette is the nearest to any other: a table for `indices`."""
+    """Tell which colour of a palette is the nearest to any other. It is a table for `indices`."""
     levels = np.arange(LEVELS) * (256 // LEVELS) + 128 // LEVELS
     any_colour = np.stack(np.meshgrid(levels, levels, levels, indexing="ij"), axis=-1).reshape(-1, 1, 3)
     parts = np.array_split(any_colour, LEVELS)
@@ -81,13 +81,13 @@ def nearest_table(colours: Number) -> Number:
 
 
 def indices(pixels: Number, table: Number) -> Number:
-    """Return the colours of a palette, by their numbers, that are nearest to those of pixels, (..., 3)."""
+    """Return the numbers of a palette's colours nearest to those of pixels. The pixels are (..., 3)."""
     red, green, blue = np.moveaxis(pixels >> (8 - BITS), -1, 0).astype(np.intp)
     return np.asarray(table[(red * LEVELS + green) * LEVELS + blue])
 
 
 def gif(frames: Frames, progress: Progress) -> bytes:
-    """Return frames as the bytes of a GIF.
+    """Return frames, arrays of pixels, as the bytes of a GIF. Each is shown for `hold` seconds.
 
     Raises InvalidInput where Pillow is not installed, and for more frames a second than a GIF can have.
     """
@@ -123,7 +123,7 @@ def gif(frames: Frames, progress: Progress) -> bytes:
 
 
 def require_pillow() -> Any:
-    """Pillow's images; raises InvalidInput where it is not installed."""
+    """Return Pillow's images. Raises InvalidInput where it is not installed."""
     try:
         from PIL import Image
     except ImportError:
@@ -153,7 +153,7 @@ def require_ffmpeg() -> str:
 
 
 def mp4(frames: Frames, progress: Progress) -> bytes:
-    """Return frames as the bytes of an MP4 file.
+    """Return frames, arrays of pixels, as the bytes of an MP4 file. Each is shown for `hold` seconds.
 
     Raises InvalidInput where ffmpeg is not installed or fails, with what it says.
     """

@@ -29,7 +29,7 @@ DIGITS = 3
 
 @dataclass(frozen=True, eq=False)
 class Gauge:
-    """A line with a dot that shows where a driver is, or what time it is; `values` over the assembled poses."""
+    """A line with a dot that shows where a driver is, or the time. Its `values` are those over the assembled poses."""
 
     text: str
     values: Number
@@ -85,14 +85,14 @@ class Caption(PrintsShort):
         return [*times, *pose_notes(here)]
 
     def shapes(self, k: int) -> tuple[list[Shape], float]:
-        """Return the texts at the k-th assembled pose, and the height of the picture with them."""
+        """Return the texts at the k-th assembled pose, and the picture's height. The height is that with them."""
         lines = lines_of_text(self.notes(k), self._room)
         lines += [""] * (self._changing - len(lines)) + lines_of_text(self.names, self._room)
         found, height = below(lines, self.window.height)
         return self._scaled([shape for shape in found if not isinstance(shape, Text) or shape.text], height)
 
     def gauges(self) -> tuple[list[Gauge], list[Shape], float]:
-        """Return lines with dots in the place of texts that change; what else stands there, and the height with all."""
+        """Return lines with dots in the place of texts that change. What else stands there, and the height with all."""
         told = list(self._gauged()) if self.is_told else []
         moving = [(text, values) for text, values in told if np.ptp(values) > 0]
         start = complex(LEFT, self.window.height + BELOW)

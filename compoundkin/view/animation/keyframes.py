@@ -28,7 +28,7 @@ AWAY = -1000.0 - 1000.0j
 
 @dataclass(frozen=True, eq=False)
 class Keys:
-    """Times from 0 to 1 and the values there, (times, columns); two equal times where the values leap.
+    """Times from 0 to 1 and the values there, (times, columns). Two equal times where the values leap.
 
     `is_even` where the times are as far apart as they can be, `is_steady` where values stay until the next time.
     """
@@ -47,7 +47,9 @@ def keys_of(
     shown: Number | None = None,
     away: complex = 0j,
 ) -> Keys:
-    """Return the keyframes of values at the poses of a timeline, (poses,) or (poses, columns), complex or real.
+    """Return the keyframes of values at the poses of a timeline.
+
+    They are (poses,) or (poses, columns), complex or real.
 
     Where they are not `shown` they are `away`; poses may be shown `one_by_one`.
     """

@@ -31,7 +31,7 @@ MOST_OF_THEM = 0.8
 def smil(
     timeline: Timeline, caption: Caption, arrows: Sequence[Arrows], centres: Sequence[MovingCentre], scale: float
 ) -> str:
-    """Write an animation as SVG, `scale` pixels for a picture unit; where it cannot move, its first pose is shown."""
+    """Write an animation as SVG, `scale` pixels for a picture unit. Where it cannot move, its first pose is shown."""
     sketch = caption.sketch
     gauges, texts, height = caption.gauges()
     letters = [places_of(sketch, letter)[timeline.poses] for letter in sketch.scene.letters]
@@ -108,7 +108,7 @@ def _closed_outline(points: Number) -> str:
 
 
 def part_lines(writer: Writer, sketch: MovingSketch, part: MovingPart) -> list[str]:
-    """Write a part that moves with its point and turns about it, in the shortest of several ways."""
+    """Write a part that moves and turns with its point. It does so in the shortest of several ways."""
     if part.link == FRAME:
         return list(elements(moved(part.shapes, complex(sketch.places(part)[0]))))
     if part.turns:
@@ -174,7 +174,7 @@ def _turned_angles(sketch: MovingSketch, link: str) -> Number:
 
 
 def are_far_apart(timeline: Timeline, values: Number) -> bool:
-    """Tell whether a smooth line through values at the poses, (poses, columns), is much off between them."""
+    """Tell whether a smooth line through values is much off between poses. The values are (poses, columns)."""
     return any(_off(values[leg]) > FAR_APART for leg in timeline.slices if leg.stop - leg.start > 1)
 
 

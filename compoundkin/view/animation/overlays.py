@@ -26,14 +26,14 @@ FAR = 22.0
 
 @dataclass(frozen=True, eq=False)
 class Arrows:
-    """Vectors of one kind at all points over the assembled poses; `places` on the picture."""
+    """Vectors of one kind at all points over the assembled poses. `places` on the picture."""
 
     scale: VectorScale
     places: dict[str, Number]
     rates: dict[str, Number]
 
     def sign(self, way: int) -> int:
-        """Tell what they are multiplied by where the motion goes back: velocities turn round, accelerations do not."""
+        """Tell what they are multiplied by where the motion goes back. Velocities turn round, accelerations do not."""
         return int(way ** KINDS_OF_VECTOR[self.scale.kind][0])
 
     def shapes(self, k: int, way: int) -> list[Shape]:
@@ -44,7 +44,7 @@ class Arrows:
 
 @dataclass(frozen=True, eq=False)
 class MovingCentre:
-    """An instant centre, or several that are always at one place: where it is on the picture, and where it is shown."""
+    """An instant centre, or several that are always at one place. Where it is on the picture, and where it is shown."""
 
     name: str
     places: Number
@@ -58,12 +58,12 @@ class MovingCentre:
         return CircleShape(0j, DOT, "centre"), halo, name
 
     def shapes(self, k: int) -> list[Shape]:
-        """It at the k-th assembled pose; nothing where it is not on the picture."""
+        """Draw it at the k-th assembled pose; nothing where it is off the picture."""
         return moved(self.marks, complex(self.places[k])) if self.shown[k] else []
 
 
 def with_arrows(sketch: MovingSketch, kinds: Sequence[str], back: bool) -> tuple[MovingSketch, tuple[Arrows, ...]]:
-    """Return arrows of some kinds and the sketch with room for them; with a way `back`, for both senses.
+    """Return arrows of some kinds and the sketch with room for them. With a way `back`, for both senses.
 
     Raises InvalidInput where the motion was not solved for them.
     """
@@ -91,7 +91,7 @@ def _tips(arrows: Arrows, back: bool) -> list[Number]:
 
 
 def moving_centres(sketch: MovingSketch) -> tuple[MovingCentre, ...]:
-    """Return all instant centres that are ever on the picture, those that are always at one place together."""
+    """Return all instant centres that are ever on the picture. Those that are always at one place are together."""
     scene, window = sketch.scene, sketch.window
     centres = instant_centres(sketch.motion)
     apart: list[tuple[list[str], Number]] = []

@@ -29,7 +29,7 @@ EVEN = 0.05
 
 @dataclass(frozen=True, eq=False)
 class TimelineLeg:
-    """Poses that follow one another without a leap: places among the assembled ones, with their times from 0 to 1.
+    """Poses that follow one another without a leap. Places among the assembled ones, with their times from 0 to 1.
 
     `way` is 1 where the motion goes on, -1 where it goes back.
     """
@@ -41,7 +41,7 @@ class TimelineLeg:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Timeline(PrintsShort):
-    """The legs of an animation in their order; `returns` where it ends as it begins, and `seconds` how long it takes.
+    """The legs of an animation in their order. `returns` where it ends as it begins, and `seconds` how long it takes.
 
     `hold` is for how long a frame is shown, `frames` the places of the frames in `poses` and `ways`.
     """
@@ -79,11 +79,13 @@ class Timeline(PrintsShort):
 
     @property
     def has_seam(self) -> bool:
-        """Whether a leg goes on beyond the end of a turn, where the values of drivers leap."""
+        """Whether a leg goes on where the values of drivers leap. They leap at the end of a turn."""
         return any(len(leg.poses) > 1 and np.ptp(np.sign(np.diff(leg.poses))) > 0 for leg in self.legs)
 
     def turning(self, angles: Number) -> Number:
-        """Angles over the assembled poses in the order in which they are shown, continuous in every leg.
+        """Return angles over the assembled poses, continuous in every leg.
+
+        The poses are in the order in which they are shown.
 
         A leg that goes on beyond the end of a turn goes on with the angles of that end.
         """
@@ -97,7 +99,7 @@ class Timeline(PrintsShort):
 def timeline_of(
     scene: Scene, motion: Motion, design: int, back: bool | None, seconds: float | None, fps: float | None
 ) -> Timeline:
-    """Return the timeline of an animation: through all poses, and back where the last is not the first again.
+    """Return the timeline of an animation. Through all poses, and back where the last is not the first again.
 
     Poses that cannot be assembled are left out; each interval between them is a way there and back of its own. A motion
     in time is shown as fast as it is, any other one in about four seconds, unless `seconds` says how long.

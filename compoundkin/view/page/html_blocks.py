@@ -35,7 +35,7 @@ ABOUT, GROUPS = "about", "groups"
 
 
 def plain_sections(sections: Iterable[Section]) -> Iterator[str]:
-    """Sections with their headings, block by block."""
+    """Write sections with their headings, block by block."""
     for section in sections:
         if section.title:
             yield element("h4", safe(section.title))
@@ -43,7 +43,7 @@ def plain_sections(sections: Iterable[Section]) -> Iterator[str]:
 
 
 def plain_table(table: TableBlock, caption: str = "") -> str:
-    """Write a table whose first column names its rows, in a box that scrolls where it is wider than the page."""
+    """Write a table whose first column names its rows. It is in a box that scrolls where it is wider than the page."""
     rows = table.shown_rows
     cells = [written(column, [row[k] for row in rows[:MOST_ROWS]]) for k, column in enumerate(table.columns)]
     sides = [RIGHT if column.is_number else LEFT for column in table.columns]
@@ -130,7 +130,7 @@ class Blocks:
         return element("section", f"\n{body}\n", id=section.key, aria_labelledby=f"{section.key}-title")
 
     def about(self, sections: Sequence[Section]) -> str:
-        """Write what stands in the head of the page: the paragraphs of the section about the whole."""
+        """Write what stands in the head of the page. The paragraphs of the section about the whole."""
         return lines(part for section in sections if section.key == ABOUT for part in self._blocks(section))
 
     def _blocks(self, section: Section) -> Iterator[str]:

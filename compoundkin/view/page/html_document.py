@@ -51,7 +51,7 @@ def asset(name: str) -> str:
 
 
 def vendored(name: str, licence: str, gives: str = "") -> str:
-    """Return a library as part of a page: with its licence, and in a function, so that its names stay its own.
+    """Return a library as part of a page. With its licence, and in a function, so that its names stay its own.
 
     What it `gives` is then `compoundkin.uPlot`, or whatever its name is.
 
@@ -63,7 +63,7 @@ def vendored(name: str, licence: str, gives: str = "") -> str:
 
 
 def palette() -> str:
-    """Return the style rules that name all colours; paper that is printed on is light."""
+    """Return the style rules that name all colours. Paper that is printed on is light."""
     colours = {"paper": sketch_style.PAPER, "ink": sketch_style.INK, **OWN}
     colours |= {f"g{k}": pair for k, pair in enumerate(sketch_style.COLOURS)}
     light, dark = ("".join(f"--{name}:{pair[k]};" for name, pair in colours.items()) for k in (0, 1))

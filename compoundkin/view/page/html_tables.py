@@ -24,7 +24,7 @@ LONG = 24
 
 @dataclass(frozen=True)
 class Names:
-    """The names in a mechanism: links with the number of their group, members of pairs, links of points, groups.
+    """The names in a mechanism. Links with the number of their group, members of pairs, links of points, groups.
 
     Without a structure there is nothing to tell, and every name is about no link.
     """
@@ -40,7 +40,7 @@ class Names:
         return tuple(tuple(link for link, own in self.groups.items() if own == k) for k in range(len(self.titles)))
 
     def about(self, text: str) -> Links:
-        """Return the links that the words of a cell are about; none where it is about something else.
+        """Return the links that the words of a cell are about. None where it is about something else.
 
         >>> names = Names({"bar": 1, "frame": 0}, {"slot": ("bar", "frame")}, {"G": ("bar",)})
         >>> names.about("|G.velocity|"), names.about("slot"), names.about("none")
@@ -62,7 +62,7 @@ class Names:
         return ()
 
     def colour(self, links: Links) -> int | None:
-        """Return the number of the colour of some links, where they have one in common."""
+        """Return the colour number that some links have in common, if any."""
         numbers = {self.groups[link] for link in links if link in self.groups}
         if len(numbers) != 1:
             return None
@@ -98,7 +98,7 @@ def _readings(text: str) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class ShownTable:
-    """A table with its name on the page, what it is called, and the poses of its rows, if they are poses."""
+    """A table with its name on the page and what it is called. It has the poses of its rows, if they are poses."""
 
     table: TableBlock
     key: str

@@ -20,7 +20,7 @@ _BREAK = re.compile(r"([._])(?=\w)")
 
 
 def exact(values: Number) -> str | float | None:
-    """Return numbers as doubles, those of a script; one number where they are all the same, None where none is known.
+    """Return numbers as doubles, those of a script. One number where they are all the same, None where none is known.
 
     >>> exact(np.array([1.0, 2.0]))
     'd:AAAAAAAA8D8AAAAAAAAAQA=='
@@ -71,7 +71,7 @@ def broken(text: str) -> str:
 
 
 def element(tag: str, inside: str = "", **attributes: str | None) -> str:
-    """Return an element; `inside` is markup, attributes are texts, and one that is None is left out.
+    """Return an element. `inside` is markup, attributes are texts, and one that is None is left out.
 
     >>> element("td", "1.0", class_="number", data_sort="1.03")
     '<td class="number" data-sort="1.03">1.0</td>'
@@ -95,13 +95,13 @@ def hidden(text: str) -> str:
 
 
 def data_script(name: str, value: Any) -> str:
-    """Data for scripts, found by the id `name`; no text in it can end the element."""
+    """Write data for scripts, found by the id `name`. No text in it can end the element."""
     text = json.dumps(value, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return f'<script type="application/json" id="{safe(name)}">{embedded(text)}</script>'
 
 
 def embedded(text: str) -> str:
-    r"""JSON that cannot end the element around it: "<" is written as an escape.
+    r"""Write JSON that cannot end the element around it: "<" is escaped.
 
     >>> embedded('{"a":"</script>"}')
     '{"a":"\\u003c/script>"}'

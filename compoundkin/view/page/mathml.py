@@ -23,7 +23,7 @@ class Unread(ValueError):
 
 
 def mathml(latex: str) -> str:
-    r"""Return a formula as MathML, its terms one after the other so that lines may be broken between them.
+    r"""Return a formula as MathML, its terms one after the other. So lines may be broken between them.
 
     Raises Unread for LaTeX that it does not know.
 

@@ -33,7 +33,7 @@ CYCLE, QUICKEST, SLOWEST = 4.0, 1.0, 30.0
 
 @dataclass(frozen=True, eq=False)
 class MotionData:
-    """One design of a motion with its sketch, and which of its poses a page holds.
+    """One design of a motion with its sketch. It says which of its poses a page holds.
 
     It holds `most` of them, fewer where there are many links. Raises NotAssembled where no pose is assembled,
     InvalidInput where links change their dimensions on the way.
@@ -56,7 +56,7 @@ class MotionData:
 
     @cached_property
     def chosen(self) -> Number:
-        """The indices of the poses that the page holds: all, or so many as there is room for and the one shown."""
+        """The indices of the poses that the page holds. All, or so many as there is room for and the one shown."""
         links = len(self.motion.mechanism.links)
         most = min(self.most, max(FEWEST_POSES, MOST_NUMBERS // (OF_A_LINK * links)))
         places = np.linspace(0, self.sample.poses - 1, min(most, self.sample.poses)).round().astype(int)
@@ -68,12 +68,12 @@ class MotionData:
         return int(np.searchsorted(self.chosen, self.sketch.pose))
 
     def of(self, values: Any) -> Number:
-        """This design's part of an array of the motion's shape, at the poses that the page holds."""
+        """Return this design's part of an array at the page's poses. The array has the motion's shape."""
         return np.asarray(self.sample.of(values))[self.chosen]
 
     @cached_property
     def closes(self) -> bool:
-        """Whether the last pose is the first one again, so that the motion can be played on and on."""
+        """Whether the last pose is the first one again. The motion can be played on and on then."""
         return bool(self.sample.assembled.all()) and self.sample.poses > 1 and self.sketch.scene.closes
 
     @property
@@ -115,7 +115,7 @@ class MotionData:
 
     @cached_property
     def slowness(self) -> float | None:
-        """How many times slower than it runs a motion in time is played; None for one that is not in time."""
+        """How many times slower than it runs a motion in time is played. None for one that is not in time."""
         times = self.sample.times
         if times is None or np.ptp(times) == 0:
             return None

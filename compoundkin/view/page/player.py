@@ -18,7 +18,9 @@ STYLE = "html,body{margin:0;background:var(--paper);font-size:15px}.player{paddi
 
 
 def player(motion: Motion, design: int = 0) -> str:
-    """Return a document that shows one design of a motion under a slider and a play button, and asks for nothing else.
+    """Return a document that shows one design under a slider and a button.
+
+    The button plays the motion; the document asks for nothing else.
 
     Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
 
@@ -51,7 +53,7 @@ def _document(moving: MotionData) -> str:
 
 
 def framed(motion: Motion) -> str:
-    """Return the player of a motion's first design in a frame, for notebooks; raises what `player` does."""
+    """Return the player of a motion's first design in a frame, for notebooks. Raises what `player` does."""
     moving = MotionData(Sample(motion), most=MOST_POSES, with_centres=False)
     document = _document(moving)
     window = moving.sketch.window

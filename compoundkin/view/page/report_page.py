@@ -46,12 +46,12 @@ MOST_CELLS = 12_000
 
 
 def figures(sections: Sequence[Section], subject: Subject | None) -> dict[str, str]:
-    """Return the figures at the heads of the sections of a report, by the sections' keys."""
+    """Return the figures at the heads of a report's sections, by their keys."""
     return dict(_figures(sections, subject)) if subject is not None and _drawn(subject) else {}
 
 
 def sketch(subject: Subject) -> str:
-    """Return the kinematic sketch of one pose as a figure; "" where there is none."""
+    """Return the kinematic sketch of one pose as a figure. It is "" where there is none."""
     if not _drawn(subject):
         return ""
     try:
@@ -64,7 +64,7 @@ def sketch(subject: Subject) -> str:
 
 
 def figure(picture: Picture, caption: str) -> str:
-    """Return a picture with what is said below it, in a box that scrolls where it would become too small."""
+    """Return a picture with what is said below it. It is in a box that scrolls where it would become too small."""
     told = {"role": "region", "aria_label": f"Picture: {caption}", "tabindex": "0"}
     box = element("div", picture.inline, class_="picture", style=f"--wide:{picture.width:.0f}px", **told)
     return element("figure", f"{box}\n<figcaption>{safe(caption)}</figcaption>")
@@ -98,7 +98,7 @@ class Whole(Sample):
 def all_poses(
     sections: Sequence[Section], motion: Motion, outputs: Sequence[str], design: int
 ) -> tuple[Sequence[Section], tuple[int, ...]]:
-    """Return the sections with the outputs at every pose, and the poses of the table's rows.
+    """Return sections with the outputs at every pose, and the rows' poses. The rows are those of the table.
 
     `outputs` are those that the report was made with.
     """
@@ -138,7 +138,10 @@ class Page(Savable):
         return self.html.encode("utf-8")
 
     def open(self) -> Path:
-        """Write it to a temporary file and show that in the browser, where there is one; the file's path."""
+        """Write it to a temporary file and show that in the browser.
+
+        It is shown where there is one; the file's path is returned.
+        """
         path = temporary()
         self.save(path)
         shown_in_browser(path)
@@ -156,7 +159,7 @@ def page_of(
     outputs: Sequence[str] = (),
     design: int = 0,
 ) -> Page:
-    """Return any report as a page: with pictures of its subject, with the moving sketch where that is a motion."""
+    """Return any report as a page. With pictures of its subject, with the moving sketch where that is a motion."""
     motion = subject if isinstance(subject, Motion) else None
     known = subject.structure if isinstance(subject, Motion) else subject
     poses: dict[str, Sequence[int]] = {}

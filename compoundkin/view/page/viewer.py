@@ -36,7 +36,7 @@ SWITCHES = (
 
 @dataclass(frozen=True)
 class Viewer:
-    """The parts of a page that show a motion: `html` the moving sketch, `plots` the place of the plots, `data`."""
+    """The parts of a page that show a motion. `html` the moving sketch, `plots` the place of the plots, `data`."""
 
     html: str
     plots: str
@@ -50,7 +50,7 @@ class Viewer:
 
 
 def viewer_of(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> Viewer | None:
-    """Return `viewer` with the outputs that a report has where none are named; None where nothing can move."""
+    """Return `viewer` with the outputs that a report has where none are named. None where nothing can move."""
     try:
         return viewer(motion, design, chosen_outputs(motion, outputs))
     except (InvalidInput, NotAssembled):
@@ -58,7 +58,7 @@ def viewer_of(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> V
 
 
 def viewer(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> Viewer:
-    """Return the viewer of one design of a motion, with plots of some of its quantities.
+    """Return the viewer of one design of a motion. It has plots of some of its quantities.
 
     Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
     """

@@ -50,7 +50,7 @@ START: Mapping[str, Any] = MappingProxyType({"linestyle": "none", "marker": "D",
 
 @dataclass(frozen=True, eq=False)
 class BranchDrawing:
-    """What all panels share: the circuits, the horizontal axis, and where the one turn of a periodic driver begins."""
+    """What all panels share. The circuits, the horizontal axis, and where the one turn of a periodic driver begins."""
 
     positions: Positions
     across: Plotted
@@ -83,7 +83,7 @@ class BranchDrawing:
 
     @property
     def are_named(self) -> bool:
-        """Whether the group is written beside each limit position: where there are several, and no crowd."""
+        """Whether the group is written beside each limit position. Where there are several, and no crowd."""
         return len(self.responsible) > 1 and len(self.found.limits) <= MOST_NAMED
 
     @property

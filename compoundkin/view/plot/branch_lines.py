@@ -58,7 +58,7 @@ class _Places(_Values):
 
 @dataclass(frozen=True, eq=False)
 class Positions:
-    """All that has a position on segments: `values` of the driver (rows, places), and the poses of the links there."""
+    """All that has a position on segments. `values` of the driver (rows, places), and the poses of the links there."""
 
     found: Circuits
     values: Number
@@ -129,7 +129,7 @@ def _positions(found: Circuits, rows: Number, values: Number, sides: Number) -> 
 
 
 def shown(positions: Positions, name: str) -> tuple[Plotted, ...]:
-    """Return a quantity by its name, (segments, places), angles in degrees; a point as its coordinates.
+    """Return a quantity by its name, (segments, places), angles in degrees. A point as its coordinates.
 
     Raises UnknownName with the nearest name there is, InvalidInput for rates.
     """
@@ -151,7 +151,7 @@ def shown(positions: Positions, name: str) -> tuple[Plotted, ...]:
 
 @dataclass(frozen=True, eq=False)
 class BranchCurve:
-    """A quantity along a branch, in the order of its circuit: the driver `x`, the quantity `y`, and special places.
+    """A quantity along a branch, in the order of its circuit. The driver `x`, the quantity `y`, and special places.
 
     `limits` are the indices of its ends that are limit positions, with these; `changes` those of change points.
     """
@@ -182,7 +182,7 @@ def _joined(angles: Number) -> Number:
 
 
 def seam(curves: Sequence[Number], candidates: Sequence[float]) -> float:
-    """Return the angle, of some, at which the fewest of several curves are cut; of those, where they take least room.
+    """Return the angle, of some, at which the fewest of several curves are cut. Of those, where they take least room.
 
     >>> seam([np.array([-80.0, 80.0])], (0.0, -180.0))
     -180.0
@@ -198,7 +198,7 @@ def seam(curves: Sequence[Number], candidates: Sequence[float]) -> float:
 
 
 def wrapped(first: Number, second: Number, low: float) -> tuple[Number, Number]:
-    """Return a curve whose first coordinate is brought into the turn that begins at `low`, NaN where it is cut.
+    """Return a curve, its first coordinate brought into the turn from `low`. It is NaN where it is cut.
 
     >>> [part.tolist() for part in wrapped(np.array([350.0, 370.0]), np.array([0.0, 1.0]), 0.0)]
     [[350.0, 360.0, nan, 0.0, 10.0], [0.0, 0.5, nan, 0.5, 1.0]]

@@ -51,7 +51,7 @@ def finished(figure: Any, labels: Sequence[PointLabel]) -> Plot:
 
 
 def degree_step(span: float, most: int) -> float | None:
-    """Return the distance between ticks of degrees; None where the usual ones for decimal numbers suit.
+    """Return the distance between ticks of degrees. None where the usual ones for decimal numbers suit.
 
     >>> degree_step(360.0, 9), degree_step(44.0, 6), degree_step(1.5, 6)
     (45, 10, None)
@@ -62,7 +62,7 @@ def degree_step(span: float, most: int) -> float | None:
 
 
 def ticks(axis: Any, is_angle: bool, most: int) -> None:
-    """Ticks at round numbers: of degrees at parts of a turn."""
+    """Draw ticks at round numbers: of degrees at parts of a turn."""
     from matplotlib.ticker import MaxNLocator, MultipleLocator
 
     low, high = axis.get_view_interval()
@@ -85,7 +85,7 @@ def axis_labels(axes: Any, x: Plotted | None, y: Plotted, room: int) -> None:
 
 
 def steady(values: Number, scale: float) -> tuple[float, float] | None:
-    """Limits around values that are constant but for rounding; None where they are not.
+    """Return limits around values constant but for rounding. None where they are not.
 
     >>> steady(np.array([1.0, 1.0]), 1.0)
     (0.5, 1.5)
@@ -99,7 +99,7 @@ def steady(values: Number, scale: float) -> tuple[float, float] | None:
 
 
 def plane(axes: Any, x: str, y: str) -> None:
-    """Axes of a plane: equal scales."""
+    """Draw the axes of a plane: equal scales."""
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel(x)
     axes.set_ylabel(y)
@@ -107,7 +107,7 @@ def plane(axes: Any, x: str, y: str) -> None:
 
 
 def legend(axes: Any) -> None:
-    """Draw the legend of an axes, above it at the right, if there is more than one thing to tell apart."""
+    """Draw the legend of an axes, above it at the right. It is drawn if there is more than one thing to distinguish."""
     handles, _ = axes.get_legend_handles_labels()
     if len(handles) > 1:
         columns = min(len(handles), 4)
@@ -115,7 +115,7 @@ def legend(axes: Any) -> None:
 
 
 def designs_legend(figure: Any, axes: Sequence[Any], names: Sequence[str]) -> None:
-    """Say which colour is which design: names beside the plot, or a scale where there are many."""
+    """Say which colour is which design. Names beside the plot, or a scale where there are many."""
     from matplotlib.colors import LinearSegmentedColormap, Normalize
     from matplotlib.lines import Line2D
 
@@ -152,7 +152,7 @@ def events_legend(figure: Any, gaps: bool, limits: bool, changes: bool, marks: s
 
 
 def ring_handle(label: str) -> Any:
-    """Return the ring that marks a pose next to a limit position, for a legend."""
+    """Return the legend's ring for a pose next to a limit position."""
     from matplotlib.lines import Line2D
 
     return Line2D([], [], **RING, color=INK, label=label)
@@ -170,7 +170,7 @@ def dot(axes: Any, x: Any, y: Any, colour: Any, size: float = 4.5) -> None:
 
 
 def arrow(axes: Any, x: Number, y: Number, colour: Any) -> None:
-    """Draw an arrow along a curve, an eighth of its poses after its begin; none where nothing moves."""
+    """Draw an arrow along a curve, an eighth of its poses after its begin. None where nothing moves."""
     known = np.isfinite(x) & np.isfinite(y)
     moves = np.flatnonzero(known[:-1] & known[1:] & ((np.diff(x) != 0) | (np.diff(y) != 0)))
     if len(moves):

@@ -41,7 +41,7 @@ def circuits(
     title: str | None = None,
     size: tuple[float, float] | None = None,
 ) -> Plot:
-    """Draw every branch of every circuit as a curve over the driver's whole range: the input-output curve.
+    """Draw every branch of every circuit as a curve over the driver's whole range. The input-output curve.
 
     `names` are positions as `quantity` takes them ("rocker.angle", "G.x", "slot.displacement"; "G" is both its
     coordinates), a panel each. Without any they are those that the mechanism states as its outputs; else, of up to

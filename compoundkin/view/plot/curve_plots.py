@@ -73,7 +73,7 @@ def hodograph(
     title: str | None = None,
     size: tuple[float, float] | None = None,
 ) -> Plot:
-    """Draw the curves that the tips of vectors run along, all from one origin: "G.velocity".
+    """Draw the curves of vectors' tips, all from one origin: "G.velocity".
 
     Equal scales; a dot every so many poses with the driver's value or the time. Vectors of one plot have one unit.
     Raises UnknownName for names that the motion does not have, InvalidInput for what is no vector or has another unit.

@@ -21,7 +21,7 @@ MOST_ADDED = {False: 0.25, True: 0.5}
 
 @dataclass(frozen=True)
 class Blank:
-    """A part of the motion of one design that cannot be assembled, in places along the motion (pose 0, 1, 2 ...).
+    """A part of one design's motion without assembled poses. Its places are along the motion (pose 0, 1, 2 ...).
 
     `limits` tells for its begin and its end whether it is a limit position; otherwise the motion ends there.
     """
@@ -40,7 +40,7 @@ class Events:
     changes: tuple[tuple[int, float], ...]  # design and place of every change point
 
     def beside(self, design: int, poses: int) -> Number:
-        """Return the last poses before and the first ones after limit positions of a design."""
+        """Return a design's last poses before and first ones after limit positions."""
         found = []
         for blank in self.blanks:
             if blank.design == design:
@@ -71,7 +71,7 @@ def events(motion: Motion) -> Events:
 
 
 def at(row: Number, place: float) -> float:
-    """Return the value of a quantity at a place along the motion, linear between poses as drivers and times are."""
+    """Return a quantity at a place, linear between poses as drivers and times are."""
     return float(np.interp(place, np.arange(len(row)), row))
 
 
@@ -94,7 +94,7 @@ def _place(motion: Motion, design: int, values: dict[str, float], good: int, bad
 
 @dataclass(frozen=True)
 class Extreme:
-    """A highest or lowest value `y` of a curve, and the value `x` where it is."""
+    """A highest or lowest value `y` of a curve, with its `x`."""
 
     x: float
     y: float
@@ -104,7 +104,7 @@ class Extreme:
 def extremes(
     x: Number, y: Number, grows: bool = False, scale: float = 0.0, vector: Number | None = None
 ) -> tuple[Extreme, ...]:
-    """Return the highest and the lowest value of a curve (1-D arrays, NaN where there is none); none of a constant.
+    """Return the highest and lowest value of a curve. It is 1-D, NaN where there is none; a constant has none.
 
     Between poses they are interpolated by five poses, or three. With `grows` a value next to a gap is none, for there a
     rate grows without limit. `scale` is what rounding is relative to, if it is larger than the values. `vector` are the

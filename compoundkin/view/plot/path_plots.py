@@ -34,7 +34,7 @@ def paths(
     title: str | None = None,
     size: tuple[float, float] | None = None,
 ) -> Plot:
-    """Draw the paths of points, as an observer on a link sees them: coupler curves.
+    """Draw the paths of points, as an observer on a link sees them. Coupler curves.
 
     A point is a letter, or a link and a place in its frame: ``("coupler", (3, 1))``. Equal scales; a dot every so many
     poses with the driver's value or the time; the points of the observing link are drawn as crosses. Raises UnknownName
@@ -60,7 +60,7 @@ def paths(
 
 
 def fixed_points(axes: Any, motion: Motion, on: str, shared: planar.SharedCurves) -> None:
-    """Draw the points of the observing link, as crosses with their letters; those of the first design."""
+    """Draw the points of the observing link, as crosses with their letters. Those of the first design."""
     for letter, place in motion.mechanism.geometry.points[on].items():
         z = complex(np.ravel(place)[0])
         axes.plot([z.real], [z.imag], marker="x", markersize=6, color=plot_style.INK, linestyle="none", zorder=6)
@@ -98,7 +98,7 @@ def centrodes(
     title: str | None = None,
     size: tuple[float, float] | None = None,
 ) -> Plot:
-    """Draw the fixed and the moving centrode of a link as seen from another, the moving one where it is at a pose.
+    """Draw the fixed and the moving centrode of a link as seen from another. The moving one is where it is at a pose.
 
     Both in the frame of `on`; they touch at the pole of that pose. `design` is an index where there are several. Poles
     farther from the link than two and a half lengths of the mechanism are left out. Raises UnknownName for links that

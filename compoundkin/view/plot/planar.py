@@ -24,7 +24,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class SharedCurves:
-    """What all curves of a plot share: the driver or time, events, names of designs, labels to be placed."""
+    """What all curves of a plot share. The driver or time, events, names of designs, labels to be placed."""
 
     x: Plotted
     happened: Events
@@ -39,7 +39,7 @@ class SharedCurves:
 
 
 def drawing(motion: Motion, designs: Sequence[str], every: int | None) -> SharedCurves:
-    """Return what the curves of a plot share; raises InvalidInput for wrong names or distances of marks."""
+    """Return what the curves of a plot share. Raises InvalidInput for wrong names or distances of marks."""
     x, _ = along(motion, None)
     called = canvas.design_names(motion.shape, designs)
     if every is not None and every < 1:
@@ -49,7 +49,7 @@ def drawing(motion: Motion, designs: Sequence[str], every: int | None) -> Shared
 
 
 def curve(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, name: str) -> None:
-    """Draw one curve (complex, pose by pose) with an arrow, and rings next to limit positions."""
+    """Draw one curve with an arrow, and rings next to limit positions. The curve is complex, pose by pose."""
     axes.plot(z.real, z.imag, color=colour, label=name)
     canvas.arrow(axes, z.real, z.imag, colour)
     beside = shared.happened.beside(d, len(z))
@@ -57,7 +57,10 @@ def curve(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, name:
 
 
 def curves(axes: Any, shared: SharedCurves, drawn: Sequence[Number], names: Sequence[str]) -> None:
-    """Draw curves of all designs with their marks, in colours of their own or, where there are several, of designs."""
+    """Draw curves of all designs with their marks, in their colours.
+
+    The colours are their own or, where there are several, of designs.
+    """
     shades: Any = plot_style.colours(len(drawn), shared.designs)
     for k, (rows, name) in enumerate(zip(drawn, names, strict=True)):
         for d in range(shared.designs):
@@ -67,7 +70,7 @@ def curves(axes: Any, shared: SharedCurves, drawn: Sequence[Number], names: Sequ
 
 
 def marks(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, labelled: bool = True) -> None:
-    """Draw dots at every so many poses, with the value of the driver or the time there; none on large families."""
+    """Draw dots at every so many poses, with the driver's value or time. Large families have none."""
     if shared.designs > canvas.LISTED:
         return
     index = np.arange(0, len(z), shared.every)

@@ -14,7 +14,7 @@ from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
 
 INK, GREY, SHADE = "#222222", "#767676", "#dcdcdc"
-# Told apart with every kind of colour blindness: M. Okabe, K. Ito, Color Universal Design (2008); the yellow is left
+# Distinguished with every kind of colour blindness: M. Okabe, K. Ito, Color Universal Design (2008); the yellow is left
 # out, for it is too light for thin lines.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 # Even in lightness and safe for the colour-blind; its light end would be lost on white.
@@ -76,7 +76,7 @@ def require_matplotlib() -> None:
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Draw in the style of the house, whatever the user's own settings are; they are back afterwards."""
+    """Draw in the style of the house, whatever the user's own settings are. They are back afterwards."""
     require_matplotlib()
     from matplotlib import style
 
@@ -85,7 +85,7 @@ def styled() -> Iterator[None]:
 
 
 def colours(count: int, designs: int) -> tuple[Any, ...]:
-    """Return a colour for each of `count` curves, or for each of several designs from dark to light.
+    """Return a colour for each of `count` curves. For each of several designs they run from dark to light.
 
     >>> colours(2, 1)
     ('#0072B2', '#D55E00')
@@ -113,7 +113,7 @@ class Plot(Savable):
     figure: Any
 
     def content(self, form: str) -> bytes:
-        """Return the bytes of a file in the form "png", "svg" or "pdf"; the same every time."""
+        """Return the bytes of a file in the form "png", "svg" or "pdf". The same every time."""
         written = io.BytesIO()
         with styled():
             self.figure.savefig(written, format=form, metadata=dict(METADATA[form]))

@@ -35,12 +35,12 @@ class Plotted(Quantity):
 
     @property
     def parts(self) -> tuple[Self, ...]:
-        """The components and the length of a vector; what is no vector, as it is."""
+        """The components and the length of a vector. What is no vector, as it is."""
         return tuple(self.part(name) for name in PARTS) if self.is_vector else (self,)
 
 
 def shown(motion: Motion, name: str) -> Plotted:
-    """Return the quantity of a name; a component or the length of a vector as "G.velocity.x", "G.velocity.length".
+    """Return the quantity of a name. A component or the length of a vector as "G.velocity.x", "G.velocity.length".
 
     Raises UnknownName with the nearest name there is.
 
@@ -55,7 +55,7 @@ def shown(motion: Motion, name: str) -> Plotted:
 
 
 def rate_name(motion: Motion, name: str) -> str:
-    """Return the name of the time derivative of a quantity; raises UnknownName where it has none that can be named.
+    """Return the name of the time derivative of a quantity. Raises UnknownName where it has none that can be named.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.kinematics import solve
@@ -77,7 +77,9 @@ def rate_name(motion: Motion, name: str) -> str:
 
 
 def along(motion: Motion, against: str | None) -> tuple[Plotted, bool]:
-    """Tell what a plot runs along, and whether it is known where the mechanism cannot be assembled.
+    """Tell what a plot runs along, and whether it is always known.
+
+    It may not be where the mechanism cannot be assembled.
 
     None is the time of a motion in time, else its first driver that moves. Raises UnknownName.
     """
@@ -121,7 +123,7 @@ def driver(motion: Motion) -> Plotted:
 
 
 def all_of(motion: Motion, names: Sequence[str]) -> tuple[Plotted, ...]:
-    """Return the quantities of names, or what the mechanism states as its outputs where none are given."""
+    """Return the quantities of names, else the mechanism's outputs. The outputs are what it states as such."""
     chosen = names or motion.mechanism.outputs
     if not chosen:
         raise InvalidInput(Problem("quantities", "nothing is named", "name some: plot(motion, 'G.velocity')"))

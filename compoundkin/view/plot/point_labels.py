@@ -31,7 +31,7 @@ MANY_DIGITS, POWER_OF_TEN = 1e4, 1e6
 
 @dataclass(frozen=True, eq=False)
 class PointLabel:
-    """A text that belongs to a point of an axes' plot; `towards` is the direction (complex) it is best put in."""
+    """A text that belongs to a point of an axes' plot. `towards` is the direction (complex) it is best put in."""
 
     axes: Any
     x: float
@@ -42,7 +42,7 @@ class PointLabel:
 
 
 def number(value: float, scale: float = 0.0) -> str:
-    """Return a value in four digits, with a proper minus sign; zero where it is nothing beside the scale.
+    """Return a value in four digits, with a proper minus sign. Zero where it is nothing beside the scale.
 
     >>> number(-12.34567), number(12345.6), number(1e-14, 1.0)
     ('−12.35', '12346', '0')
@@ -54,7 +54,7 @@ def number(value: float, scale: float = 0.0) -> str:
 
 
 def place(figure: Any, labels: Sequence[PointLabel]) -> None:
-    """Write the labels, each where it covers least; one that finds no free place is left out."""
+    """Write the labels, each where it covers least. One that finds no free place is left out."""
     figure.draw_without_rendering()
     # settled now: the labels are placed for this layout, and writing a file need not find it again
     figure.set_layout_engine("none")

@@ -90,7 +90,7 @@ def plot(
 
 
 def arranged(shown: Sequence[Plotted], designs: int, stacked: bool) -> tuple[Panel, ...]:
-    """Return the panels of quantities: one each, one for each unit, or with several designs one for each part."""
+    """Return the panels of quantities. One each, one for each unit, or with several designs one for each part."""
     if designs > 1:
         return tuple(Panel(part, (part,)) for one in shown for part in one.parts)
     if stacked:

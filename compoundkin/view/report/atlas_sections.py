@@ -28,7 +28,7 @@ _NONE = "By count it has no freedom, so that there is nothing to drive."
 def atlas_report(
     links: int, mobility: int = 1, with_inversions: bool = False, with_trusses: bool = False, with_groups: bool = False
 ) -> Report:
-    """Report the chains with so many links and that mobility, their inversions, trusses and groups.
+    """Report the chains with so many links and that mobility. Their inversions, trusses and groups follow.
 
     With `with_trusses` or `with_groups` these are listed instead of chains, unless inversions are asked for too.
     Raises InvalidInput for numbers of links that no list can have.
@@ -134,7 +134,7 @@ def _group_pairs(truss: Chain, removed: int) -> str:
 
 
 def alternatives_section(structure: Structure) -> Section:
-    """Return all choices of frame and drivers; of a large mechanism those with its present frame."""
+    """Return all choices of frame and drivers. Of a large mechanism those with its present frame."""
     try:
         found, about = alternatives(structure), "Every link as the frame, every pair as the driven one"
     except InvalidInput:

@@ -28,7 +28,7 @@ MOST_CENTRES = 1_000_000
 
 @dataclass(frozen=True, eq=False)
 class CentresSample:
-    """The centres of one pose of a design, the first one, in the order of the derivation."""
+    """The centres of one pose of a design, the first one. They are in the order of the derivation."""
 
     sample: Sample
     given: Centres | None = None
@@ -51,14 +51,14 @@ class CentresSample:
 
     @cached_property
     def ordered(self) -> tuple[Centre, ...]:
-        """All centres, in the order in which they are derived; those without a step last."""
+        """All centres, in the order in which they are derived. Those without a step last."""
         steps = {frozenset(step.centre): k for k, step in enumerate(self.centres.derivation())}
         found = sorted(self.centres, key=lambda names: steps.get(frozenset(names), len(steps)))
         return tuple(self.centres[names] for names in found)
 
     @cached_property
     def kinds(self) -> Mapping[str, str]:
-        """The kind of every step by its text, which is what a centre says of how it is derived."""
+        """The kind of every step by its text. It is what a centre says of how it is derived."""
         return {step.text: step.kind for step in self.centres.derivation()}
 
     @cached_property
@@ -73,7 +73,7 @@ class CentresSample:
 
 
 def centres_sections(sample: Sample) -> tuple[Section, ...]:
-    """Return the sections on the instant centres of a motion's first pose: primary, secondary, angular velocities.
+    """Return the sections on the instant centres of a motion's first pose. Primary, secondary, angular velocities.
 
     Raises NotDetermined where nothing moves, InvalidInput for a motion of order 0.
     """
@@ -89,7 +89,7 @@ def centres_sections(sample: Sample) -> tuple[Section, ...]:
 
 
 def centre_blocks(found: Centres) -> tuple[Block, ...]:
-    """Centres at the first pose, the primary ones first; of many at many poses the derivation alone."""
+    """Return centres at the first pose, the primary ones first. Of many at many poses there is the derivation alone."""
     sample = Sample(found.motion)
     if len(found) * found.motion.inputs.designs * sample.poses > MOST_CENTRES:
         return derivation_section(found.motion.structure).blocks
@@ -99,7 +99,7 @@ def centre_blocks(found: Centres) -> tuple[Block, ...]:
 
 
 def derivation_section(structure: Structure) -> Section:
-    """Return the order in which the circle diagram is completed: the same for all dimensions and poses.
+    """Return the order in which the circle diagram is completed. The same for all dimensions and poses.
 
     Raises NotDetermined where the drivers do not determine the motion.
     """

@@ -37,7 +37,10 @@ def configurations_report(found: Configurations) -> Report:
 
 
 def configurations_section(found: Configurations) -> Section:
-    """Tell how many configurations there are, their names, and the angles of the links that are solved."""
+    """Tell how many configurations there are, their names, and their angles.
+
+    The angles are those of the links that are solved.
+    """
     ones, structure = list(found), found.structure
     links = [link for group in structure.groups for link in group.links]
     heads = (Column("no.", style="each"), Column("configuration"))
@@ -71,14 +74,16 @@ def _with_unit(angle: bool, value: float) -> str:
 
 
 def circuits_report(found: Circuits) -> Report:
-    """Circuits, branches, limit positions, change points and toggle positions of one driver."""
+    """Report circuits, branches, limit positions, change points and toggle positions of one driver."""
     page = _Page(found)
     sections = (page.circuits(), page.branches(), *page.limits(), *page.changes(), *page.toggles())
     return Report(found.structure.mechanism.title, sections, NOT_SOLVED, found.structure)
 
 
 def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
-    """Tell what a report of one design says of configurations, circuits and limits, where that takes little time.
+    """Tell what one design's report says of configurations, circuits and limits.
+
+    It does so where that takes little time.
 
     With several drivers the first one is moved, the others stay at their first values.
     """

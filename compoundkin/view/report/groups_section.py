@@ -37,7 +37,7 @@ CHOSEN_BY = {
 
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
-    """Report each driver with its range and rates; angles and lengths in tables of their own."""
+    """Report each driver with its range and rates. Angles and lengths in tables of their own."""
     steps = structure.driven
     kinds: dict[bool, list[tuple[Cell, ...]]] = {}
     for drive in structure.mechanism.drives:

@@ -31,7 +31,7 @@ _MEANING = {
 
 @dataclass(frozen=True)
 class EquationCount:
-    """The position equations of a mechanism against their unknowns, with the angles of the links as unknowns.
+    """The position equations of a mechanism against their unknowns. The angles of the links are unknowns.
 
     Unknown are the angle of every moving link and the displacement of every pair that slides or of every contact. Each
     loop closes in x and in y; each pair that slides without turning ties the angles of its two links, an auxiliary
@@ -126,7 +126,7 @@ def _verdict(count: EquationCount) -> tuple[Block, ...]:
 
 
 def equations_section(structure: Structure) -> Section:
-    """Return the loop equations, the auxiliary ones and those of the drivers; what is unknown, what is known."""
+    """Return the loop equations, the auxiliary ones and those of the drivers. What is unknown, what is known."""
     return Section("equations", "Vector-loop equations", tuple(_blocks(loop_equations(structure))))
 
 

@@ -49,7 +49,7 @@ def _pose(motion: Motion) -> dict[str, Pose] | None:
 
 
 def analysis_blocks(found: MobilityAnalysis) -> Iterator[Block]:
-    """Return the freedoms by the count, at general dimensions and at its own ones, and what follows."""
+    """Return the freedoms by count and dimensions, and what follows. The dimensions are general ones and its own."""
     known = "" if found.at_pose is None else str(found.at_pose)
     rows = [("by the count", str(found.gruebler), ""),
             ("at general dimensions", str(found.generic), str(found.redundant_generic))]  # fmt: skip

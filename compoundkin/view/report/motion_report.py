@@ -29,7 +29,7 @@ MOST_GAPS = 10
 
 
 def gaps_section(sample: Sample, found: tuple[Gap, ...]) -> Section:
-    """Return the poses that cannot be assembled: between which driver values, which group, and why."""
+    """Return the poses that cannot be assembled. Between which driver values, which group, and why."""
     missing = int(np.count_nonzero(~sample.assembled))
     text = f"{missing:,} of {counted(sample.poses, 'pose')} cannot be assembled."
     alerts = [Alert(gap_sentence(sample, gap)) for gap in found[:MOST_GAPS]]
@@ -38,7 +38,7 @@ def gaps_section(sample: Sample, found: tuple[Gap, ...]) -> Section:
 
 
 def gap_sentence(sample: Sample, gap: Gap) -> str:
-    """Return one gap in words: the drivers' interval, the group that does not close, and the reason."""
+    """Return one gap in words. The drivers' interval, the group that does not close, and the reason."""
     spans = [_span(driver, gap) for driver in sample.varying]
     where = listed(spans) if spans else "At this pose"
     where = where[:1].upper() + where[1:]
@@ -58,7 +58,7 @@ def _span(driver: Quantity, gap: Gap) -> str:
 
 
 def checks_section(sample: Sample, check: Check) -> Section:
-    """Return all findings of the checks, each with its worst value and where it is."""
+    """Return all findings of the checks, each with its worst value's place."""
     columns = (Column("check"), Column("worst", style="brief"), Column("limit", style="brief"), Column("at"),
                Column("", style="passed"))  # fmt: skip
     rows = tuple((f.name, f.value, f.limit, finding_place(sample, f.pair, f.pose), f.passed) for f in check.findings)
@@ -75,7 +75,7 @@ def checks_section(sample: Sample, check: Check) -> Section:
 
 
 def finding_place(sample: Sample, name: str, pose: tuple[int, ...]) -> str:
-    """Return the pair or link and the pose at which a residual is worst: "A, crank 35"."""
+    """Return the pair or link and the pose at which a residual is worst. "A, crank 35"."""
     if not name:
         return ""
     motion = sample.motion
@@ -163,7 +163,10 @@ def _results(outcome: Outcome) -> Iterator[str]:
 
 
 def check_report(motion: Motion) -> Report:
-    """Report all findings about a motion, what failed in words, and where its first design is not assembled."""
+    """Report all findings about a motion, what failed in words.
+
+    It also says where its first design is not assembled.
+    """
     sample, check = Sample(motion), verify(motion)
     outcome = outcome_of(motion, check)
     alerts = tuple(Alert(f"{finding_sentence(sample, f)}.") for f in check.findings if not f.passed)
@@ -174,7 +177,7 @@ def check_report(motion: Motion) -> Report:
 
 
 def centres_report(motion: Motion, design: int = 0) -> Report:
-    """Report the instant centres of the first pose of a design, or why it cannot be assembled."""
+    """Report a design's instant centres at the first pose. Or it says why the pose cannot be assembled."""
     sample = Sample(motion, design)
     closed = bool(sample.assembled[0])
     # in a report on the whole motion the section of its own gaps has that key
@@ -189,7 +192,7 @@ def _missing(sample: Sample) -> tuple[Section, ...]:
 
 
 def finding_sentence(sample: Sample, finding: Finding) -> str:
-    """Return a finding in words: what, how far, and the pair or link, the pose and the group."""
+    """Return a finding in words. What, how far, and the pair or link, the pose and the group."""
     where = finding_place(sample, finding.pair, finding.pose)
     place = ", ".join(part for part in (where, _group(sample.motion.structure, finding.pair)) if part)
     said = f"{finding.name}: {brief(finding.value)}, above its limit {brief(finding.limit)}"

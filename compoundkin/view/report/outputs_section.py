@@ -33,7 +33,7 @@ WAYS = {True: "oscillates about a pin", False: "translates on a slide", None: "h
 
 
 def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the outputs of a mechanism that names none: tracer points and links without a driver, a few.
+    """Return the outputs of a mechanism that names none. Tracer points and links without a driver, a few.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = link("crank", A=0, B=1), link("rod", B=0, P=2), link("frame", A=0)
@@ -55,7 +55,10 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the outputs asked for, else those that the mechanism has by default and the motion was solved for."""
+    """Return the outputs asked for, else the mechanism's by default.
+
+    The motion must have been solved for the latter.
+    """
     return tuple(outputs or (name for name in default_outputs(motion.mechanism) if order_of(name) <= motion.order))
 
 
@@ -176,7 +179,7 @@ def _cam_extremes(sample: Sample, what: str, unit: str, values: Any) -> tuple[Ce
 
 
 def equivalent_section(sample: Sample) -> Section | None:
-    """Report what stands for each higher pair at the first pose with rates; None without any."""
+    """Report what stands for each higher pair at the first pose with rates. None without any."""
     motion = sample.motion
     regular = np.flatnonzero(sample.of(np.broadcast_to(motion.regular, motion.failed.shape).reshape(motion.shape)))
     if not len(regular):

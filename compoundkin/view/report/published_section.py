@@ -27,7 +27,7 @@ MOST_LISTED = 12
 
 @dataclass(frozen=True)
 class Comparison:
-    """A published number and the one found, an angle in the same turn; NaN where it cannot be assembled."""
+    """A published number and the one found, an angle in the same turn. NaN where it cannot be assembled."""
 
     expectation: Expectation
     found: complex
@@ -37,7 +37,7 @@ class Comparison:
 
     @cached_property
     def difference(self) -> float:
-        """How far they are apart; of a vector the component that is farther, for a book rounds each."""
+        """How far they are apart. Of a vector the component that is farther, for a book rounds each."""
         gap = self.found - self.expectation.value
         return max(abs(gap.real), abs(gap.imag)) if isfinite(abs(gap)) else float("nan")
 
@@ -48,7 +48,7 @@ class Comparison:
 
     @property
     def closeness(self) -> float:
-        """The difference in tolerances, to a hundredth: which of two roundings is greater means nothing."""
+        """The difference in tolerances, to a hundredth. Which of two roundings is greater means nothing."""
         if not isfinite(self.difference):
             return float("inf")
         tolerance = self.expectation.tolerance
@@ -56,7 +56,7 @@ class Comparison:
 
 
 def comparisons(structure: Structure) -> tuple[Comparison, ...]:
-    """Return every published number, solved at its driver values in the assembly modes that the mechanism says.
+    """Return every published number, solved at its driver values. The assembly modes are those that the mechanism says.
 
     Raises UnknownName for a published quantity that the mechanism does not have.
 
@@ -122,7 +122,7 @@ def _compared(expectation: Expectation, motion: Motion | None, where: str) -> Co
 
 
 def published_section(structure: Structure, found: tuple[Comparison, ...]) -> Section:
-    """Published numbers against the ones found."""
+    """Compare published numbers with the ones found."""
     keys = tuple(dict.fromkeys(key for one in found for key, _ in one.expectation.at))
     columns = (Column("quantity"), Column(f"at {', '.join(keys)}" if keys else "at", style="each"),
                Column("found", style="each"), Column("published", style="each"), Column("off by", style="brief"),

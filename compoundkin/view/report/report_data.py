@@ -27,7 +27,7 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class FormulaBlock:
-    """A line of mathematics, to be written as it is; `latex` where there is such, without dollar signs."""
+    """A line of mathematics, to be written as it is. `latex` where there is such, without dollar signs."""
 
     text: str
     latex: str = ""
@@ -35,7 +35,7 @@ class FormulaBlock:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table; numbers not above `floor` in size are rounding and are written as zero.
+    """A column of a table. Numbers not above `floor` in size are rounding and are written as zero.
 
     `follows` keeps it beside the column before it where a table is split.
     """
@@ -76,7 +76,7 @@ class TableBlock:
 
 @dataclass(frozen=True)
 class StepBlock:
-    """One step of several: a title, and what is to be said of it by keyword."""
+    """One step of several. A title, and what is to be said of it by keyword."""
 
     title: str
     facts: tuple[tuple[str, str], ...]
@@ -104,7 +104,7 @@ class Section(PrintsShort):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a report comes to, for those who only ask that: `passed` covers checks and published numbers."""
+    """What a report comes to, for those who only ask that. `passed` covers checks and published numbers."""
 
     solvable: bool
     poses: int

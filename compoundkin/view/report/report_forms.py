@@ -34,7 +34,7 @@ Subject: TypeAlias = Structure | Motion
 
 
 def json_text(title: str, sections: Sequence[Section], outcome: Outcome) -> str:
-    """Return the report as a JSON text: `title`, `outcome`, and `sections` by their keys in reading order.
+    """Return the report as a JSON text. `title`, `outcome`, and `sections` by their keys in reading order.
 
     A table has `columns` (name and unit) and `rows`; what is not assembled is null, a vector is [x, y].
 
@@ -159,7 +159,7 @@ def _plain(text: str) -> str:
 
 @dataclass(frozen=True)
 class Report(Shows, Savable):
-    """What there is to say about a mechanism, in the order in which it is read.
+    """The report of a mechanism, in the order in which it is read.
 
     `subject` is what it is about, for the pictures of its page, and `outputs` and `design` are those it was made with.
     """

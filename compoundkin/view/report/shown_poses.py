@@ -41,7 +41,7 @@ class Sample:
         return self.motion.inputs.poses
 
     def of(self, values: Any) -> Any:
-        """This design's part of an array of the motion's shape: one entry a pose."""
+        """Return this design's part of an array: one entry a pose. The array has the motion's shape."""
         full = np.broadcast_to(values, self.motion.shape)
         return full.reshape(self.motion.inputs.designs, self.poses)[self.design]
 
@@ -63,7 +63,7 @@ class Sample:
 
     @cached_property
     def varying(self) -> tuple[Quantity, ...]:
-        """The drivers that change along the motion, all of them where there is but one pose."""
+        """The drivers that change along the motion. They are all of them where there is but one pose."""
         return tuple(d for d in self.drivers if self.poses == 1 or np.ptp(d.values) > 0)
 
     @cached_property
@@ -73,7 +73,7 @@ class Sample:
 
     @cached_property
     def places(self) -> tuple[Column, Any]:
-        """What tells poses apart: the time, the value of the only driver that changes, else their numbers, from 0."""
+        """What distinguishes poses. The time, the value of the only driver that changes, else their numbers, from 0."""
         if self.times is not None:
             return Column(TIME, unit_of("", "time"), "fixed"), self.times
         if len(self.varying) == 1:
@@ -96,7 +96,10 @@ class Sample:
         return Column(driver.name, driver.unit, "fixed", ROUNDING * float(np.max(np.abs(driver.values), initial=0.0)))
 
     def floor(self, found: Quantity) -> float:
-        """Below which a quantity is rounding: by the mechanism's size, its drivers' rates, and its own vectors."""
+        """Return the bound below which a quantity is rounding.
+
+        It goes by the mechanism's size, its drivers' rates, and its own vectors.
+        """
         size = 1.0 if found.dimension == "angle" else self.motion.mechanism.geometry.size
         values = np.abs(found.values)
         largest = float(np.max(values, initial=0.0, where=np.isfinite(values))) if found.is_vector else 0.0

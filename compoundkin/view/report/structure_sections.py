@@ -19,7 +19,7 @@ ROUNDING = 1e-12
 
 
 def links_section(structure: Structure, design: int = 0) -> Section:
-    """Return the links: what each is called by its number of pairs, its points in its own frame, its pairs."""
+    """Return the links. What each is called by its number of pairs, its points in its own frame, its pairs."""
     pairs, floor = _pairs_by_link(structure), ROUNDING * structure.mechanism.geometry.size
     rows = tuple(
         (name, kind_of_link(count), _points(structure, name, floor, design), ", ".join(pairs[name]))
@@ -60,7 +60,7 @@ def _pairs_by_link(structure: Structure) -> dict[str, list[str]]:
 
 
 def pairs_section(structure: Structure) -> Section:
-    """Return the pairs: what kind each is, which links it joins and where, and what drives it."""
+    """Return the pairs. What kind each is, which links it joins and where, and what drives it."""
     drivers = {step.pair.name: name for name, step in structure.driven.items()}
     rows = tuple(
         (pair.name, f"{pair.code}, {pair.title.removesuffix(' pair')}", joined(pair.members),

@@ -55,7 +55,7 @@ def report(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), de
 
 
 def page(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), design: int = 0) -> Page:
-    """Return the report as a page with the moving sketch; the arguments are those of `report`.
+    """Return the report as a page with the moving sketch. The arguments are those of `report`.
 
     Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
 

@@ -26,7 +26,7 @@ DERIVATIVES = ("coordinate", VELOCITY, ACCELERATION)
 
 
 def written(column: Column, cells: Iterable[Cell], between: str = ", ") -> list[str]:
-    """Return the cells of a column as text; `between` the numbers of a cell that holds several.
+    """Return the cells of a column as text. `between` the numbers of a cell that holds several.
 
     >>> written(Column("x", style="fixed"), [1.0, 2.25, None])
     ['1.00', '2.25', '-']
@@ -123,7 +123,7 @@ def kind_of_link(pairs: int) -> str:
 
 
 def ordinal(number: int) -> str:
-    """ "2nd" of 2.
+    """Return "2nd" of 2.
 
     >>> [ordinal(k) for k in (2, 3, 4, 11, 12, 21)]
     ['2nd', '3rd', '4th', '11th', '12th', '21st']
@@ -133,7 +133,7 @@ def ordinal(number: int) -> str:
 
 
 def joined(links: Sequence[str]) -> str:
-    """Links that a pair joins.
+    """Return the links that a pair joins.
 
     >>> joined(["crank", "rod"])
     'crank - rod'

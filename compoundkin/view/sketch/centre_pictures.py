@@ -30,7 +30,10 @@ NARROW = 0.56
 
 @dataclass(frozen=True)
 class ShownCentres:
-    """The centres that are on the picture by their names, the lines that give them, and what is said of the others."""
+    """The centres on the picture, by their names, and the lines that give them.
+
+    It also has what is said of the others.
+    """
 
     places: dict[str, complex]
     lines: tuple[tuple[complex, complex], ...]
@@ -38,7 +41,7 @@ class ShownCentres:
 
 
 def shown_centres(scene: Scene, window: Window) -> ShownCentres:
-    """Return the instant centres of the pose shown; raises InvalidInput for a mechanism without a motion."""
+    """Return the instant centres of the pose shown. Raises InvalidInput for a mechanism without a motion."""
     if scene.shown is None:
         what = "a mechanism that is shown as drawn has no motion"
         raise InvalidInput(Problem("centres", what, "give it drivers"))
@@ -74,7 +77,7 @@ def centre_places(scene: Scene) -> list[complex]:
 
 
 def centre_name(scene: Scene, one: str, two: str) -> str:
-    """Return the name of a centre by the numbers of its links: 13, or 3,12."""
+    """Return the name of a centre by the numbers of its links. It is 13, or 3,12."""
     first, second = sorted((scene.numbers[one], scene.numbers[two]))
     return f"{first}{second}" if second < 10 else f"{first},{second}"
 

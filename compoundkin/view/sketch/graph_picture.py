@@ -25,7 +25,7 @@ BULGE = 26.0
 
 
 def graph(structure: Structure, numbers: Mapping[str, int], groups: Mapping[str, int], size: float | None) -> Picture:
-    """Draw the kinematic graph, each link in the colour of its group; driven pairs are drawn thick."""
+    """Draw the kinematic graph, each link in the colour of its group. Driven pairs are drawn thick."""
     names = list(numbers)
     places = dict(zip(names, spread(names, structure.pairs), strict=True))
     window = fitted(Window(1.0, 0j, 0.0, 0.0), np.array(list(places.values())))

@@ -30,7 +30,7 @@ ROUNDS = 2
 
 @dataclass(frozen=True)
 class Label:
-    """A label to be placed: half its width and height, and its places in the order of preference, with their costs.
+    """A label to be placed. Half its width and height, and its places in the order of preference, with their costs.
 
     `own` are lines that it may be on.
     """
@@ -43,12 +43,12 @@ class Label:
 
 
 def text_half(text: str, size: float) -> complex:
-    """Half the width and height of a line of text."""
+    """Return half the width and height of a line of text."""
     return complex(max(1, len(text)) * WIDE * size / 2.0, 0.42 * size)
 
 
 def around(key: str, at: complex, half: complex, clear: float, prefer: complex = 1 - 1j) -> Label:
-    """Return a label beside a point, from `clear` away on; rather to the side `prefer`."""
+    """Return a label beside a point, from `clear` away on. Rather to the side `prefer`."""
     places, costs = [], []
     better = prefer / abs(prefer)
     for ring in RINGS:
@@ -61,7 +61,7 @@ def around(key: str, at: complex, half: complex, clear: float, prefer: complex =
 
 
 def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, height: float) -> dict[str, complex]:
-    """Return a place for each label, in the order of the labels; with two rounds of second thoughts."""
+    """Return a place for each label, in the order of the labels. With two rounds of second thoughts."""
     lines, rounds = obstacles(shapes)
     fixed = {label.key: _fixed_costs(label, lines, rounds, width, height) for label in labels}
     found: dict[str, complex] = {}
@@ -119,7 +119,10 @@ def _crowding(label: Label, others: Sequence[tuple[complex, complex]]) -> Number
 
 
 def obstacles(shapes: Iterable[Shape]) -> tuple[Number, Number]:
-    """Return lines (start, stop) and circles (middle, radius) that labels should not be on, complex (count, 2)."""
+    """Return lines and circles that labels should not be on.
+
+    They are (start, stop) and (middle, radius), complex (count, 2).
+    """
     lines, rounds = list(_lines(shapes)), list(_rounds(shapes))
     return np.array(lines, dtype=complex).reshape(-1, 2), np.array(rounds, dtype=complex).reshape(-1, 2)
 

@@ -46,7 +46,7 @@ LEANING = 0.35
 
 
 def body(scene: Scene, window: Window, link: str, extra: Places = ()) -> tuple[Shape, ...]:
-    """Draw a link but the frame: a bar through its points and the `extra` ones, or a plate."""
+    """Draw a link but the frame. A bar through its points and the `extra` ones, or a plate."""
     if link == FRAME:
         return ()
     group = scene.groups[link]
@@ -59,13 +59,15 @@ def body(scene: Scene, window: Window, link: str, extra: Places = ()) -> tuple[S
 
 
 def skeleton(scene: Scene, window: Window, link: str, extra: Places = ()) -> list[complex]:
-    """Return the points between which a link is drawn: the ends of a bar, or the corners of a plate."""
+    """Return the points between which a link is drawn. The ends of a bar, or the corners of a plate."""
     own = [complex(window.at(scene.at(link, p))) for p in scene.points[link].values()]
     return outline([*own, *extra])
 
 
 def outline(points: Places) -> list[complex]:
-    """Return the two ends of points on a line, or the corners of the plate around them.
+    """Return the ends of points on a line, or their plate's corners.
+
+    There are two ends; the plate is the one around the points.
 
     >>> outline([0j, 20 + 0j, 10 + 1j, 10 + 0j])
     [0j, (20+0j)]
@@ -105,7 +107,7 @@ def _hull(points: Places) -> list[complex]:
 
 
 def pins(painter: Painter) -> Iterator[Laid]:
-    """Open circles for pins, a second one around those of more than two links; dots for other points."""
+    """Draw open circles for pins; dots for other points. A second circle is around those of more than two links."""
     scene, window = painter.scene, painter.window
     for letter, place in scene.letters.items():
         carriers = [link for link in scene.mechanism.carriers[letter] if painter.shows(link)]
@@ -126,7 +128,7 @@ def pins(painter: Painter) -> Iterator[Laid]:
 
 
 def joints(painter: Painter, letter: str) -> tuple[str, ...]:
-    """Return the names of the pins at a letter: one less than the links that it joins."""
+    """Return the names of the pins at a letter. One less than the links that it joins."""
     found = [s.pair for s in painter.scene.seen if isinstance(s.mark, Pin) and s.pair.letters[0] == letter]
     return tuple(pair.name for pair in found)
 
@@ -138,7 +140,7 @@ def gliding(painter: Painter) -> frozenset[str]:
 
 
 def pivot(painter: Painter, letter: str, at: complex) -> Iterator[Laid]:
-    """Draw a fixed pivot: a triangle on hatched ground, on the side with the fewest bars."""
+    """Draw a fixed pivot. A triangle on hatched ground, on the side with the fewest bars."""
     down = _free_side(painter, letter, at)
     along = 1j * down
     left, right = at + down * PIVOT + along * FOOT, at + down * PIVOT - along * FOOT

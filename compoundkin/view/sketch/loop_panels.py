@@ -54,7 +54,7 @@ class PicturePart:
 
 
 def in_rows(parts: Sequence[PicturePart], sign: str = "") -> tuple[list[Shape], float, float]:
-    """Return the parts side by side, in rows, with a sign between them; and the size of them all.
+    """Return the parts side by side, in rows, with a sign between them. And the size of them all.
 
     >>> in_rows([PicturePart((), 300.0, 100.0)] * 4)[1:]
     (1016.0, 245.0)
@@ -81,7 +81,7 @@ def in_rows(parts: Sequence[PicturePart], sign: str = "") -> tuple[list[Shape], 
 
 @dataclass(frozen=True)
 class Corner:
-    """A corner of a loop's polygon: where it is, and the name of the point there, "" for none."""
+    """A corner of a loop's polygon. Where it is, and the name of the point there, "" for none."""
 
     at: complex
     letter: str
@@ -104,7 +104,7 @@ class LoopPanel:
 
 
 def panel_of(k: int, loop: Loop, behind: Sequence[Shape], found: Sequence[Corner], clear: float = 0.0) -> LoopPanel:
-    """Return the panel of a loop; vectors keep `clear` of what is behind its corners, else of circles there."""
+    """Return the panel of a loop. Vectors keep `clear` of what is behind its corners, else of circles there."""
     vectors = _vectors(k, [corner.at for corner in found], clear or PIN)
     circles = [] if clear else [CircleShape(corner.at, PIN, f"pin {style_of('ring', k)}") for corner in found]
     return LoopPanel(k, loop, tuple(behind), tuple(found), (*vectors, *circles))

@@ -32,7 +32,7 @@ SAMPLED = 24
 
 @dataclass(frozen=True, eq=False)
 class MovingPart:
-    """Shapes that a link carries: in picture units as seen from its point `at` (in the link's own frame), y downward.
+    """Shapes that a link carries. In picture units as seen from its point `at` (in the link's own frame), y downward.
 
     They are turned as at the pose shown. A part that `turns` turns with the link; any other one stays upright, as
     labels and pins do. `letter` is that of the point, where it is one; `is_label` that it is a name or number.
@@ -66,7 +66,7 @@ class MovingSketch(PrintsShort):
         return np.broadcast_to(self.window.at(self.scene.whole[part.link].at(part.at).c[0]), (self.scene.count,))
 
     def turns(self, link: str) -> Number:
-        """By how much a link is turned on the picture from where it is at the pose shown, unit complex (poses,)."""
+        """Return the turn of a link on the picture from the pose shown. It is unit complex (poses,)."""
         here = complex(self.scene.here[link].u.c[0])
         turned = np.conjugate(np.atleast_1d(self.scene.whole[link].u.c[0]) / here)
         return np.broadcast_to(turned, (self.scene.count,))
@@ -96,7 +96,7 @@ class MovingSketch(PrintsShort):
         return found
 
     def rates(self, kind: str) -> dict[str, Number]:
-        """Return the velocities or accelerations of all points but those of the frame, complex (poses,).
+        """Return the velocities or accelerations of all points, complex (poses,). Those of the frame are left out.
 
         Raises InvalidInput where the motion has none.
         """
@@ -110,12 +110,15 @@ class MovingSketch(PrintsShort):
         return found
 
     def scale(self, kind: str) -> VectorScale | None:
-        """Return the one scale of vectors at which the longest has room; None where nothing moves."""
+        """Return the one scale of vectors at which the longest has room. None where nothing moves."""
         longest = {k: float(np.max(np.abs(v), initial=0.0, where=np.isfinite(v))) for k, v in self.rates(kind).items()}
         return scale_of(kind, longest, LONGEST * self.window.diagonal, self.scene.mechanism.unit)
 
     def holding(self, points: Number, room: float) -> MovingSketch:
-        """Return the same sketch in a window that holds some points of its picture too, with room around them."""
+        """Return the same sketch in a window that holds more points.
+
+        They are points of its picture too, with room around them.
+        """
         old, low, high = self.window, 0j, complex(self.window.width, self.window.height)
         if np.size(points):
             low = complex(min(0.0, points.real.min() - room), min(0.0, points.imag.min() - room))
@@ -131,7 +134,7 @@ class MovingSketch(PrintsShort):
 def moving_sketch(
     motion: Motion, design: int = 0, *, paths: Sequence[str] = (), labels: Sequence[str] = ("points", "links")
 ) -> MovingSketch:
-    """Return the sketch of a motion whose parts move with its links, first at the pose nearest to the drawing.
+    """Return the sketch of a motion whose parts move with its links. It is first at the pose nearest to the drawing.
 
     `paths` names points whose paths are drawn. Raises NotAssembled where no pose is assembled, InvalidInput where links
     change their dimensions along the motion.

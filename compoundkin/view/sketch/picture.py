@@ -42,7 +42,7 @@ PAGE = 800.0
 
 @dataclass(frozen=True)
 class Window:
-    """A part of the plane on a picture: `scale` picture units for a length unit, `corner` its upper left place."""
+    """A part of the plane on a picture. `scale` picture units for a length unit, `corner` its upper left place."""
 
     scale: float
     corner: complex
@@ -54,11 +54,11 @@ class Window:
         return np.conjugate((place - self.corner) * self.scale)
 
     def line(self, places: Number) -> tuple[complex, ...]:
-        """Return a line through places as points of the picture, those left out that it does not need."""
+        """Return a line through places as points of the picture. Those that it does not need are left out."""
         return simplified(np.atleast_1d(self.at(places)))
 
     def holds(self, point: complex, room: float = 0.0) -> bool:
-        """Tell whether a point of the picture is on it, and so far from its edges."""
+        """Tell whether a point is on the picture, and far from its edges. It must be so far from them."""
         return room <= point.real <= self.width - room and room <= point.imag <= self.height - room
 
     @property
@@ -68,7 +68,7 @@ class Window:
 
 
 def fitted(window: Window, points: Number, narrowest: float = NARROWEST) -> Window:
-    """Return the window of the same scale that just holds some points, with room for letters around them.
+    """Return the window of the same scale that just holds some points. It has room for letters around them.
 
     It is no narrower than asked, its points in the middle.
     """
@@ -84,7 +84,7 @@ def fitted(window: Window, points: Number, narrowest: float = NARROWEST) -> Wind
 
 
 def window_of(places: Iterable[Number], bars: Iterable[float]) -> Window:
-    """Return the window on some places, finer where the lengths of links (`bars`) are many and short."""
+    """Return the window on some places. It is finer where the lengths of links (`bars`) are many and short."""
     known = np.concatenate([np.ravel(p).astype(complex) for p in places] or [np.zeros(1, complex)])
     known = known[np.isfinite(known)]
     known = known if known.size else np.zeros(1, complex)
@@ -126,7 +126,7 @@ def simplified(points: Number, deviation: float = DEVIATION) -> tuple[complex, .
 
 
 def thinned(places: Number) -> Number:
-    """Some of many places, the first and the last among them.
+    """Return some of many places, the first and the last among them.
 
     >>> len(thinned(np.zeros(100_001)))
     2001
@@ -155,7 +155,9 @@ def smooth(places: Number) -> Number:
 
 @dataclass(frozen=True)
 class Picture(Savable):
-    """A picture: its shapes in picture units, how large it is in them, and shown (`size`, pixels of its longer side).
+    """The shapes of a picture in picture units, with its size.
+
+    It is how large it is in them, and shown (`size`, pixels of its longer side).
 
     Without a `size` texts are as large as those of a page, and no picture larger than a page. `window` tells where a
     place of the mechanism is on it; None where a picture is not to scale.
@@ -180,7 +182,7 @@ class Picture(Savable):
 
     @property
     def inline(self) -> str:
-        """It as part of a page, which must have the style sheet for its shapes."""
+        """The picture as part of a page, which must have its style sheet. The sheet is that for its shapes."""
         return inline(self.shapes, self.width, self.height, self.title, self.description)
 
     def content(self, form: str) -> bytes:

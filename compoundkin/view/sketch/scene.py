@@ -70,7 +70,7 @@ class Scene:
         return np.atleast_1d(self.whole[link].at(self.points[link][letter]).c[0])
 
     def path(self, letter: str) -> list[Number]:
-        """Return the path of a point along the motion, in pieces where poses between cannot be assembled."""
+        """Return the path of a point along the motion. It is in pieces where poses between cannot be assembled."""
         places = self.places(letter)
         if self.known is None or len(places) != len(self.known):
             return [places]
@@ -78,7 +78,7 @@ class Scene:
 
     @cached_property
     def letters(self) -> Mapping[str, complex]:
-        """Where every point is, at the pose shown; without points of the frame that no pair needs."""
+        """Where every point is, at the pose shown. Without points of the frame that no pair needs."""
         used = {letter for pair in self.structure.pairs for letter in pair.letters}
         found = {}
         for letter, links in self.mechanism.carriers.items():
@@ -97,12 +97,12 @@ class Scene:
 
     @cached_property
     def numbers(self) -> Mapping[str, int]:
-        """The numbers of the links: the frame is 1, the others follow as they are written."""
+        """The numbers of the links. The frame is 1, the others follow as they are written."""
         return numbers_of(self.structure)
 
     @cached_property
     def groups(self) -> Mapping[str, int]:
-        """Which group each link belongs to: 0 for the frame and driven links, then in solving order."""
+        """Which group each link belongs to. It is 0 for the frame and driven links, then in solving order."""
         return groups_of(self.structure)
 
     @cached_property
@@ -122,7 +122,7 @@ class Scene:
 
     @property
     def closes(self) -> bool:
-        """Whether every link is at the last assembled pose where it was at the first."""
+        """Whether every link is at the last assembled pose as at first."""
         size = self.mechanism.geometry.size
         ends = [(np.atleast_1d(pose.z.c[0]), np.atleast_1d(pose.u.c[0])) for pose in self.whole.values()]
         return all(abs(z[-1] - z[0]) <= SAME_PLACE * size and abs(u[-1] - u[0]) <= SAME_PLACE for z, u in ends)
@@ -133,20 +133,20 @@ class Scene:
         return complex(self.here[link].derivative(self.points[link][letter], k))
 
     def driver_value(self, name: str, k: int = 0) -> float:
-        """Return the value of a driver at the pose shown, or its speed (k = 1)."""
+        """Return a driver's value at the pose shown, or its speed (k = 1)."""
         if self.shown is None:
             return 1.0 if k else 0.0
         return float(_number(self.shown.inputs.drives[name][k], self.pose))
 
 
 def numbers_of(structure: Structure) -> dict[str, int]:
-    """Return the numbers of the links: the frame is 1, the others follow as they are written."""
+    """Return the numbers of the links. The frame is 1, the others follow as they are written."""
     others = [name for name in structure.mechanism.links if name != FRAME]
     return {name: k for k, name in enumerate([FRAME, *others], start=1)}
 
 
 def groups_of(structure: Structure) -> dict[str, int]:
-    """Tell which group each link belongs to: 0 for the frame and driven links, then in solving order."""
+    """Tell which group each link belongs to. It is 0 for the frame and driven links, then in solving order."""
     found = dict.fromkeys(structure.mechanism.links, 0)
     for k, group in enumerate(structure.groups, start=1):
         found.update(dict.fromkeys(group.links, k))
@@ -154,7 +154,7 @@ def groups_of(structure: Structure) -> dict[str, int]:
 
 
 def scene_of_motion(motion: Motion, shown: Motion, design: int, pose: int) -> Scene:
-    """Return the scene of a pose of `shown`, with the guides used as in the whole `motion`."""
+    """Return the scene of a pose of `shown`. Its guides are used as in the whole `motion`."""
     known = np.flatnonzero(motion.failed[min(design, len(motion.failed) - 1)] == 0)
     at = min(design, shown.inputs.designs - 1), pose
     geometry = motion.mechanism.geometry

@@ -52,7 +52,10 @@ class CircleShape:
 
 @dataclass(frozen=True)
 class ArcShape:
-    """An arc of a circle of at most half a turn, from `start` to `stop`; `sweep` where it is clockwise on paper."""
+    """An arc of a circle of at most half a turn.
+
+    It goes from `start` to `stop`; `sweep` where it is clockwise on paper.
+    """
 
     start: complex
     stop: complex
@@ -63,7 +66,7 @@ class ArcShape:
 
 @dataclass(frozen=True)
 class Text:
-    """A line of text with its middle (or its `anchor`: start, end) at a place."""
+    """A line of text with its middle at a place. Or its `anchor` (start, end) is there."""
 
     at: complex
     text: str
@@ -113,7 +116,7 @@ def corners(shapes: Iterable[Shape]) -> list[complex]:
 
 
 def leaves(shapes: Iterable[Shape]) -> Iterator[Shape]:
-    """Return all shapes that are no groups, in the order in which they are drawn.
+    """Return all shapes that are no groups, in the order of drawing.
 
     >>> list(leaves([ShapeGroup((CircleShape(0j, 1.0, "pin"),))]))
     [CircleShape(centre=0j, radius=1.0, style='pin')]
@@ -167,7 +170,7 @@ def sheet(width: float, height: float) -> Polygon:
 
 
 def hatching(start: complex, stop: complex, side: float) -> Strokes:
-    """Draw a hatching along a line on one of its sides: that of ``1j * side`` as seen along it."""
+    """Draw a hatching along a line on one of its sides. That of ``1j * side`` as seen along it."""
     length, e = abs(stop - start), direction(stop - start)
     count = max(2, round(length / HATCH))
     slant = e * SLANT.real + 1j * e * side * SLANT.imag
@@ -190,7 +193,7 @@ def arrow_head(tip: complex, along: complex, style: str, size: float = 1.0) -> P
 
 
 def ticks(middle: complex, radius: float, start: float, count: int, inner: float, outer: float) -> tuple[Number, ...]:
-    """Radial strokes around a circle, the first one in the direction `start` (radians, on paper)."""
+    """Draw radial strokes around a circle. The first one is in the direction `start` (radians, on paper)."""
     found = []
     for k in range(count):
         e = complex(np.exp(1j * (start + 2.0 * np.pi * k / count)))

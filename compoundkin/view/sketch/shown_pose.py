@@ -63,7 +63,7 @@ class Wishes:
 
 
 def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
-    """Return the scene that is asked for; raises InvalidInput, UnknownName or NotAssembled where there is none."""
+    """Return the scene that is asked for. Raises InvalidInput, UnknownName or NotAssembled where there is none."""
     if at is not None and pose is not None:
         raise InvalidInput(Problem("pose", "driver values `at` are given too", "leave one of them out"))
     if isinstance(what, Motion):
@@ -78,7 +78,7 @@ def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
 
 
 def scene_as_drawn(structure: Structure) -> Scene:
-    """Return the scene of a drawing; raises InvalidInput where it does not show every link."""
+    """Return the scene of a drawing. Raises InvalidInput where it does not show every link."""
     geometry = structure.mechanism.geometry
     here: dict[str, Pose] = {}
     for name, placed in geometry.points.items():
@@ -96,7 +96,7 @@ def scene_as_drawn(structure: Structure) -> Scene:
 
 
 def solved_over(what: Mechanism | Structure) -> Motion | None:
-    """Return the motion over the drivers' own ranges; None where they have none, or it cannot be solved."""
+    """Return the motion over the drivers' own ranges. None where they have none, or it cannot be solved."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UnassembledPoses)
@@ -106,7 +106,10 @@ def solved_over(what: Mechanism | Structure) -> Motion | None:
 
 
 def scene_in(motion: Motion, at: Any, pose: int | None, design: int) -> Scene:
-    """Return the scene of a motion at driver values, at an index, or nearest to the drawing."""
+    """Return the scene at driver values, at an index, or near the drawing.
+
+    It is one of a motion, nearest to the drawing.
+    """
     if isinstance(design, bool) or not isinstance(design, int) or not 0 <= design < motion.inputs.designs:
         known = f"0 to {motion.inputs.designs - 1}" if motion.inputs.designs > 1 else "there is only 0"
         raise InvalidInput(Problem("design", f"there is no design {design!r}", known))

@@ -49,7 +49,7 @@ def letters(painter: Painter) -> list[Label]:
 
 
 def numbered(painter: Painter) -> list[Label]:
-    """Return a label for the number of every link but the frame: on its bar or plate, else beside it."""
+    """Return a label for the number of every link but the frame. On its bar or plate, else beside it."""
     return [_number(painter, name) for name in filter(painter.shows, painter.scene.mechanism.links) if name != FRAME]
 
 
@@ -120,7 +120,7 @@ def badge(scene: Scene, name: str, at: complex) -> Shape:
 
 
 def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
-    """Parts of text in lines that are no wider than this, in picture units.
+    """Break parts of text in lines no wider than this, in picture units.
 
     >>> lines_of_text(["1 frame", "2 crank"], 60.0)
     ['1 frame', '2 crank']
@@ -136,13 +136,13 @@ def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
 
 
 def width_with(texts: Sequence[Shape]) -> float:
-    """Return how wide a picture must be for what stands below it, with the same room at its right."""
+    """Return how wide a picture must be for what stands below it. It has the same room at its right."""
     ends = [shape.at.real + len(shape.text) * SMALL * NARROW for shape in texts if isinstance(shape, Text)]
     return max(ends, default=0.0) + SIDE
 
 
 def below(lines: Sequence[str], height: float) -> tuple[list[Shape], float]:
-    """Return lines of text below a picture of a height, and the height with them."""
+    """Return lines of text below a picture, and the height with them."""
     places = [complex(SIDE, height + BELOW + LINE * k) for k in range(len(lines))]
     shapes: list[Shape] = [Text(at, line, "note", "start") for at, line in zip(places, lines, strict=True)]
     return shapes, round(height + (BELOW + LINE * len(lines) if lines else 0.0), 1)

@@ -94,7 +94,7 @@ def style_of(kind: str, group: int | None = None) -> str:
 
 
 def css(shapes: Iterable[Shape]) -> str:
-    """Return the style sheet of some shapes, on light paper and, where a reader prefers it, on dark.
+    """Return the style sheet of some shapes on light or dark paper. A reader may prefer dark.
 
     Of two classes of one shape the later in the alphabet counts: "pin" fills what "ink" or "frame" strokes.
     """
@@ -104,7 +104,7 @@ def css(shapes: Iterable[Shape]) -> str:
 
 
 def page_css() -> str:
-    """Return the style sheet of all pictures of a page, whose root may say `data-theme="light"` or "dark"."""
+    """Return the style sheet of all pictures of a page. Its root may say `data-theme="light"` or "dark"."""
     grouped = [f"{kind}{k}" for kind in GROUPED for k in range(len(COLOURS))]
     light, dark = _sheets(["ghost", *CLASSES, *grouped])
     asked = "\n".join(f":root[data-theme=dark] {rule}" for rule in dark.splitlines())

@@ -43,7 +43,7 @@ LABELS = ("points", "links")
 def window_on(
     scene: Scene, more: Sequence[Scene] = (), paths: Sequence[str] = (), wishes: Sequence[complex] = ()
 ) -> Window:
-    """Return the window that holds a scene, its ghosts and paths, and of the `wishes` those that are not far."""
+    """Return the window that holds a scene, its ghosts and paths. Of the `wishes` it holds those that are not far."""
     places = [place for shown in (scene, *more) for place in _extent(shown)]
     places += [scene.places(letter) for letter in paths]
     plain = Window(1.0, 0j, 0.0, 0.0)
@@ -82,7 +82,7 @@ def _extent(scene: Scene) -> Iterator[Number]:
 
 
 def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:
-    """Return the shapes of a scene from back to front; without what does not move where it is a ghost."""
+    """Return the shapes of a scene from back to front. Without what does not move where it is a ghost."""
     return [laid.shape for laid in in_layers(painter, grounded=grounded)]
 
 
@@ -98,7 +98,10 @@ def in_layers(painter: Painter, *, grounded: bool = True) -> list[Laid]:
 
 
 def by_links(laid: Iterable[Laid]) -> list[Shape]:
-    """Return shapes in their order, those of one link that follow each other as a group of that link."""
+    """Return shapes in their order, grouped by link.
+
+    Those of one link that follow each other are a group of that link.
+    """
     runs = groupby(laid, key=lambda one: one.link)
     return [ShapeGroup(tuple(one.shape for one in run), links=(link,)) for link, run in runs]
 

@@ -39,7 +39,7 @@ class Layer(IntEnum):
 
 
 class Laid(NamedTuple):
-    """A shape with its layer and the link with which it moves; at a point with a `letter` it does not turn with it."""
+    """A shape with its layer and the link with which it moves. At a point with a `letter` it does not turn with it."""
 
     layer: Layer
     shape: Shape
@@ -49,7 +49,7 @@ class Laid(NamedTuple):
 
 @dataclass(frozen=True)
 class Painter:
-    """A scene on its window; of all its links, or of `only` some that are drawn apart."""
+    """A scene on its window. Of all its links, or of `only` some that are drawn apart."""
 
     scene: Scene
     window: Window
@@ -73,7 +73,7 @@ class Painter:
         return direction(np.conjugate(self.scene.turned(link, e)))
 
     def style(self, kind: str, link: str) -> str:
-        """Return the style of a shape that belongs to a link; the frame has its own."""
+        """Return the style of a shape that belongs to a link. The frame has its own."""
         if link != FRAME:
             return style_of(kind, self.scene.groups[link])
         return {"plate": "frame-face frame", "track": "frame-track"}.get(kind, "frame")
@@ -89,11 +89,11 @@ class Painter:
         return frozenset(step.pair.name for step in self.scene.driven)
 
     def is_cylinder(self, seen: Seen) -> bool:
-        """Tell whether a slide is drawn as a cylinder: where it is driven between two moving links."""
+        """Tell whether a slide is drawn as a cylinder. Where it is driven between two moving links."""
         return FRAME not in seen.members and seen.pair.name in self.driven
 
     def is_rod(self, seen: Seen) -> bool:
-        """Tell whether a slide is drawn as a rod through a block: where the link with the guide has but one point."""
+        """Tell whether a slide is drawn as a rod through a block. Where the link with the guide has but one point."""
         guide, block = (len(self.scene.points[name]) for name in seen.members)
         return seen.members[0] != FRAME and guide == 1 and block > 1
 
@@ -103,7 +103,7 @@ class Painter:
         return Laid(Layer.BLOCK, Polygon(box(middle, along, *BLOCK), style), link)
 
     def stub(self, link: str, foot: complex) -> Iterator[Laid]:
-        """Draw a bar from a place to the nearest point of its link, where it is none of them."""
+        """Draw a bar from a place to its link's nearest point. It is drawn where the place is none of them."""
         own = [self.place(link, p) for p in self.scene.points[link].values()]
         nearest = min(own, key=lambda p: abs(p - foot), default=foot)
         if link != FRAME and abs(nearest - foot) > PIN:
@@ -111,7 +111,7 @@ class Painter:
 
 
 def sliding(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
-    """Draw a block on its guide; a driven one between moving links is a cylinder with its rod."""
+    """Draw a block on its guide. A driven one between moving links is a cylinder with its rod."""
     guide, block = seen.members
     if not (painter.shows(guide) and painter.shows(block)):
         yield from _half(painter, seen, mark)
@@ -145,7 +145,7 @@ def rod_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, compl
 
 
 def guide_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
-    """Return the two ends of a guide on a moving link: from where it starts there as far as the block goes."""
+    """Return the two ends of a guide on a moving link. From where it starts there as far as the block goes."""
     e = painter.along(link, mark.along)
     span = min(mark.low, 0.0), max(mark.high, 0.0)
     start, stop = (painter.place(link, mark.at + mark.along * s) for s in span)

@@ -63,7 +63,7 @@ def heading(group: Group) -> str:
 
 
 def outer_letters(group: Group) -> frozenset[str]:
-    """Return the points of the pairs by which a group is attached to what stands before it."""
+    """Return the points of the pairs by which a group is attached. It is attached to what stands before it."""
     return frozenset(letter for pair in group.outer for letter in pair.letters[:1])
 
 
@@ -113,7 +113,7 @@ def loops(scene: Scene, size: float | None) -> Picture:
 
 
 def loops_in_graph(structure: Structure, size: float | None) -> Picture:
-    """Do as `loops`, in the kinematic graph: of a mechanism that is not drawn and cannot be solved."""
+    """Do as `loops`, in the kinematic graph. Of a mechanism that is not drawn and cannot be solved."""
     numbers, groups = numbers_of(structure), groups_of(structure)
     spots = np.array(spread(list(numbers), structure.pairs))
     wide, tall = float(np.ptp(spots.real)), float(np.ptp(spots.imag))

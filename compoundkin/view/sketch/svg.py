@@ -26,7 +26,7 @@ DOTS_PER_INCH = 96
 
 
 def svg(shapes: Sequence[Shape], width: float, height: float, size: float, title: str, description: str = "") -> str:
-    """Return the source of a picture of `width` by `height` picture units; its longer side is shown `size` pixels long.
+    """Return the source of a picture of `width` by `height` picture units. Its longer side is shown `size` pixels long.
 
     >>> print(svg((), 100, 50, 200, "Empty").splitlines()[1])
     <title>Empty</title>
@@ -43,7 +43,7 @@ def document(
     title: str,
     description: str = "",
 ) -> str:
-    """Return the source of a picture whose elements are there already, with the style sheet of some shapes."""
+    """Return the source of a picture whose elements are there already. It has the style sheet of some shapes."""
     shown = size / max(width, height)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {number(width)} {number(height)}" '
@@ -55,7 +55,7 @@ def document(
 
 
 def inline(shapes: Sequence[Shape], width: float, height: float, title: str, description: str = "") -> str:
-    """Return a picture as part of a page: as wide as there is room, its style that of the page, its links told.
+    """Return a picture as part of a page. As wide as there is room, its style that of the page, its links told.
 
     >>> inline((ShapeGroup((), links=("bar", "block")),), 100, 50, "A").splitlines()[2]
     '<g data-links="bar,block">'
@@ -69,7 +69,7 @@ def inline(shapes: Sequence[Shape], width: float, height: float, title: str, des
 
 
 def link_names(names: Iterable[str]) -> str:
-    """Return the names of links as one attribute of an element of a page; no name has a comma in it.
+    """Return the names of links as one attribute of an element of a page. No name has a comma in it.
 
     >>> link_names(["bar", "block"])
     'bar,block'
@@ -78,7 +78,7 @@ def link_names(names: Iterable[str]) -> str:
 
 
 def number(value: float) -> str:
-    """Return a number to a tenth of a picture unit, which no eye can tell, without idle zeros.
+    """Return a number to a tenth of a picture unit, without idle zeros. No eye can tell less.
 
     >>> number(12.04), number(-0.01), number(3.25)
     ('12', '0', '3.2')
@@ -89,7 +89,7 @@ def number(value: float) -> str:
 
 
 def elements(shapes: Iterable[Shape], *, tagged: bool = False) -> Iterator[str]:
-    """Return the elements of shapes, line by line; `tagged` tells the links that groups of them show."""
+    """Return the elements of shapes, line by line. `tagged` tells the links that groups of them show."""
     for shape in shapes:
         if isinstance(shape, ShapeGroup):
             tag = f' data-links="{link_names(shape.links)}"' if tagged and shape.links else ""
@@ -135,7 +135,7 @@ def _class(style: str) -> str:
 
 
 def converted(source: str, form: str) -> bytes:
-    """Return an SVG source as "png" or "pdf"; raises InvalidInput where CairoSVG is not installed."""
+    """Return an SVG source as "png" or "pdf". Raises InvalidInput where CairoSVG is not installed."""
     try:
         import cairosvg
     except (ImportError, OSError) as error:
@@ -148,7 +148,7 @@ def converted(source: str, form: str) -> bytes:
 
 
 def on_light_paper(source: str) -> str:
-    """Return the source without its rules for dark paper, which CairoSVG would apply to any."""
+    """Return the source without its rules for dark paper. CairoSVG would apply them to any."""
     start, end = source.find("@media"), source.find("</style>")
     return source[:start] + source[end:] if 0 <= start < end else source
 
@@ -163,7 +163,9 @@ def require_cairo(form: str) -> None:
 
 
 def pixel_size(width: float, height: float, size: float) -> tuple[int, int]:
-    """Width and height in pixels, even numbers as films need them, the longer one that of `size` or next to it.
+    """Return width and height in pixels, even numbers as films need them.
+
+    The longer one is that of `size` or next to it.
 
     >>> pixel_size(300.0, 199.0, 640.0)
     (640, 424)
@@ -173,7 +175,7 @@ def pixel_size(width: float, height: float, size: float) -> tuple[int, int]:
 
 
 def pixels(source: str, width: int, height: int) -> Number:
-    """Draw an SVG source on light paper, bytes of red, green, blue, (height, width, 3)."""
+    """Draw an SVG source on light paper, as bytes (height, width, 3). They are red, green, blue."""
     from cairosvg.parser import Tree
     from cairosvg.surface import PNGSurface
 

@@ -37,7 +37,7 @@ SAME = 1.0
 
 @dataclass(frozen=True)
 class VectorScale:
-    """How vectors are drawn: picture units for a unit of theirs, and a round amount to show beside the picture."""
+    """How vectors are drawn. Picture units for a unit of theirs, and a round amount to show beside the picture."""
 
     kind: str
     per_unit: float
@@ -62,7 +62,7 @@ def wanted(vectors: str | Sequence[str] | None) -> tuple[str, ...]:
 
 
 def rates_of(scene: Scene, kind: str) -> dict[str, complex]:
-    """Return the vectors of all points but those of the frame; raises InvalidInput where the motion has none."""
+    """Return the vectors of all points but those of the frame. Raises InvalidInput where the motion has none."""
     order = KINDS_OF_VECTOR[kind][0]
     if scene.shown is None:
         what = "a mechanism that is shown as drawn has no motion"
@@ -74,7 +74,10 @@ def rates_of(scene: Scene, kind: str) -> dict[str, complex]:
 
 
 def scale_of(kind: str, rates: Mapping[str, complex], length: float, unit: str) -> VectorScale | None:
-    """Return the scale at which the longest vector is at most so long, in picture units; None where nothing moves."""
+    """Return the scale at which the longest vector is at most so long.
+
+    It is in picture units; None where nothing moves.
+    """
     largest = max(map(abs, rates.values()), default=0.0)
     if largest <= 0:
         return None
@@ -84,7 +87,7 @@ def scale_of(kind: str, rates: Mapping[str, complex], length: float, unit: str) 
 
 
 def round_below(value: float) -> float:
-    """Return the greatest of 1, 2, 5 times a power of ten that is no more than a value.
+    """Return the greatest round number no more than a value. It is 1, 2, 5 times a power of ten.
 
     >>> round_below(37.0), round_below(0.05)
     (20.0, 0.05)
@@ -106,14 +109,14 @@ def vector_shapes(places: Mapping[str, complex], rates: Mapping[str, complex], s
 
 
 def scale_shapes(scale: VectorScale, height: float) -> list[Shape]:
-    """Tell what states the scale: an arrow of the round amount, at a height of the picture."""
+    """Tell what states the scale. An arrow of the round amount, at a height of the picture."""
     length = scale.amount * scale.per_unit
     line = arrow(complex(SIDE, height), complex(SIDE + length, height), scale.kind)
     return [*line, Text(complex(1.5 * SIDE + length, height), f"{scale.kind}, {scale.text}", "note", "start")]
 
 
 def vector_polygon(what: Drawable, wishes: Wishes) -> Picture:
-    """Draw the polygon of the velocities or accelerations of all points at one pose, with the images of the links.
+    """Draw the polygon of all points' velocities or accelerations at one pose. The images of the links are drawn too.
 
     From the pole o an arrow leads to the image of each point, named by its letter in lower case; the images of the
     points of one link are joined, and are similar to the link. Raises InvalidInput where nothing moves. Source: e.g.
