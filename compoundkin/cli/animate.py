@@ -9,7 +9,7 @@ import click
 
 from compoundkin.base.suffixes import alternatives
 from compoundkin.cli.drive_options import ARROWS, DESIGN, LABELS, PATHS, drive_options, solved_at
-from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
+from compoundkin.cli.file_options import loaded, mechanism_argument
 from compoundkin.cli.progress import counting
 from compoundkin.cli.shell import put, say
 from compoundkin.cli.solve import explained

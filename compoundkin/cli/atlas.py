@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from compoundkin.cli.output_options import put_report, report_options
+from compoundkin.cli.file_options import put_report, report_options
 
 
 @click.command(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from compoundkin.cli.mechanism_argument import complete_name
+from compoundkin.cli.file_options import complete_name
 from compoundkin.cli.shell import put, say
 
 
@@ -52,7 +52,7 @@ def copy(name: str, destination: str | None, force: bool) -> int:
     A name that ends in .json becomes a JSON file, without the comments.
     """
     from compoundkin.base.suffixes import form_of
-    from compoundkin.cli.mechanism_argument import write_new
+    from compoundkin.cli.file_options import write_new
     from compoundkin.files.mechanism_files import encoded, load
     from compoundkin.files.shipped_mechanisms import path
 

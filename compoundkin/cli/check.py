@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.cli.drive_options import drive_options, solved
-from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import put_report, report_options
+from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
 from compoundkin.cli.shell import FAILED, NOT_ASSEMBLED, say
 from compoundkin.cli.structure import unsolvable
 

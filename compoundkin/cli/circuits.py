@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import put_report, report_options
+from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
 
 if TYPE_CHECKING:
     from compoundkin.structure import Structure

@@ -7,8 +7,7 @@ import warnings
 import click
 
 from compoundkin.cli.drive_options import AT
-from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import put_report, report_options
+from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
 
 
 @click.command(

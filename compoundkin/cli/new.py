@@ -79,7 +79,7 @@ def command(path: str, force: bool) -> int:
     """Write a commented mechanism file to PATH, to be changed into your own. It has a four-bar linkage."""
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.base.suffixes import suffix_for, suffix_of
-    from compoundkin.cli.mechanism_argument import write_new
+    from compoundkin.cli.file_options import write_new
 
     target = Path(path)
     target = target / "mechanism.toml" if target.is_dir() else target

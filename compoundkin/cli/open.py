@@ -7,8 +7,7 @@ from typing import Any
 
 import click
 
-from compoundkin.cli.mechanism_argument import mechanism_argument
-from compoundkin.cli.output_options import made_page
+from compoundkin.cli.file_options import made_page, mechanism_argument
 from compoundkin.cli.report import asking_options, reported, verdict
 from compoundkin.cli.shell import say
 

@@ -9,7 +9,7 @@ import click
 
 from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import drive_options, solved
-from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
+from compoundkin.cli.file_options import loaded, mechanism_argument
 from compoundkin.cli.shell import put, say
 from compoundkin.cli.solve import explained
 

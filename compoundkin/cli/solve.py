@@ -8,7 +8,7 @@ import click
 
 from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import drive_options, solved
-from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
+from compoundkin.cli.file_options import loaded, mechanism_argument
 from compoundkin.cli.shell import NOT_ASSEMBLED, put, say
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     Where a pose cannot be assembled its numbers are nan (null in JSON); stderr says why, and the exit code is 3.
     """
     from compoundkin.files import save
-    from compoundkin.files.table_files import csv_text
+    from compoundkin.files.saved_files import csv_text
     from compoundkin.kinematics.redundant_pairs import solvable
 
     if path is not None:

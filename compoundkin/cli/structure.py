@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import click
 
-from compoundkin.cli.mechanism_argument import loaded, mechanism_argument
-from compoundkin.cli.output_options import put_report, report_options
+from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
 from compoundkin.cli.shell import say
 
 

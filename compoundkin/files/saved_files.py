@@ -1,18 +1,103 @@
-"""`save`: whatever can be saved, in the form that the file's suffix tells."""
+"""`save`: whatever can be saved, in the form that the file's suffix tells.
+
+Tables are CSV and JSON for people, angles in degrees; NPZ and Parquet for programs, angles in radians.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
+import json
 import os
-from typing import Any, ClassVar
+from collections.abc import Callable, Mapping
+from math import isfinite
+from types import MappingProxyType
+from typing import Any, BinaryIO, ClassVar, TypeAlias
+
+import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import Kind, everything, form_of
 from compoundkin.files.atomic import write_atomically
 from compoundkin.files.mechanism_files import encoded
-from compoundkin.files.table_files import WRITERS
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.table import Table
+from compoundkin.kinematics.table import ANGLES, Table
 from compoundkin.model.mechanism import Mechanism
+
+Write: TypeAlias = Callable[[BinaryIO], Any]
+
+
+def csv_text(table: Table) -> str:
+    """Return the table as CSV, with units in the heads; every digit is written."""
+    text = io.StringIO()
+    _write_csv(table, text)
+    return text.getvalue()
+
+
+def _write_csv(table: Table, text: Any) -> None:
+    rows = csv.writer(text, lineterminator="\n")
+    shown = table.shown.columns
+    rows.writerow([f"{column.name} [{column.unit}]" if column.unit else column.name for column in shown])
+    # lists of Python floats, which are written with as many digits as distinguish them
+    rows.writerows(zip(*(column.values.tolist() for column in shown), strict=True))
+
+
+def _csv(table: Table) -> Write:
+    def write(file: BinaryIO) -> None:
+        text = io.TextIOWrapper(file, encoding="utf-8", newline="")
+        _write_csv(table, text)
+        text.detach()
+
+    return write
+
+
+def _json(table: Table) -> Write:
+    """{"columns": [{"name", "unit", "values"}]}, null where a pose is not assembled."""
+    columns = [
+        {"name": column.name, "unit": column.unit, "values": list(map(_plain, column.values.tolist()))}
+        for column in table.shown.columns
+    ]
+    text = json.dumps({"columns": columns}, ensure_ascii=False, allow_nan=False) + "\n"
+    return lambda file: file.write(text.encode("utf-8"))
+
+
+def _plain(value: Any) -> Any:
+    return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def _npz(table: Table) -> Write:
+    """Return an array for each column.
+
+    `units` is their units as JSON, `angles` how angles are counted, `title` the title.
+    """
+    arrays = {column.name: column.values for column in table.columns}
+    told = {"title": table.title, "angles": ANGLES, "units": json.dumps(dict(table.units), ensure_ascii=False)}
+    # NumPy 2 stubs take any keyword for `allow_pickle`
+    save: Any = np.savez
+    return lambda file: save(file, **arrays, **{name: np.array(text) for name, text in told.items()})
+
+
+def _parquet(table: Table) -> Write:
+    """Fields with their `unit` as metadata. The schema says what the table is of and how angles are counted."""
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError:
+        raise InvalidInput(Problem("", "this needs pyarrow", "pip install 'compoundkin[parquet]'")) from None
+    arrays = [pyarrow.array(column.values) for column in table.columns]
+    fields = [
+        pyarrow.field(column.name, array.type, metadata={"unit": column.unit} if column.unit else None)
+        for column, array in zip(table.columns, arrays, strict=True)
+    ]
+    schema = pyarrow.schema(fields, metadata={"title": table.title, "angles": ANGLES})
+    whole = pyarrow.Table.from_arrays(arrays, schema=schema)
+    return lambda file: pyarrow.parquet.write_table(whole, file)
+
+
+# The writer of each form that the table of suffixes has for tables.
+WRITERS: Mapping[str, Callable[[Table], Write]] = MappingProxyType(
+    {"csv": _csv, "json": _json, "npz": _npz, "parquet": _parquet}
+)
 
 
 class Savable:

@@ -104,7 +104,7 @@ def test_completion_scripts(run: Run, name: str) -> None:
 
 
 def test_names_of_the_catalog_are_completed() -> None:
-    from compoundkin.cli.mechanism_argument import complete_name
+    from compoundkin.cli.file_options import complete_name
 
     found = complete_name(None, None, "six")  # type: ignore[arg-type]
     assert [item.value for item in found] == ["six-bar"]

@@ -85,7 +85,7 @@ def _outside(own: Pair, lower: Equivalent) -> tuple[Number, str]:
 
 
 def _place(end: End) -> Number:
-    """The point of a pair's side, as a number."""
+    """Return the point of a pair's side, as a number."""
     return end.point.c[0] if isinstance(end.point, Series) else end.point
 
 
