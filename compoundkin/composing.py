@@ -2,7 +2,7 @@
 
 >>> from compoundkin.composing import random_mechanism
 >>> random_mechanism(groups=3, seed=1)
-Mechanism('3 random groups, seed 1': 8 links, 1 drivers)
+Mechanism('3 random groups, seed 1': 8 links, 1 driver)
 """
 
 from __future__ import annotations

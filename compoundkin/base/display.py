@@ -27,6 +27,15 @@ def way(name: str) -> Callable[..., Any]:
     return found
 
 
+def counted(number: int, one: str, many: str = "") -> str:
+    """Say how many there are, in the singular where it is one.
+
+    >>> counted(1, "driver"), counted(2, "branch", "branches")
+    ('1 driver', '2 branches')
+    """
+    return f"{number} {one if number == 1 else many or one + 's'}"
+
+
 class Shows:
     """What a notebook shows of an object: tables and pictures as HTML."""
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import TURN
-from compoundkin.base.display import Shows
+from compoundkin.base.display import Shows, counted
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.configurations import closed_form_segments, general_segments
@@ -99,7 +99,8 @@ class Circuits(Shows):
         return self.at(self.branches[what - 1].configuration)
 
     def __repr__(self) -> str:
-        return f"Circuits({len(self.circuits)} circuits, {len(self.branches)} branches of the driver {self.driver!r})"
+        branches = counted(len(self.branches), "branch", "branches")
+        return f"Circuits({counted(len(self.circuits), 'circuit')}, {branches} of the driver {self.driver!r})"
 
 
 def circuits(

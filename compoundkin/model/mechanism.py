@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from compoundkin.base.display import ShowsPicture
+from compoundkin.base.display import ShowsPicture, counted
 from compoundkin.base.errors import InvalidMechanism, Problem, UnknownName, nearest
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
@@ -124,7 +124,8 @@ class Mechanism(Written, ShowsPicture):
         return hash((self.title, tuple(self.links)))
 
     def __repr__(self) -> str:
-        return f"Mechanism({self.title!r}: {len(self.links)} links, {len(self.drives)} drivers)"
+        links, drivers = counted(len(self.links), "link"), counted(len(self.drives), "driver")
+        return f"Mechanism({self.title!r}: {links}, {drivers})"
 
 
 def same(a: Any, b: Any) -> bool:

@@ -51,7 +51,7 @@ class Composer(LetteredLinks):
 
     >>> composer = Composer("Six-bar")
     >>> composer.drive("crank").attach("RRR", ("coupler", "rocker"), to=("crank", "frame")).mechanism()
-    Mechanism('Six-bar': 4 links, 1 drivers)
+    Mechanism('Six-bar': 4 links, 1 driver)
     """
 
     title: str
@@ -184,7 +184,7 @@ def random_mechanism(
     Raises InvalidInput for a number of groups that is negative, UnknownName for a kind that is not known.
 
     >>> random_mechanism(groups=3, seed=1)
-    Mechanism('3 random groups, seed 1': 8 links, 1 drivers)
+    Mechanism('3 random groups, seed 1': 8 links, 1 driver)
     """
     if groups < 0:
         raise InvalidInput(Problem("groups", f"{groups} is no number of groups", "give 0 or more"))

@@ -117,7 +117,7 @@ def test_parts_of_a_mechanism() -> None:
     assert [d.name for d in mechanism.drives] == ["crank"]
     assert mechanism.written_pairs == ()
     assert mechanism.sketch == {}
-    assert repr(mechanism) == "Mechanism('Four-bar': 4 links, 1 drivers)"
+    assert repr(mechanism) == "Mechanism('Four-bar': 4 links, 1 driver)"
     assert mechanism.link("crank").points["B"] == 1
     with pytest.raises(ck.errors.UnknownName, match="did you mean 'crank'"):
         mechanism.link("cranc")

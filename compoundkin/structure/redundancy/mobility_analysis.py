@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.display import Shows
+from compoundkin.base.display import Shows, counted
 from compoundkin.base.poses import Pose
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.decomposition import decompose
@@ -112,21 +112,21 @@ class MobilityAnalysis(Shows):
 
     def _motion(self) -> str:
         assert self.finite is not None
-        free = f"{self.kind} with {_counted(self.finite, 'freedom')}"
+        free = f"{self.kind} with {counted(self.finite, 'freedom')}"
         found = self.determined or 0
         own = "its driver" if self.drivers == 1 else f"its {self.drivers} drivers"
         if found < self.drivers:
-            spare = _counted(self.drivers - found, "driver")
+            spare = counted(self.drivers - found, "driver")
             return f"{free}: {spare} too many, or where nothing is free"
         missing = self.finite - len(self.passive) - found
         if missing > 0:
-            return f"{free}, {_counted(missing, 'driver')} missing"
+            return f"{free}, {counted(missing, 'driver')} missing"
         return f"{free}, determined by {own}"
 
     def _redundancy(self) -> list[str]:
         if not self.redundant:
             return []
-        what = f"{_counted(self.redundant, 'coordinate')} held twice"
+        what = f"{counted(self.redundant, 'coordinate')} held twice"
         return [f"{what}: {', '.join(self.freed)} could be freed" if self.freed else what]
 
 
@@ -191,10 +191,6 @@ def _freed(structure: Structure, found: Diagnosis) -> tuple[str, ...]:
 
 def _is_roller(structure: Structure, one: PassiveFreedom) -> bool:
     return any(one == PassiveFreedom(spin.link, f"turn about {spin.at}") for spin in structure.passive)
-
-
-def _counted(number: int, word: str) -> str:
-    return f"{number} {word}{'' if number == 1 else 's'}"
 
 
 def _gap(found: Diagnosis) -> MobilityGap:
