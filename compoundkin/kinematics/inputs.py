@@ -129,7 +129,7 @@ class PoseGrid(PrintsShort):
         return np.where(self.shaped(self.failed == 0), shaped, nothing)
 
     def fitted(self, value: Number) -> Number:
-        """Return a value in the form (1 or designs, 1 or poses). It is one that broadcasts with the motion."""
+        """Return a value as (1 or designs, 1 or poses). It must broadcast with the motion."""
         try:
             np.broadcast_to(value, self.shape)
         except ValueError:

@@ -23,9 +23,9 @@ Root: TypeAlias = Callable[[Series, Number], tuple[Series, Number]]
 
 
 def clipped_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
-    """Return the square root and the margin, zero but for rounding.
+    """Return the square root and the margin.
 
-    The root is zero for a discriminant that is zero but for rounding.
+    The root is zero for a discriminant that is zero but for rounding, NaN below it.
 
     >>> from compoundkin.base.series import constant
     >>> value, margin = clipped_root(constant(np.array([4.0, -1e-15])), 1.0)
@@ -38,7 +38,7 @@ def clipped_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
 
 
 def nearest_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
-    """Return the square root, or zero. Zero is the nearest approach where a group cannot be assembled."""
+    """Return the square root, or zero. That is the nearest approach where a group cannot be assembled."""
     lead = np.maximum(discriminant.c[0], 0.0)
     return Series((lead, *discriminant.c[1:])).sqrt(), np.ones_like(lead)
 

@@ -45,7 +45,7 @@ def maximum_matching(rows: Sequence[tuple[int, ...]], freedoms: Sequence[int]) -
 
 
 def _start(matching: Matching) -> None:
-    """Give rows to the unknown that is forced. Where none is, to the one with the least room left."""
+    """Give rows to the unknown that is forced. Where none is, the one with the least room gets them."""
     rows, room = matching.rows, matching.room
     touching: list[list[int]] = [[] for _ in room]
     for row, unknowns in enumerate(rows):

@@ -59,7 +59,7 @@ def _popped(stack: list[int], on_stack: bytearray, root: int) -> list[int]:
 def solving_order(
     components: Sequence[Sequence[int]], successors: Sequence[Sequence[int]], rank: Sequence[int]
 ) -> list[int]:
-    """Return the components, each after those it depends on. Of several possible ones that of least `rank`."""
+    """Return the components, each after those it depends on. Of several possible, least `rank` comes first."""
     of = {node: k for k, component in enumerate(components) for node in component}
     needs: list[set[int]] = [set() for _ in components]
     leads: list[list[int]] = [[] for _ in components]

@@ -66,7 +66,7 @@ class RankTest:
         return None if self.known[rank_key] else self.analysed(part)
 
     def analysed(self, part: Subsystem) -> Deficiency:
-        """Return the redundancy and freedom of any part. By count alone, and for all of it, where it is large."""
+        """Return the redundancy and freedom of any part. A large one is counted as a whole, without ranks."""
         rows, columns = self._shape(part)
         if max(rows, columns) > DENSE_UP_TO:
             # at least one of each where a square part is singular
@@ -111,7 +111,7 @@ class RankTest:
         return bool(np.min(pivots) > RANK_TOLERANCE * np.max(pivots))
 
     def _rank_key(self, part: Subsystem) -> tuple[Any, ...]:
-        """Return all that the rank depends on. Not the order of constraints, nor which body on a pin is named first."""
+        """Return all that the rank depends on. The order of constraints and of bodies on a pin does not matter."""
         place = {unknown: k for k, unknown in enumerate(part.unknowns)}
         times = Counter(c.letter for c in part.constraints)
         shared = [letter for letter, count in times.items() if letter and count > 1]
@@ -165,7 +165,7 @@ class RankTest:
         return tuple(found)
 
     def _body_sides(self, constraint: Constraint) -> tuple[int, ...]:
-        """Return the bodies a constraint is between. Of a multiple pin, with the first other body on it."""
+        """Return the bodies a constraint is between. A multiple pin counts with the first other body on it."""
         first, *others = constraint.sides
         if first == GROUND or self.system.is_body(first):
             return constraint.sides

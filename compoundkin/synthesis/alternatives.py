@@ -115,7 +115,7 @@ class _Choices:
         self.number = self.drivers * len(self.places) if self.one_by_one else everything
 
     def frames(self, wanted: Sequence[str]) -> list[tuple[str, int]]:
-        """Return the frames to try, alike ones once, those that are wanted first. And for how many each stands."""
+        """Return the frames to try, alike ones once, those that are wanted first. Each tells for how many."""
         orbits = canonical(self._graph(None)).orbits
         found = []
         for orbit in orbits:
@@ -134,7 +134,7 @@ class _Choices:
             yield self._found(frame, chosen, alike * number, decompose(outline.driven(drives)))
 
     def _driven(self, frame: str) -> Iterator[tuple[tuple[int, ...], int]]:
-        """Yield places for drivers as indices, alike ones once. And how many each stands for."""
+        """Yield places for drivers as indices, alike ones once. With each comes for how many it stands."""
         choices = list(self._sets())
         index = {frozenset(chosen): k for k, chosen in enumerate(choices)}
         leader = list(range(len(choices)))

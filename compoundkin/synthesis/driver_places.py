@@ -56,7 +56,7 @@ def swapped_names(frame: str) -> dict[str, str]:
 
 
 def driver_places(mechanism: Mechanism) -> Iterator[DriverPlace]:
-    """Yield every place for a driver. At pins between each two of their links, then at the written pairs."""
+    """Yield every place for a driver. Pins come first, for each two of their links, then written pairs."""
     for letter, links in mechanism.pins.items():
         yield from (DriverPlace(second, first, letter) for first, second in combinations(links, 2))
     for pair in mechanism.written_pairs:

@@ -130,7 +130,7 @@ def _written(mechanism: Mechanism, title: str, items: list[Item], outputs: list[
 
 
 def _renamed(mechanism: Mechanism, link: str) -> dict[str, str]:
-    """New names of the two links that change places. Not one that a link or a point has already."""
+    """New names of the two links that change places. No link or point has them already."""
     taken = (*mechanism.links, *mechanism.carriers)
     number = next(k for k in range(1, len(taken) + 2) if f"{OLD_FRAME}{k if k > 1 else ''}" not in taken)
     return {link: FRAME, FRAME: f"{OLD_FRAME}{number if number > 1 else ''}"}

@@ -163,7 +163,7 @@ def ring_amplitudes(p: Number, r: Number, q: Number, gap: Number) -> tuple[Numbe
 
 
 def driver_rate_sets(centres: KnownCentres, bridges: bool = True) -> RateSets:
-    """Return the drivers' rates, carried as far as the known centres allow. To three links at a time with `bridges`."""
+    """Return the drivers' rates, carried as far as the known centres allow. `bridges` take three links at a time."""
     sets = RateSets.of(centres)
     for k, drive in enumerate(centres.diagram.drives):
         i, j = centres.body[drive.first], centres.body[drive.second]

@@ -194,7 +194,7 @@ def _translation(seen: Relative) -> tuple[Number, Number, Number]:
 
 
 def _circle(seen: Relative, towards: Number, diameter: Number, beside: Number, normal: Number) -> BresseCircle:
-    """Return a circle at the pole. At a pole at infinity the line through the origin's neighbour `beside`."""
+    """Return a circle at the pole. For a pole at infinity it is the line through `beside`."""
     line = seen.regular & ~seen.turning & ~seen.resting & np.isfinite(beside)
     defined = line | seen.turning & ~np.isnan(diameter)
     return BresseCircle(

@@ -164,7 +164,7 @@ def _pole(seen: Relative) -> Pole:
 
 
 def _leading(seen: Relative) -> tuple[Number, Number]:
-    """Return the pole as a fraction. By l'Hopital's rule from the next derivatives where the links stand still."""
+    """Return the pole as a fraction. Where the links stand still, l'Hopital's rule takes the next derivatives."""
     number, weight = seen.numerator.c, seen.omega.c
     if len(weight) == 1:
         return seen.masked(number[0], ~seen.resting), weight[0]

@@ -61,7 +61,7 @@ def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> Po
 
 
 def place(motion: Motion, link: str, point: Any) -> Number:
-    """Return where a point is in its link's frame. Of a letter as the mechanism has it, of coordinates as they are."""
+    """Return where a point is in its link's frame. A letter is looked up, coordinates are taken as they are."""
     if isinstance(point, str):
         known = motion.mechanism.geometry.points[link]
         if point not in known:

@@ -147,7 +147,7 @@ def placed_at(point: Series, u: Series, local: Series | Number) -> Pose:
 
 
 def element(value: Number, at: int) -> float:
-    """Return one element, by its flat index, of an array. Or the number that holds for all."""
+    """Return one element of an array by its flat index. A number holds for all indices."""
     flat = np.asarray(value).ravel()
     return float(flat[at if flat.size > 1 else 0])
 

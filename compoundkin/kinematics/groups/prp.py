@@ -20,7 +20,7 @@ PARALLEL = 1e-9
 
 
 class PRP(DyadSolver):
-    """It has one assembly mode; a sign has no effect."""
+    """Two blocks on known guides, pinned to each other. It has one assembly mode: a sign has no effect."""
 
     name: ClassVar[str] = "PRP"
     modes: ClassVar[int] = 1

@@ -15,7 +15,7 @@ from compoundkin.kinematics.limits import Root, clipped_root
 
 
 class RPP(DyadSolver):
-    """It has one assembly mode; a sign has no effect."""
+    """A pinned link on a slide that slides on a known guide. It has one mode: a sign has no effect."""
 
     name: ClassVar[str] = "RPP"
     modes: ClassVar[int] = 1

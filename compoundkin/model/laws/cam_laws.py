@@ -87,7 +87,7 @@ class PositionPiece:
         return smooth + amplitude * frequency**k * sin(frequency * u + phase + k * pi / 2)
 
     def scaled(self, start: float, over: float, place: float, rise: float) -> PositionPiece:
-        """Return the piece for a span and rise that are not 1. From a place."""
+        """Return the piece for a span and rise that are not 1. It begins at a place."""
         amplitude, frequency, phase = self.wave
         polynomial = [c * rise / over**k for k, c in enumerate(self.polynomial)]
         polynomial[0] += place
@@ -121,7 +121,7 @@ def _integrated(part: AccelerationPiece, start: float, place: float, speed: floa
 
 @dataclass(frozen=True)
 class Discontinuity:
-    """A place of a program where a derivative jumps. Of order 1 the velocity, 2 the acceleration."""
+    """A place of a program where a derivative jumps. Order 1 is the velocity, 2 the acceleration."""
 
     place: float
     order: int

@@ -126,7 +126,7 @@ class Program:
 
     @cached_property
     def repeats(self) -> bool:
-        """Whether it ends where it began, so that a cam may carry it round. Or begins anew because it is told to."""
+        """Whether it ends where it began, so that a cam may carry it round. One that repeats begins anew."""
         return self.repeat or abs(self._advance) <= JUMP * self.lift
 
     @property

@@ -125,7 +125,7 @@ class Rack(OnLine):
 
     @property
     def pitch(self) -> float:
-        """The distance of teeth. By the module, else by as many as a gear of unknown teeth shows."""
+        """The distance of teeth. Without a module it is that of a gear whose teeth are unknown."""
         if self.module is not None:
             return float(np.pi * first_entry(self.module))
         return float(2.0 * np.pi * first_entry(self.size) / UNCOUNTED)

@@ -60,5 +60,5 @@ class Profile(ABC):
 
 
 def side_of(curve: Curve) -> float:
-    """Return +1 where the normal of a closed curve points outward, -1 where inward. Of an open one +1."""
+    """Return +1 where the normal of a closed curve points outward, -1 where inward. An open curve has +1."""
     return 1.0 if not curve.closed or curve.is_counterclockwise else -1.0

@@ -150,7 +150,7 @@ class Envelope:
         return self.lift.at(s) * self.guide.sense + self.guide.home
 
     def pitch(self) -> Analytic:
-        """Return the path of the knife edge or the roller's middle on the cam. In the cam's frame."""
+        """Return the path of the knife edge or roller's middle, in the cam's frame."""
         return self._curve(lambda s: self.guide.middle(self.coordinate(s)) * (-s).turn())
 
     def rolled(self) -> Analytic:

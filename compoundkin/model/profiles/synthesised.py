@@ -90,7 +90,7 @@ class Synthesised(Profile):
 
     @cached_property
     def pitch_curve(self) -> Analytic | None:
-        """The path of the knife edge or roller's middle on the cam. In the cam's frame. None for a flat face."""
+        """The path of the knife edge or roller's middle in the cam's frame. It is None for a flat face."""
         return None if self.follower == "flat" else self.envelope.pitch()
 
     def coordinate(self, angle: Series | Any) -> Series:

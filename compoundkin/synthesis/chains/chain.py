@@ -134,7 +134,7 @@ class Chain:
 
     @property
     def symmetries(self) -> int:
-        """The order of the automorphism group. In how many ways the chain can be laid upon itself."""
+        """The order of the automorphism group. In so many ways the chain maps onto itself."""
         return self.canonical.symmetries
 
     @property

@@ -44,7 +44,7 @@ class Arrows:
 
 @dataclass(frozen=True, eq=False)
 class MovingCentre:
-    """An instant centre, or several that are always at one place. Where it is on the picture, and where it is shown."""
+    """An instant centre, or several that are always at one place. It is shown at some poses."""
 
     name: str
     places: Number

@@ -159,7 +159,7 @@ def page_of(
     outputs: Sequence[str] = (),
     design: int = 0,
 ) -> Page:
-    """Return any report as a page. With pictures of its subject, with the moving sketch where that is a motion."""
+    """Return any report as a page. It has pictures of its subject, and the moving sketch of a motion."""
     motion = subject if isinstance(subject, Motion) else None
     known = subject.structure if isinstance(subject, Motion) else subject
     poses: dict[str, Sequence[int]] = {}

@@ -83,7 +83,7 @@ class BranchDrawing:
 
     @property
     def are_named(self) -> bool:
-        """Whether the group is written beside each limit position. Where there are several, and no crowd."""
+        """Whether the group is written beside each limit position: several groups, and no crowd."""
         return len(self.responsible) > 1 and len(self.found.limits) <= MOST_NAMED
 
     @property

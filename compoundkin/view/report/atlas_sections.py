@@ -134,7 +134,7 @@ def _group_pairs(truss: Chain, removed: int) -> str:
 
 
 def alternatives_section(structure: Structure) -> Section:
-    """Return all choices of frame and drivers. Of a large mechanism those with its present frame."""
+    """Return all choices of frame and drivers. A large mechanism keeps its present frame."""
     try:
         found, about = alternatives(structure), "Every link as the frame, every pair as the driven one"
     except InvalidInput:

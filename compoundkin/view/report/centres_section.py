@@ -89,7 +89,7 @@ def centres_sections(sample: Sample) -> tuple[Section, ...]:
 
 
 def centre_blocks(found: Centres) -> tuple[Block, ...]:
-    """Return centres at the first pose, the primary ones first. Of many at many poses there is the derivation alone."""
+    """Return centres at the first pose, the primary ones first. Many at many poses are told by their derivation."""
     sample = Sample(found.motion)
     if len(found) * found.motion.inputs.designs * sample.poses > MOST_CENTRES:
         return derivation_section(found.motion.structure).blocks

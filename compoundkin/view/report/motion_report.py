@@ -177,7 +177,7 @@ def check_report(motion: Motion) -> Report:
 
 
 def centres_report(motion: Motion, design: int = 0) -> Report:
-    """Report a design's instant centres at the first pose. Or it says why the pose cannot be assembled."""
+    """Report a design's instant centres at the first pose. It says why where the pose cannot be assembled."""
     sample = Sample(motion, design)
     closed = bool(sample.assembled[0])
     # in a report on the whole motion the section of its own gaps has that key

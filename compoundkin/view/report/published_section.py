@@ -37,7 +37,7 @@ class Comparison:
 
     @cached_property
     def difference(self) -> float:
-        """How far they are apart. Of a vector the component that is farther, for a book rounds each."""
+        """How far they are apart. Vectors are compared by components, for a book rounds each."""
         gap = self.found - self.expectation.value
         return max(abs(gap.real), abs(gap.imag)) if isfinite(abs(gap)) else float("nan")
 

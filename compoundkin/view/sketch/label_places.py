@@ -61,7 +61,7 @@ def around(key: str, at: complex, half: complex, clear: float, prefer: complex =
 
 
 def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, height: float) -> dict[str, complex]:
-    """Return a place for each label, in the order of the labels. With two rounds of second thoughts."""
+    """Return a place for each label, in the order of the labels. All are placed again twice."""
     lines, rounds = obstacles(shapes)
     fixed = {label.key: _fixed_costs(label, lines, rounds, width, height) for label in labels}
     found: dict[str, complex] = {}

@@ -66,7 +66,7 @@ class ArcShape:
 
 @dataclass(frozen=True)
 class Text:
-    """A line of text with its middle at a place. Or its `anchor` (start, end) is there."""
+    """A line of text with its middle at a place. With an `anchor`, its start or end is there."""
 
     at: complex
     text: str

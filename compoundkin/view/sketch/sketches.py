@@ -43,7 +43,7 @@ LABELS = ("points", "links")
 def window_on(
     scene: Scene, more: Sequence[Scene] = (), paths: Sequence[str] = (), wishes: Sequence[complex] = ()
 ) -> Window:
-    """Return the window that holds a scene, its ghosts and paths. Of the `wishes` it holds those that are not far."""
+    """Return the window that holds a scene, its ghosts and paths. It also holds `wishes` that are not far."""
     places = [place for shown in (scene, *more) for place in _extent(shown)]
     places += [scene.places(letter) for letter in paths]
     plain = Window(1.0, 0j, 0.0, 0.0)

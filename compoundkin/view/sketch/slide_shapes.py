@@ -49,7 +49,7 @@ class Laid(NamedTuple):
 
 @dataclass(frozen=True)
 class Painter:
-    """A scene on its window. Of all its links, or of `only` some that are drawn apart."""
+    """A scene on its window. It has all links, or `only` some that are drawn apart."""
 
     scene: Scene
     window: Window
@@ -89,11 +89,11 @@ class Painter:
         return frozenset(step.pair.name for step in self.scene.driven)
 
     def is_cylinder(self, seen: Seen) -> bool:
-        """Tell whether a slide is drawn as a cylinder. Where it is driven between two moving links."""
+        """Tell whether a slide is drawn as a cylinder: driven between two moving links."""
         return FRAME not in seen.members and seen.pair.name in self.driven
 
     def is_rod(self, seen: Seen) -> bool:
-        """Tell whether a slide is drawn as a rod through a block. Where the link with the guide has but one point."""
+        """Tell whether a slide is drawn as a rod. The link with its guide has but one point then."""
         guide, block = (len(self.scene.points[name]) for name in seen.members)
         return seen.members[0] != FRAME and guide == 1 and block > 1
 
@@ -145,7 +145,7 @@ def rod_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, compl
 
 
 def guide_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
-    """Return the two ends of a guide on a moving link. From where it starts there as far as the block goes."""
+    """Return the two ends of a guide on a moving link. It reaches as far as the block goes."""
     e = painter.along(link, mark.along)
     span = min(mark.low, 0.0), max(mark.high, 0.0)
     start, stop = (painter.place(link, mark.at + mark.along * s) for s in span)

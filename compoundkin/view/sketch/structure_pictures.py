@@ -113,7 +113,7 @@ def loops(scene: Scene, size: float | None) -> Picture:
 
 
 def loops_in_graph(structure: Structure, size: float | None) -> Picture:
-    """Do as `loops`, in the kinematic graph. Of a mechanism that is not drawn and cannot be solved."""
+    """Do as `loops`, in the kinematic graph. The mechanism is not drawn and cannot be solved."""
     numbers, groups = numbers_of(structure), groups_of(structure)
     spots = np.array(spread(list(numbers), structure.pairs))
     wide, tall = float(np.ptp(spots.real)), float(np.ptp(spots.imag))
