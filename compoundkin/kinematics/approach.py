@@ -23,16 +23,17 @@ CLOSE = 1e-6
 
 def approach_path(
     solving_order: SolvingOrder, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
-) -> tuple[Inputs, int, float]:
-    """Return the way from the drawn drivers to the motion's nearest pose `at`. Return also `at`; and the reference.
+) -> tuple[Inputs, float, float]:
+    """Return the way from the drawn drivers to a place `at` of the motion, and the reference.
 
-    The approach path is one pose where the drawing shows no driver. The reference is the place along the motion to
-    which the modes belong: just before `at` where the path comes from before, else just after.
+    `at` is the place of the motion, between two poses too, that is nearest to the drawing. The approach path is one pose where the drawing shows no driver, or shows them at a place of the motion. The
+    reference is the place along the motion to which the modes belong: just before `at` where the path comes from
+    before, else just after.
     """
     shown = {name: drawn_value(solving_order, given, name, drawn, sketch) for name in solving_order.structure.driven}
     values = {name: value for name, value in shown.items() if value is not None}
-    at = _nearest(solving_order, given, values) if values else 0
-    end = given.cut(slice(None), slice(at, at + 1))
+    at = _nearest(solving_order, given, values) if values else 0.0
+    end = given.at(np.array([at])).of_poses(1)
     ways: dict[str, Number] = {}
     for name, rest in end.drives.items():
         way = rest[0] - values.get(name, rest[0])
@@ -42,7 +43,7 @@ def approach_path(
     count = 1 + max((spacings(solving_order, name, way) for name, way in ways.items()), default=0)
     ramp = np.linspace(-1.0, 0.0, count)[None] if count > 1 else np.zeros((1, 1))
     path = end.driven({name: (rest[0] + ways[name] * ramp,) for name, rest in end.drives.items()})
-    return path.of_poses(count), at, at + _side(given, at, ways) * CLOSE
+    return path.of_poses(count), at, at + _side(given, at, ways if count > 1 else {}) * CLOSE
 
 
 def drawn_value(
@@ -59,21 +60,38 @@ def drawn_value(
     return pair.coordinate(ends, poses).c[0] * pair.driven_by(driven.drive.link)
 
 
-def _nearest(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Number]) -> int:
-    """Return the index of the pose whose drivers are nearest to the drawn ones, over all designs."""
-    total: Number = np.zeros((1, 1))
-    for name, value in values.items():
-        gap = np.abs(given.drives[name][0] - value)
-        if solving_order.structure.driven[name].pair.free_is_angle:
-            gap = np.abs(gap - whole_turns(gap))
-        total = total + gap
-    return int(np.argmin(np.broadcast_to(total.max(axis=0), given.poses)))
+def _nearest(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Number]) -> float:
+    """Return the place, between poses too, whose drivers are nearest to the drawn ones, over all designs."""
+    offs = [_off(solving_order, given, name, value) for name, value in values.items()]
+    if given.poses == 1:
+        return 0.0
+    # from each pose to the next the drivers go straight on: the foot of the perpendicular to that line
+    here = [off[:, :-1] for off in offs]
+    steps = [_step(given.drives[name][0]) / _unit(solving_order, name) for name in values]
+    square = np.broadcast_to(sum(np.sum(step**2, axis=0) for step in steps), given.poses - 1)
+    back = sum(np.sum(step * off, axis=0) for step, off in zip(steps, here, strict=True))
+    share = np.divide(-back, square, out=np.zeros(given.poses - 1), where=square > 0.0)
+    share = np.where(share < CLOSE, 0.0, np.where(share > 1.0 - CLOSE, 1.0, share))
+    total = sum(np.abs(off + share * step) for off, step in zip(here, steps, strict=True))
+    worst = np.max(total, axis=0)
+    # the first and the last pose of a full turn are equally near, but for rounding
+    i = int(np.argmax(worst <= np.min(worst) + CLOSE))
+    return i + float(share[i])
 
 
-def _side(given: Inputs, at: int, ways: Mapping[str, Number]) -> float:
-    """-1 where the approach path reaches the motion's pose `at` in the direction of the motion, else +1."""
+def _off(solving_order: SolvingOrder, given: Inputs, name: str, value: Number) -> Number:
+    """Return how far a driver is from where it is drawn, (1 or designs, poses), in radians or parts of the size."""
+    off = given.drives[name][0] - value
+    if solving_order.structure.driven[name].pair.free_is_angle:
+        off = off - whole_turns(off)
+    off = np.atleast_2d(off / _unit(solving_order, name))
+    return np.broadcast_to(off, (len(off), given.poses))
+
+
+def _side(given: Inputs, at: float, ways: Mapping[str, Number]) -> float:
+    """-1 where the approach path reaches the motion's place `at` in the direction of the motion, else +1."""
     moves = given.poses > 1 and any(np.any(way != 0.0) for way in ways.values())
-    step = given.at(np.array([float(at)])).drives if moves else {}
+    step = given.at(np.array([at])).drives if moves else {}
     along = sum(float(np.sum(np.sign(values[1] * ways[name]))) for name, values in step.items())
     return -1.0 if along > 0.0 else 1.0
 
@@ -111,12 +129,21 @@ def pace(solving_order: SolvingOrder, given: Inputs) -> float:
 
 
 def _spacings(solving_order: SolvingOrder, name: str, way: Number) -> float:
-    size = 1.0 if solving_order.structure.driven[name].pair.free_is_angle else solving_order.size
-    return float(np.max(np.abs(way))) / size / SPACING
+    return float(np.max(np.abs(way))) / _unit(solving_order, name) / SPACING
+
+
+def _unit(solving_order: SolvingOrder, name: str) -> float:
+    """Return what makes a way of a driver a pure number. It is a radian, or the size."""
+    return 1.0 if solving_order.structure.driven[name].pair.free_is_angle else float(solving_order.size)
 
 
 def _steps(given: Inputs) -> Iterator[tuple[str, Number]]:
     """Return the steps of every driver that moves."""
     for name, (value, *_) in given.drives.items():
         if np.ndim(value) > 1 and np.shape(value)[-1] > 1:
-            yield name, np.diff(value, axis=-1)
+            yield name, _step(value)
+
+
+def _step(value: Number) -> Number:
+    """Return the steps of a driver's values from pose to pose, (1 or designs, poses - 1). They may be one zero."""
+    return np.diff(value, axis=-1) if np.ndim(value) > 1 and np.shape(value)[-1] > 1 else np.zeros((1, 1))

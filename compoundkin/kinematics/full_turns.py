@@ -55,7 +55,7 @@ def turns_of(tracker: Tracker, k: int, link: str) -> Turns:
     per_pose = max(1, between(tracker.solving_order, given))
     for _ in range(DOUBLINGS):
         angles = _angles(tracker, k, link, given.refined(per_pose), 1.0 / per_pose, on_approach=False)
-        found = _unwrapped(angles, tracker.at * per_pose, before[:, -1])
+        found = _unwrapped(angles, round(tracker.at * per_pose), before[:, -1])
         if np.max(np.abs(np.diff(found, axis=1)), initial=0.0) <= FARTHEST:
             break
         per_pose *= 2

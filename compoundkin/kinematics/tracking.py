@@ -15,7 +15,7 @@ from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.first_pose import distance, first_state, shown
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
 from compoundkin.kinematics.group_paths import GroupPath, track
-from compoundkin.kinematics.groups import GroupSolver, equations_of
+from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.limits import NEAREST
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
@@ -131,7 +131,7 @@ class _First:
         number = tracker.fixed.get(k)
         state, by = first_state(tracker.solving_order, solver, block, tracker.shown.points, number)
         tracker.chosen_by[k] = tracker.shown.source if by == "drawing" else by
-        tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, equations_of(solver), state)
+        tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, state)
         return state
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
