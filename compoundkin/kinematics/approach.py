@@ -24,7 +24,7 @@ CLOSE = 1e-6
 def approach_path(
     solving_order: SolvingOrder, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
 ) -> tuple[Inputs, float, float]:
-    """Return the way from the drawn drivers to a place `at` of the motion, and the reference.
+    """Return the way from the drawn drivers to the motion, where, and the reference.
 
     `at` is the place of the motion, between two poses too, that is nearest to the drawing. The approach path is one pose where the drawing shows no driver, or shows them at a place of the motion. The
     reference is the place along the motion to which the modes belong: just before `at` where the path comes from
