@@ -56,13 +56,13 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     GIF needs CairoSVG and Pillow, MP4 the program ffmpeg too; SVG needs nothing and moves by itself in a browser. Poses
     that cannot be assembled are left out; stderr says why, and the exit code is 3.
     """
-    from compoundkin.kinematics.redundant_pairs import solvable
+    from compoundkin.structure import decompose
     from compoundkin.view.animation import animate
     from compoundkin.view.animation.animation import ready_for
 
     if path is not None:
         ready_for(path)
-    structure = solvable(loaded(file))
+    structure = decompose(loaded(file))
     order = 2 if asked["order"] is None else asked["order"]
     motion = solved_at(structure, _driven(structure, asked), {**asked, "order": order})
     animation = animate(motion, **{key: asked[key] for key in PASSED_ON})

@@ -41,13 +41,13 @@ def command(
     """
     from dataclasses import replace
 
-    from compoundkin.kinematics.redundant_pairs import solvable
+    from compoundkin.structure import decompose
     from compoundkin.view.report import Report, report
     from compoundkin.view.report.centres_section import derivation_section
     from compoundkin.view.report.motion_report import centres_report
     from compoundkin.view.report.report_data import NOT_SOLVED
 
-    structure = solvable(loaded(file))
+    structure = decompose(loaded(file))
     if structure.faults:
         put_report(report(structure), form, path)
         return unsolvable(len(structure.faults))

@@ -33,11 +33,11 @@ def command(file: str, form: str | None, path: str | None, **asked: Any) -> int:
     where it is worst are named.
     """
     from compoundkin.cli.progress import working
-    from compoundkin.kinematics.redundant_pairs import solvable
+    from compoundkin.structure import decompose
     from compoundkin.view.report import report
     from compoundkin.view.report.motion_report import check_report
 
-    structure = solvable(loaded(file))
+    structure = decompose(loaded(file))
     if structure.faults:
         put_report(report(structure), form, path)
         return unsolvable(len(structure.faults))

@@ -58,11 +58,11 @@ def reported(file: str, asked: Mapping[str, Any]) -> tuple[Report, bool]:
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
-    from compoundkin.kinematics.redundant_pairs import solvable
+    from compoundkin.structure import decompose
     from compoundkin.view.report import report
 
-    structure, design = solvable(loaded(file)), asked["design"]
-    if structure.faults:
+    structure, design = decompose(loaded(file)), asked["design"]
+    if structure.faults or structure.mechanism.unplaced:
         return report(structure), True
     motion = solved(structure, asked)
     with working("checking and reporting"):

@@ -36,11 +36,11 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     """
     from compoundkin.files import save
     from compoundkin.files.saved_files import csv_text
-    from compoundkin.kinematics.redundant_pairs import solvable
+    from compoundkin.structure import decompose
 
     if path is not None:
         form_of("table", path)
-    structure = solvable(loaded(file))
+    structure = decompose(loaded(file))
     motion = solved(structure, asked)
     table = motion.table(*asked["outputs"])
     if path is None:

@@ -29,11 +29,11 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
     from dataclasses import replace
 
     from compoundkin.cli.progress import working
-    from compoundkin.kinematics.redundant_pairs import solvable
+    from compoundkin.structure import decompose
     from compoundkin.view.report import report
 
     with working("taking the mechanism apart"):
-        structure = solvable(loaded(file))
+        structure = decompose(loaded(file))
         made = report(structure)
     if equations:
         from compoundkin.view.report.loop_sections import equations_section

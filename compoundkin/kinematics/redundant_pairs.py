@@ -9,30 +9,11 @@ import numpy as np
 
 from compoundkin.base.errors import NotAssembled, NotDetermined, Problem
 from compoundkin.base.series import Number
-from compoundkin.kinematics.groups import DYADS
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.structure import decompose
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.redundancy import mobility_analysis, without_redundancy
+from compoundkin.structure.redundancy import mobility_analysis
 from compoundkin.structure.redundancy.constraint_equations import ROUNDED
-
-
-def solvable(mechanism: Mechanism) -> Structure:
-    """Take a mechanism apart without what is redundant. This is where it moves although it is overconstrained.
-
-    `faults` are those that remain: of what does not move, and of drivers that are too many or missing.
-    """
-    return relaxed(decompose(mechanism))
-
-
-def relaxed(structure: Structure) -> Structure:
-    """Return the structure without what is redundant, in closed forms where it can. The forms are those of its groups.
-
-    The structure itself where nothing is overconstrained, or nothing moves.
-    """
-    return without_redundancy(structure, DYADS)
 
 
 def rank_diagnosis(structure: Structure) -> str:

@@ -18,7 +18,7 @@ from compoundkin.kinematics.configuration import Configuration, dimensions_at, n
 from compoundkin.kinematics.driver_values import by_name, inputs, times_of
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis, relaxed
+from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER
@@ -106,8 +106,6 @@ def solving_order_of(mechanism: Mechanism | Structure) -> SolvingOrder:
     solving_order: SolvingOrder | None = owner.__dict__.get("_solving_order")
     if solving_order is None:
         structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
-        if structure.faults:
-            structure = relaxed(structure)
         if structure.faults:
             problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
             raise NotDetermined(problems, heading=f"{owner.title!r} cannot be solved{rank_diagnosis(structure)}")

@@ -102,8 +102,9 @@ Item: TypeAlias = Link | Pair | Drive | Mode | Drawn | Expectation
 
 
 def link(name: str, *letters: str, **points: Any) -> Link:
-    """Return a link with its points. ``A=(x, y)`` or complex numbers in the link's frame, or letters alone as drawn.
+    """Return a link with its points. ``A=(x, y)`` or complex numbers in the link's frame, or letters alone.
 
+    The places of letters alone are read off the drawing; without any, the mechanism has a structure, but no dimensions.
     Raises InvalidMechanism for a point that is not a planar vector.
 
     >>> link("crank", E=(0, 0), D=(14, 0)).points["D"]

@@ -10,7 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from compoundkin.base.display import ShowsPicture, counted
-from compoundkin.base.errors import InvalidMechanism, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, nearest
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Link, Mode
@@ -18,6 +18,9 @@ from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
 from compoundkin.model.pairs.contact import as_profiled
 from compoundkin.model.validation import problems_of
 from compoundkin.model.written import Written
+
+# An error names so many links.
+MOST_NAMED = 12
 
 
 class Mechanism(Written, ShowsPicture):
@@ -64,13 +67,18 @@ class Mechanism(Written, ShowsPicture):
             raise InvalidMechanism(problems, heading=f"{title!r} cannot be built")
 
     def _misfits(self) -> Iterator[Problem]:
-        """Find dimensions of pairs that do not fit, where nothing else is wrong."""
-        for where, pair in self.placed_pairs:
+        """Find dimensions of pairs that do not fit, where nothing else is wrong and all points have places."""
+        for where, pair in self.placed_pairs if not self.unplaced else ():
             yield from pair.misfits(self.geometry, where)
 
     @cached_property
     def geometry(self) -> Geometry:
-        """The dimensions as numbers, those of links given as drawn read off the drawing."""
+        """The dimensions as numbers, those of links given as drawn read off the drawing.
+
+        Raises InvalidInput where points have neither coordinates nor a place in the drawing.
+        """
+        if self.unplaced:
+            raise InvalidInput(_places_wanted(self.unplaced), heading=f"{self.title!r} has no dimensions yet")
         points: dict[str, Mapping[str, Number]] = {}
         poses: dict[str, Pose] = {}
         fixed = self.links[FRAME].points
@@ -126,6 +134,18 @@ class Mechanism(Written, ShowsPicture):
     def __repr__(self) -> str:
         links, drivers = counted(len(self.links), "link"), counted(len(self.drives), "driver")
         return f"Mechanism({self.title!r}: {links}, {drivers})"
+
+
+def _places_wanted(unplaced: Mapping[str, tuple[str, ...]]) -> Iterator[Problem]:
+    """Name links whose points have no place, and say how to give them one."""
+    for number, (name, letters) in enumerate(unplaced.items()):
+        if number == MOST_NAMED:
+            yield Problem("links", f"{len(unplaced) - number} more links have points without a place")
+            return
+        what = f"{'the point' if len(letters) == 1 else 'the points'} {', '.join(letters)}"
+        what += f" of {name!r} {'has' if len(letters) == 1 else 'have'} no place"
+        remedy = f"give all coordinates as {letters[0]} = (x, y), or a place in the drawing; the structure needs none"
+        yield Problem(f"links.{name}.points", what, "" if number else remedy)
 
 
 def same(a: Any, b: Any) -> bool:

@@ -28,14 +28,15 @@ _OBLIQUE = cmath.rect(1.0, 1.0)
 
 
 def point_problems(mechanism: Written) -> Iterator[Problem]:
-    """Find points that are missing, no numbers, or coincident."""
+    """Find points that are misspelt in the drawing, no numbers, or coincident."""
     size = _size(mechanism)
     for name, link in mechanism.links.items():
         if not link.points:
             yield Problem(f"links.{name}.points", "a link needs at least one point")
         for letter, p in link.points.items():
             where = f"links.{name}.points.{letter}"
-            if p is None and letter not in mechanism.sketch:
+            if p is None and letter not in mechanism.sketch and not set(mechanism.sketch) <= set(mechanism.carriers):
+                # the drawing has a letter that no link has: one of the two is misspelt
                 yield Problem(where, "this point is neither given nor drawn", _undrawn(letter, mechanism.sketch))
             elif p is not None and not is_finite(p):
                 yield Problem(where, f"{p!r} is empty or not finite")
@@ -58,7 +59,7 @@ def is_finite(value: Any) -> bool:
 
 
 def _undrawn(letter: str, sketch: Mapping[str, Any]) -> str:
-    return f"add {letter} to the drawing" + (f"; {nearest(letter, list(sketch))}" if sketch else "")
+    return f"add {letter} to the drawing; {nearest(letter, list(sketch))}"
 
 
 def _lengths(mechanism: Written, name: str, size: float) -> Iterator[Problem]:

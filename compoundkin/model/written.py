@@ -53,6 +53,15 @@ class Written:
         return {k: v for item in self.items if isinstance(item, Drawn) for k, v in item.points.items()}
 
     @cached_property
+    def unplaced(self) -> dict[str, tuple[str, ...]]:
+        """The points that have neither coordinates nor a place in the drawing, by their links."""
+        without = {
+            name: tuple(letter for letter, p in item.points.items() if p is None and letter not in self.sketch)
+            for name, item in self.links.items()
+        }
+        return {name: letters for name, letters in without.items() if letters}
+
+    @cached_property
     def carriers(self) -> dict[str, tuple[str, ...]]:
         """The links that carry each letter, in the order written."""
         found: dict[str, list[str]] = {}

@@ -15,7 +15,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.assur_groups import Binder, all_pairs
@@ -33,7 +33,9 @@ def decompose(mechanism: Mechanism) -> Structure:
     """Take a mechanism apart into driven links and Assur groups in solving order.
 
     Nothing is raised for a mechanism that is over- or under-constrained: `faults` name the links, by how
-    much, and a remedy. The work grows about linearly with the number of links.
+    much, and a remedy. One that moves though it is overconstrained is taken apart as it is solved, without what is
+    redundant, which `relaxation` names; that alone depends on dimensions. The work grows about linearly with the number
+    of links.
 
     >>> from compoundkin.model.elements import drive, link
     >>> four_bar = Mechanism(
@@ -48,7 +50,22 @@ def decompose(mechanism: Mechanism) -> Structure:
     [('RRR', ('coupler', 'rocker'))]
     """
     with _without_collection():
-        return decomposed(mechanism, None)
+        structure = decomposed(mechanism)
+    if not any(fault.kind == "over" for fault in structure.faults):
+        return structure
+    if mechanism.unplaced:
+        return replace(structure, faults=tuple(map(_at_general_dimensions, structure.faults)))
+    # what looks at dimensions is loaded for those few that need it
+    from compoundkin.structure.redundancy.diagnosis import without_redundancy
+
+    return without_redundancy(structure, decomposed)
+
+
+def _at_general_dimensions(fault: Fault) -> Fault:
+    """Return a fault of a mechanism without dimensions, which say whether what is too much follows from the rest."""
+    if fault.kind != "over":
+        return fault
+    return replace(fault, remedy=f"{fault.remedy}, or give dimensions at which it moves")
 
 
 @contextmanager
@@ -63,8 +80,8 @@ def _without_collection() -> Iterator[None]:
             gc.enable()
 
 
-def decomposed(mechanism: Mechanism, relaxation: Relaxation | None) -> Structure:
-    """Take a mechanism apart, part of some pairs left out."""
+def decomposed(mechanism: Mechanism, relaxation: Relaxation | None = None) -> Structure:
+    """Take a mechanism apart whatever its dimensions, part of some pairs left out if such are named."""
     dropped = relaxation.dropped if relaxation else ()
     bodies = composites(mechanism)
     system = system_of(mechanism, bodies, dropped)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Protocol
@@ -132,7 +132,7 @@ def loops_through(structure: LinksAndPairs, pairs: Sequence[Pair]) -> tuple[Loop
     names = _numbered(structure)
     number = {name: k for k, name in enumerate(names)}
     edges = [(number[pair.members[0]], number[pair.members[1]]) for pair in pairs]
-    return tuple(_loop(structure, [pairs[k] for k in cycle]) for cycle in cycle_basis(len(names), edges))
+    return tuple(_loop(number, [pairs[k] for k in cycle]) for cycle in cycle_basis(len(names), edges))
 
 
 def simple_loops(structure: LinksAndPairs, limit: int | None = None, longest: int | None = None) -> Iterator[Loop]:
@@ -151,6 +151,7 @@ def simple_loops(structure: LinksAndPairs, limit: int | None = None, longest: in
 
     names = _numbered(structure)
     number = {name: k for k, name in enumerate(names)}
+    place = {pair.name: k for k, pair in enumerate(structure.pairs)}
     # with pairs as nodes, two pairs between the same links are two ways
     graph = networkx.Graph()
     graph.add_nodes_from(range(len(names)))
@@ -159,19 +160,17 @@ def simple_loops(structure: LinksAndPairs, limit: int | None = None, longest: in
     bound = None if longest is None else 2 * longest
     cycles = networkx.simple_cycles(graph, length_bound=bound)
     for cycle in islice(cycles, limit):
-        yield _turned(structure, [structure.pairs[k - len(names)] for k in cycle if k >= len(names)])
+        yield _turned(number, place, [structure.pairs[k - len(names)] for k in cycle if k >= len(names)])
 
 
-def _turned(structure: LinksAndPairs, pairs: Sequence[Pair]) -> Loop:
-    """Return a loop from its first link on, whichever pair is named first."""
-    order = {name: k for k, name in enumerate(_numbered(structure))}
+def _turned(order: Mapping[str, int], place: Mapping[str, int], pairs: Sequence[Pair]) -> Loop:
+    """Return a loop from its first link on, whichever pair is named first. Links and pairs have their `place`."""
     first = min((name for pair in pairs for name in pair.members[:2]), key=order.__getitem__)
     at = next(k for k in range(len(pairs)) if all(first in pairs[j].members[:2] for j in (k, k - 1)))
     around = [*pairs[at:], *pairs[:at]]
-    place = {pair.name: k for k, pair in enumerate(structure.pairs)}
     if len(around) > 2 and place[around[-1].name] < place[around[0].name]:
         around.reverse()
-    return _loop(structure, around)
+    return _loop(order, around)
 
 
 def _numbered(structure: LinksAndPairs) -> list[str]:
@@ -197,10 +196,9 @@ def loop_count(structure: LinksAndPairs) -> int:
     return len(structure.pairs) - len(leader) + pieces
 
 
-def _loop(structure: LinksAndPairs, pairs: Sequence[Pair]) -> Loop:
-    """Return the loop of pairs that are given in order around it."""
+def _loop(order: Mapping[str, int], pairs: Sequence[Pair]) -> Loop:
+    """Return the loop of pairs that are given in order around it. `order` is that of the links."""
     shared = set(pairs[-1].members[:2]) & set(pairs[0].members[:2])
-    order = {name: k for k, name in enumerate(_numbered(structure))}
     link = min(shared, key=order.__getitem__)
     links = []
     for pair in pairs:

@@ -13,6 +13,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.structure.cycles import find
+from compoundkin.structure.decomposition import decomposed
 from compoundkin.synthesis.chains import Coloured, canonical
 from compoundkin.synthesis.chains.coloured_graphs import Permutation
 from compoundkin.synthesis.chains.mechanism_names import titled
@@ -131,7 +132,7 @@ class _Choices:
         names = swapped_names(frame)
         for chosen, number in self._driven(frame):
             drives = tuple(driver_at(names, self.places[k]) for k in chosen)
-            yield self._found(frame, chosen, alike * number, decompose(outline.driven(drives)))
+            yield self._found(frame, chosen, alike * number, decomposed(outline.driven(drives)))
 
     def _driven(self, frame: str) -> Iterator[tuple[tuple[int, ...], int]]:
         """Yield places for drivers as indices, alike ones once. With each comes for how many it stands."""

@@ -6,6 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 
+import numpy as np
+
+from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
@@ -40,7 +43,8 @@ class UncheckedMechanism(Mechanism):
     def of(cls, mechanism: Mechanism, frame: str) -> UncheckedMechanism:
         """Return one with another frame, and no drivers."""
         names = swapped_names(frame)
-        links = [replace(item, name=names.get(name, name), points=mechanism.geometry.points[name])
+        points = _general_points(mechanism) if mechanism.unplaced else mechanism.geometry.points
+        links = [replace(item, name=names.get(name, name), points=points[name])
                  for name, item in mechanism.links.items()]  # fmt: skip
         pairs = [renamed_pair(pair, names) for pair in mechanism.written_pairs]
         return cls(mechanism.title, (*links, *pairs))
@@ -48,6 +52,12 @@ class UncheckedMechanism(Mechanism):
     def driven(self, drives: tuple[Drive, ...]) -> UncheckedMechanism:
         """Return it with drivers."""
         return UncheckedMechanism(self.title, (*self.items, *drives))
+
+
+def _general_points(mechanism: Mechanism) -> Mapping[str, Mapping[str, Number]]:
+    """Return places anywhere for the points of a mechanism that has letters alone."""
+    rng = np.random.default_rng(0)
+    return {name: {k: complex(*rng.standard_normal(2)) for k in item.points} for name, item in mechanism.links.items()}
 
 
 def swapped_names(frame: str) -> dict[str, str]:

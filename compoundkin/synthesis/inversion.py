@@ -110,7 +110,7 @@ def _replaced(mechanism: Mechanism, instead: str) -> Drive | None:
 def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
     """Return the mechanism with the drawn value for a driven slide."""
     driven = decompose(mechanism).driven.get(new.name)
-    if driven is None or driven.pair.free_is_angle:
+    if driven is None or driven.pair.free_is_angle or mechanism.unplaced:
         return mechanism
     pair = driven.pair
     geometry = mechanism.geometry
@@ -140,13 +140,15 @@ def _with_axes(mechanism: Mechanism, link: Link) -> Link:
     """Return the old frame with two points that keep its axes if needed."""
     counted = [name for pair in mechanism.written_pairs for name in pair.members]
     counted += [name for item in mechanism.drives for name in (item.link, item.on)]
-    if not link.is_drawn or FRAME not in counted:
+    if not link.is_drawn or not mechanism.sketch or FRAME not in counted:
         return link
     return replace(link, points={**dict.fromkeys(_AXES), **link.points})
 
 
 def _seen_from(mechanism: Mechanism, link: str) -> dict[str, Number]:
     """Return where all points are in one pose, as seen from a link. None where nothing shows it."""
+    if mechanism.unplaced and not mechanism.sketch:
+        return {}
     if not any(item.is_drawn for item in mechanism.links.values()):
         points, pose = _assembled(mechanism), None
         if points:

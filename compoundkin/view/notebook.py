@@ -71,7 +71,12 @@ def _pictured(what: Mechanism | Structure | Motion) -> str | None:
 
 
 def _drawn(mechanism: Mechanism) -> str | None:
-    """The sketch; none where a pose would have to be searched that is not likely to exist, which takes seconds."""
+    """The sketch; none where a pose would have to be searched that is not likely to exist, which takes seconds.
+
+    The graph of what has letters alone.
+    """
+    if mechanism.unplaced:
+        return draw(mechanism, kind="graph").svg
     return None if decompose(mechanism).faults and not mechanism.sketch else draw(mechanism).svg
 
 

@@ -11,7 +11,6 @@ from sphinx.application import Sphinx
 
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
-from compoundkin.kinematics.redundant_pairs import solvable
 from compoundkin.structure import roman
 from compoundkin.synthesis.chains import structure_name
 from compoundkin.view.sketch.shown_pose import solved_over
@@ -113,8 +112,7 @@ def cell(name: str, title: str) -> str:
 def structure_of(mechanism: ck.Mechanism) -> str:
     """What a mechanism is made of, in one line: links, mobility, groups in solving order, the name of its chain."""
     structure = ck.decompose(mechanism)
-    solved = solvable(mechanism) if structure.faults else structure
-    groups = [f"{group.name} (class {roman(group.class_)})" for group in solved.groups]
+    groups = [f"{group.name} (class {roman(group.class_)})" for group in structure.groups]
     name = structure_name(structure).title
     many = "Assur group" if len(groups) == 1 else "Assur groups"
     return f"{len(mechanism.links)} links; {mobility_of(structure)}; {many} {', '.join(groups)}; {name}"
@@ -123,7 +121,7 @@ def structure_of(mechanism: ck.Mechanism) -> str:
 def mobility_of(structure: ck.results.Structure) -> str:
     """The count, and where that is not true the mobility of the mechanism's own dimensions."""
     count = structure.mobility.freedoms
-    if not structure.faults:
+    if not structure.relaxation:
         return f"mobility {count}"
     return f"counted mobility {count}, true mobility {ck.mobility_analysis(structure.mechanism).finite}"
 

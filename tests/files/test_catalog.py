@@ -20,9 +20,9 @@ from compoundkin.analysis.checks import verify
 from compoundkin.base.errors import InvalidInput, UnknownName
 from compoundkin.files import dumps, load, loads, schema, shipped_mechanisms
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.redundant_pairs import solvable
 from compoundkin.model.elements import Expectation
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure import decompose
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "catalog.md"
@@ -84,7 +84,7 @@ def test_says_what_it_is(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_decomposes_without_faults(name: str) -> None:
-    structure = solvable(mechanism(name))
+    structure = decompose(mechanism(name))
     assert structure.faults == ()
     assert len(structure.groups) > 0
 
@@ -461,7 +461,7 @@ def page() -> str:
     ]
     for name in NAMES:
         item = mechanism(name)
-        groups = ", ".join(group.name for group in solvable(item).groups)
+        groups = ", ".join(group.name for group in decompose(item).groups)
         cells = [
             f"[`{name}`](../catalog/{name}.toml)",
             item.title,

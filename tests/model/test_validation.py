@@ -51,7 +51,6 @@ MISTAKES: list[tuple[str, Callable[[], list[tuple[str, str, str]]], str, str, st
     ("no points", lambda: problems(ck.link("x")), "links.x.points", "at least one point", ""),
     ("not finite", lambda: problems(crank=ck.link("crank", A=0, B=np.nan)), "links.crank.points.B", "not finite", ""),
     ("empty array", lambda: problems(crank=ck.link("crank", A=0, B=np.zeros(0))), "links.crank.points.B", "empty", ""),
-    ("not drawn", lambda: problems(ck.link("x", "A", "Z")), "links.x.points.Z", "neither given nor drawn", "add Z to the drawing"),
     ("misdrawn", lambda: problems(ck.link("x", "A", "Zed"), ck.drawn(A=0, Zet=1)), "links.x.points.Zed", "neither given nor drawn", "did you mean 'Zet'"),
     ("drawn for none", lambda: problems(ck.drawn(Z=1)), "drawn.Z", "no link carries this point", "known: A, D"),
     ("drawn not finite", lambda: problems(ck.drawn(B=np.inf)), "drawn.B", "not finite", ""),

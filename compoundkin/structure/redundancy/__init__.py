@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from compoundkin.structure.redundancy.diagnosis import without_redundancy
 from compoundkin.structure.redundancy.finite_motion import PassiveFreedom
 from compoundkin.structure.redundancy.mobility_analysis import MobilityAnalysis, MobilityGap, mobility_analysis
 
-__all__ = ["MobilityAnalysis", "MobilityGap", "PassiveFreedom", "mobility_analysis", "without_redundancy"]
+__all__ = ["MobilityAnalysis", "MobilityGap", "PassiveFreedom", "mobility_analysis"]

@@ -6,16 +6,16 @@ forms where it can.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 
 from compoundkin.base.poses import Pose
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.composites import composites
-from compoundkin.structure.decomposition import decomposed
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import Group, Relaxation
 from compoundkin.structure.redundancy.assembled_pose import AssembledPose, assemble, corrected
@@ -30,11 +30,17 @@ FAR = 100.0
 # At a pose that is found by iteration where the equations are singular, residuals of 1e-15 leave the pose, and so what
 # ought to be zero, uncertain by their root.
 ITERATED = 1e-6
+# The bodies of a dyad, and the letters of its pairs where it has a closed form.
+DYAD, SIMPLE = 2, frozenset("RP")
 # How many structures are compared, and by how much weaker than the first choice others may be.
 COMPARED = 400
 WEAKER = 0.1
 # A group without a closed form takes so many times as long as a dyad, and more with the number of its bodies.
 GENERAL = 10
+
+
+# Takes a mechanism apart, part of some pairs left out.
+Decomposed: TypeAlias = Callable[[Mechanism, Relaxation], Structure]
 
 
 @dataclass(frozen=True)
@@ -107,31 +113,35 @@ def _diagnosed(mechanism: Mechanism, tolerance: Tolerance, poses: Mapping[str, P
     return Diagnosis(equations, corrected(equations, equations.state(poses)))
 
 
-def without_redundancy(structure: Structure, closed: Collection[str]) -> Structure:
+def without_redundancy(structure: Structure, decomposed: Decomposed) -> Structure:
     """Return the structure without what is redundant. This is where its mechanism moves although it is overconstrained.
 
-    The structure itself where nothing is overconstrained, or nothing moves. `closed` are the names of the groups that
-    have closed forms: what remains falls into these where it can.
+    The structure itself where nothing moves, or where its equations are too many to tell. `decomposed` takes the
+    mechanism apart without some parts of pairs; what remains falls into dyads, which have closed forms, where it can.
     """
     mechanism = structure.mechanism
-    if not any(fault.kind == "over" for fault in structure.faults) or 3 * len(mechanism.links) > WIDEST:
+    if 3 * len(mechanism.links) > WIDEST:
         return structure
     with np.errstate(all="ignore"):
         found = diagnose(mechanism)
         if not found.pose.is_closed or found.motion.along.shape[1] <= len(structure.passive):
             return structure
-        return _chosen(structure, found, closed)
+        return _chosen(structure, found, decomposed)
 
 
-def _chosen(structure: Structure, found: Diagnosis, closed: Collection[str]) -> Structure:
+def _chosen(structure: Structure, found: Diagnosis, decomposed: Decomposed) -> Structure:
     states = found.stress.shape[1]
     picked = chosen(found.candidates, states)
     if not picked:
         return structure
     pose = _relaxation(found)
+
+    def made(parts: Sequence[Candidate]) -> Structure:
+        return decomposed(structure.mechanism, replace(pose, dropped=tuple(one.dropped for one in parts)))
+
     limit, order = WEAKER * strength(picked), found.candidates
-    best = _made(structure, picked, pose)
-    least, left = _cost(best, picked, order, closed), COMPARED
+    best = made(picked)
+    least, left = _cost(best, picked, order), COMPARED
     improved = True
     while improved and left > 0:
         improved = False
@@ -141,8 +151,8 @@ def _chosen(structure: Structure, found: Diagnosis, closed: Collection[str]) -> 
             if sum(len(one.forces) for one in other) != states or strength(other) < limit:
                 continue
             left -= 1
-            trial = _made(structure, other, pose)
-            cost = _cost(trial, other, order, closed)
+            trial = made(other)
+            cost = _cost(trial, other, order)
             if cost < least:
                 best, least, picked, improved = trial, cost, other, True
                 break
@@ -159,27 +169,21 @@ def _neighbours(picked: Sequence[Candidate], order: Sequence[Candidate]) -> list
     return found
 
 
-def _made(structure: Structure, picked: Sequence[Candidate], pose: Relaxation) -> Structure:
-    return decomposed(structure.mechanism, replace(pose, dropped=tuple(one.dropped for one in picked)))
-
-
-def _cost(
-    made: Structure, picked: Sequence[Candidate], order: Sequence[Candidate], closed: Collection[str]
-) -> tuple[int, ...]:
+def _cost(made: Structure, picked: Sequence[Candidate], order: Sequence[Candidate]) -> tuple[int, ...]:
     """Weigh what is left undecomposed or may fail, how hard the groups are, and what is left out."""
     places = list(dict.fromkeys(one.place for one in order))
     early = sum(len(places) - places.index(one.place) for one in picked)
     oblique = sum(not one.is_aligned for one in picked)
-    return _excess(made), oblique, sum(_effort(group, closed) for group in made.groups), early
+    return _excess(made), oblique, sum(_effort(group) for group in made.groups), early
 
 
 def _excess(structure: Structure) -> int:
     return sum(fault.amount for fault in structure.faults)
 
 
-def _effort(group: Group, closed: Collection[str]) -> int:
+def _effort(group: Group) -> int:
     count = len(group.bodies)
-    is_closed = group.name in closed or (count == 1 and len(group.outer) == 2)
+    is_closed = (count == DYAD and set(group.name) <= SIMPLE) or (count == 1 and len(group.outer) == 2)
     return count if is_closed else GENERAL * count * count
 
 

@@ -135,7 +135,7 @@ def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose
 
     It tells as well what is redundant or passive. The pose is that of `poses`, of order 0, by the links' names; else
     the drawn one, made exact; without a drawing, one at the drivers' first values. Lengths of several designs are those
-    of the first.
+    of the first. Of a mechanism without dimensions the first two are told.
 
     Source: the count is that of Chebyshev and Gruebler; the others are the nullity of the constraint Jacobian.
 
@@ -161,6 +161,8 @@ def _analysed(structure: Structure, poses: Mapping[str, Pose] | None) -> Mobilit
         return MobilityAnalysis(counts[0], counts[0], 0, counts[1])
     rank = rank_of(equations.generic, GENERIC)
     generic = equations.width - rank - passive, equations.held - rank
+    if structure.mechanism.unplaced:
+        return MobilityAnalysis(counts[0], *generic, counts[1])
     found = diagnose(structure.mechanism, poses)
     equations = found.equations
     if not found.pose.is_closed:

@@ -20,7 +20,7 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME, Drive, Item, drawn, drive, link
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure import decompose
+from compoundkin.structure.decomposition import decomposed
 from compoundkin.synthesis.chains.chain import Chain
 from compoundkin.synthesis.chains.chain_names import chain_name
 
@@ -70,7 +70,7 @@ def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = 
     for chosen in combinations(sorted(pins, key=lambda pair: frame not in pair), max(chain.mobility, 0)):
         driven = [_drive(items, names, *(pair if pair[0] == frame else pair[::-1])) for pair in chosen]
         mechanism = Mechanism(title, *items, *driven)
-        if not decompose(mechanism).faults:
+        if not decomposed(mechanism).faults:
             return mechanism
     what = f"no drivers determine a chain of mobility {chain.mobility} with a part that is rigid or joined to nothing"
     raise InvalidInput(Problem("chain", what, "take a chain whose every part has a mobility of one at least"))

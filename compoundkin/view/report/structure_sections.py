@@ -16,17 +16,32 @@ from compoundkin.view.report.wording import counted, joined, kind_of_link, liste
 
 # A coordinate below this part of the mechanism's size is the rounding of a zero.
 ROUNDING = 1e-12
+PLACED = ", in the link's own frame"
+# So many links are named in a sentence.
+MOST_NAMED = 12
 
 
 def links_section(structure: Structure, design: int = 0) -> Section:
     """Return the links. What each is called by its number of pairs, its points in its own frame, its pairs."""
-    pairs, floor = _pairs_by_link(structure), ROUNDING * structure.mechanism.geometry.size
+    pairs, placed = _pairs_by_link(structure), not structure.mechanism.unplaced
+    points = _places(structure, design) if placed else _letters(structure)
     rows = tuple(
-        (name, kind_of_link(count), _points(structure, name, floor, design), ", ".join(pairs[name]))
+        (name, kind_of_link(count), points[name], ", ".join(pairs[name]))
         for name, count in pair_counts(structure).items()
     )
-    columns = (Column("link"), Column("kind"), Column("points, in the link's own frame"), Column("pairs"))
-    return Section("links", "Links", (Paragraph(_by_kind(structure)), TableBlock(columns, rows)))
+    columns = (Column("link"), Column("kind"), Column(f"points{PLACED if placed else ''}"), Column("pairs"))
+    said = Paragraph(_by_kind(structure)), *([] if placed else [Paragraph(_without_places(structure))])
+    return Section("links", "Links", (*said, TableBlock(columns, rows)))
+
+
+def _without_places(structure: Structure) -> str:
+    named = list(structure.mechanism.unplaced)
+    which = "all links" if len(named) == len(structure.mechanism.links) else listed(named[:MOST_NAMED])
+    more = f" and {len(named) - MOST_NAMED} more" if len(named) > MOST_NAMED and which != "all links" else ""
+    return (
+        f"Points of {which}{more} have no place: what follows is what the letters alone tell. "
+        "To solve it give every point coordinates or draw it."
+    )
 
 
 def _by_kind(structure: Structure) -> str:
@@ -34,9 +49,19 @@ def _by_kind(structure: Structure) -> str:
     return f"{counted(len(structure.mechanism.links), 'link')}, the frame among them: {listed(kinds)}."
 
 
-def _points(structure: Structure, link: str, floor: float, design: int) -> str:
-    points = structure.mechanism.geometry.points[link]
-    return "  ".join(f"{name} {_place(p, floor, design)}" for name, p in points.items())
+def _letters(structure: Structure) -> dict[str, str]:
+    """The points of every link by their letters."""
+    return {name: ", ".join(item.letters) for name, item in structure.mechanism.links.items()}
+
+
+def _places(structure: Structure, design: int) -> dict[str, str]:
+    """The points of every link with their places."""
+    geometry = structure.mechanism.geometry
+    floor = ROUNDING * geometry.size
+    return {
+        link: "  ".join(f"{name} {_place(p, floor, design)}" for name, p in points.items())
+        for link, points in geometry.points.items()
+    }
 
 
 def _place(point: Number, floor: float, design: int) -> str:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
 from compoundkin.kinematics import Motion, solve
-from compoundkin.kinematics.redundant_pairs import relaxed, solvable
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure import Structure
+from compoundkin.structure import Structure, decompose
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.report_data import Outcome
 from compoundkin.view.report.report_forms import Report, Subject
@@ -69,7 +68,7 @@ def page(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), desi
 
 def _solved(mechanism: Mechanism) -> Subject:
     """The motion over the drivers' own ranges; the structure of what has faults or no ranges."""
-    structure = solvable(mechanism)
+    structure = decompose(mechanism)
     if structure.faults:
         return structure
     with warnings.catch_warnings():
@@ -83,7 +82,6 @@ def _solved(mechanism: Mechanism) -> Subject:
 
 def _of_structure(structure: Structure) -> Report:
     """Report a structure before it is solved, one with faults included."""
-    structure = relaxed(structure)
     outcome = Outcome(not structure.faults, 0, 0, 0, 0, 0, 0)
     about = about_section(structure, structure_in_short(structure))
     faults = [faults_section(structure)] if structure.faults else []

@@ -13,7 +13,7 @@ from compoundkin.view.sketch.centre_pictures import circle_diagram
 from compoundkin.view.sketch.graph_picture import graph
 from compoundkin.view.sketch.picture import Picture
 from compoundkin.view.sketch.scene import groups_of, numbers_of
-from compoundkin.view.sketch.shown_pose import Drawable, Wishes, scene_of, solved_over
+from compoundkin.view.sketch.shown_pose import Drawable, Wishes, scene_of
 from compoundkin.view.sketch.sketches import sketch
 from compoundkin.view.sketch.structure_pictures import groups_picture, loops, loops_in_graph
 from compoundkin.view.sketch.vectors import vector_polygon
@@ -84,7 +84,7 @@ def _circle(what: Drawable, wishes: Wishes) -> Picture:
 
 
 def _graph(what: Drawable, wishes: Wishes) -> Picture:
-    structure = _without_redundancy(_structure(what))
+    structure = _structure(what)
     return graph(structure, numbers_of(structure), groups_of(structure), wishes.size)
 
 
@@ -105,15 +105,9 @@ def _structure(what: Drawable) -> Structure:
     return what if isinstance(what, Structure) else decompose(what)
 
 
-def _without_redundancy(structure: Structure) -> Structure:
-    """The structure as solving finds it, which may show that some of its pairs are redundant."""
-    motion = solved_over(structure.mechanism) if structure.faults else None
-    return structure if motion is None else motion.structure
-
-
 def _taken_apart(what: Drawable) -> Structure:
     """The structure; raises NotDetermined where it cannot be taken apart."""
-    structure = _without_redundancy(_structure(what))
+    structure = _structure(what)
     if structure.faults:
         problems = [Problem("structure", fault.text, fault.remedy) for fault in structure.faults]
         raise NotDetermined(problems, heading=f"{structure.mechanism.title!r} cannot be taken apart")

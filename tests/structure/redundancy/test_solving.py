@@ -8,8 +8,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import compoundkin as ck
-from compoundkin.kinematics.redundant_pairs import solvable
 from compoundkin.structure import decompose
+from compoundkin.structure.decomposition import decomposed
 from tests.structure.redundancy.special import bars, cranks, guides, wedge, with_parallel_crank
 
 MOBILE = {
@@ -34,14 +34,40 @@ def test_is_solved_and_verified(name):
 @pytest.mark.parametrize("name", MOBILE)
 def test_as_much_is_left_out_as_is_redundant(name):
     mechanism = MOBILE[name]
-    structure = solvable(mechanism)
+    structure = decompose(mechanism)
     assert structure.faults == ()
-    assert decompose(mechanism).faults != ()
+    in_general = decomposed(mechanism)
+    assert in_general.faults != ()
     found = ck.mobility_analysis(mechanism)
     kept = [part.kept.held if part.kept else 0 for part in structure.relaxation.dropped]
     assert 2 * len(kept) - sum(kept) == found.redundant
     # the user's own pairs are all there, and nothing else
-    assert sorted(p.code for p in structure.pairs) == sorted(p.code for p in decompose(mechanism).pairs)
+    assert sorted(p.code for p in structure.pairs) == sorted(p.code for p in in_general.pairs)
+
+
+@pytest.mark.parametrize("name", MOBILE)
+def test_decomposing_gives_the_groups_that_solving_uses(name):
+    mechanism = MOBILE[name]
+    structure, used = decompose(mechanism), ck.solve(mechanism).structure
+    assert [group.links for group in structure.groups] == [group.links for group in used.groups]
+    assert [group.name for group in structure.groups] == [group.name for group in used.groups]
+    assert [pair.name for pair in structure.redundant] == [pair.name for pair in used.redundant] != []
+    assert ck.draw(mechanism, kind="groups").title == f"{mechanism.title}, taken apart"
+    assert ck.draw(structure, kind="groups").description == ck.draw(mechanism, kind="groups").description
+
+
+def test_without_dimensions_it_is_said_that_they_would_tell():
+    letters = [ck.link(name, *item.points) for name, item in cranks().links.items()]
+    (fault,) = decompose(ck.Mechanism("Three cranks", *letters, ck.drive("crank"))).faults
+    assert (fault.kind, fault.amount) == ("over", 1)
+    assert fault.remedy.endswith("or give dimensions at which it moves")
+
+
+def test_what_is_not_overconstrained_is_not_looked_at_twice(monkeypatch):
+    """The dimensions are asked for only where the count finds too much."""
+    monkeypatch.setattr("compoundkin.structure.redundancy.diagnosis.diagnose", lambda *_: pytest.fail("diagnosed"))
+    for name in ("six-bar", "four-bar-norton", "slider-crank"):
+        assert decompose(ck.catalog.load_named(name)).relaxation is None
 
 
 def test_the_third_crank_turns_as_the_first():
@@ -140,23 +166,23 @@ def test_others_are_refused_with_the_reason(reason):
 
 
 def test_faults_that_remain_count_what_is_really_wrong():
-    (fault,) = solvable(cranks(ck.drive("crank"), ck.drive("second"))).faults
+    (fault,) = decompose(cranks(ck.drive("crank"), ck.drive("second"))).faults
     assert (fault.kind, fault.amount) == ("over", 1)
     assert fault.remedy.startswith("remove one of the drivers crank, second")
-    (fault,) = solvable(wedge()).faults
+    (fault,) = decompose(wedge()).faults
     assert (fault.kind, fault.amount) == ("under", 1)
-    (fault,) = solvable(wedge(ck.drive("wedge"), ck.drive("ram", pair="column"))).faults
+    (fault,) = decompose(wedge(ck.drive("wedge"), ck.drive("ram", pair="column"))).faults
     assert (fault.kind, fault.amount) == ("over", 1)
 
 
 def test_faults_of_a_loop_of_slides_do_not_contradict_each_other():
-    over, under = decompose(wedge()).faults
+    over, under = decomposed(wedge()).faults
     assert over.remedy == "nothing has to be changed: they move all the same"
     assert under.remedy.startswith("add a driver")
 
 
 def test_sound_mechanisms_are_left_as_they_are():
-    structure = solvable(ck.catalog.load_named("six-bar"))
+    structure = decompose(ck.catalog.load_named("six-bar"))
     assert structure.relaxation is None
     assert structure.redundant == ()
 

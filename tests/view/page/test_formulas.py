@@ -10,7 +10,6 @@ import pytest
 import compoundkin as ck
 from compoundkin.analysis.equations import latex, loop_equations, text
 from compoundkin.files import shipped_mechanisms
-from compoundkin.kinematics.redundant_pairs import solvable
 from compoundkin.view.page.mathml import Unread, mathml
 from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section
 from compoundkin.view.report.report_forms import Report
@@ -36,7 +35,7 @@ def words(equation: object) -> set[str]:
 
 @pytest.mark.parametrize("name", sorted(shipped_mechanisms.names()))
 def test_every_equation_of_the_catalog_is_read_with_all_its_names(name: str) -> None:
-    found = loop_equations(solvable(shipped_mechanisms.load_named(name)))
+    found = loop_equations(ck.decompose(shipped_mechanisms.load_named(name)))
     for equation in (*found.loops, *found.auxiliary, *found.drivers):
         said = "".join(read(latex(equation)).itertext())
         assert all(word in said for word in words(equation)), said
