@@ -159,10 +159,9 @@ def _number(name: str, value: Any) -> float:
 
 def _drawn(solving_order: SolvingOrder, first: Mapping[str, float]) -> dict[str, float]:
     """Return where the drivers are drawn; nothing where nothing is drawn."""
-    if not solving_order.structure.mechanism.sketch:
+    mechanism = solving_order.structure.mechanism
+    if not mechanism.sketch:
         return {}
-    geometry = solving_order.structure.mechanism.geometry
-    path, _, _ = approach_path(
-        solving_order, inputs(solving_order, first, None, None, None), geometry.drawn, geometry.sketch
-    )
+    given = inputs(solving_order, first, None, None, None)
+    path, _, _ = approach_path(solving_order, given, mechanism.drawn_poses, mechanism.geometry.sketch)
     return {name: float(first_entry(v[0])) for name, v in path.drives.items()}

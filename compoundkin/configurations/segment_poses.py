@@ -83,7 +83,7 @@ class _OnSegments:
 
 def drawn_angle(solving_order: SolvingOrder, link: str) -> Number:
     """Return the drawn angle of a link, from which its full turns count. It is 0 where the link is not drawn."""
-    drawn = solving_order.structure.mechanism.geometry.drawn.get(link)
+    drawn = solving_order.structure.mechanism.drawn_poses.get(link)
     return 0.0 if drawn is None else drawn.angle.c[0]
 
 

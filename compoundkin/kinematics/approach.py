@@ -53,11 +53,17 @@ def drawn_value(
     driven = solving_order.structure.driven[name]
     pair = driven.pair
     if any(link not in drawn for link in pair.members):
-        value = pair.drawn_coordinate(sketch)
-        return None if value is None else first_of(value)
+        length = pair.drawn_length(sketch)
+        return None if length is None else _signed(first_of(length), given.drives[name][0])
     ends = given.cut(slice(None), slice(0, 1)).ends[pair.name]
     poses = (column(drawn[pair.members[0]]), column(drawn[pair.members[1]]))
-    return pair.coordinate(ends, poses).c[0] * pair.driven_by(driven.drive.link)
+    return pair.shown_coordinate(ends, poses) * pair.driven_by(driven.drive.link)
+
+
+def _signed(length: Number, values: Number) -> Number:
+    """Return a length that is drawn without its sign. Its sign is the one that brings it nearer to some value."""
+    ahead, behind = (np.min(np.abs(np.atleast_2d(values - way)), axis=-1, keepdims=True) for way in (length, -length))
+    return np.where(ahead <= behind, length, -length)
 
 
 def _nearest(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Number]) -> float:
@@ -121,6 +127,14 @@ def between(solving_order: SolvingOrder, given: Inputs) -> int:
     A step goes from one pose to the next.
     """
     return max((spacings(solving_order, name, steps) for name, steps in _steps(given)), default=0)
+
+
+def spacings_between(solving_order: SolvingOrder, given: Inputs) -> Number:
+    """Return the spacings from each pose of a motion to the next, as fractions. They are those of the fastest."""
+    found = np.zeros(max(given.poses - 1, 0))
+    for name, steps in _steps(given):
+        found = np.maximum(found, np.max(np.abs(steps), axis=0) / _unit(solving_order, name) / SPACING)
+    return found
 
 
 def pace(solving_order: SolvingOrder, given: Inputs) -> float:

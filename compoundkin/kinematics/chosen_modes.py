@@ -111,7 +111,7 @@ def shown_by(
     points = {**(relaxation.places if relaxation else {}), **mechanism.sketch}
     if isinstance(modes, str):
         return Shown("drawing", points, {}, {})
-    poses = relaxation.poses if relaxation and not mechanism.sketch else mechanism.geometry.drawn
+    poses = relaxation.poses if relaxation and not mechanism.sketch else mechanism.drawn_poses
     return Shown("drawing", points, poses, mechanism.geometry.sketch)
 
 

@@ -137,7 +137,7 @@ class _First:
     def angle(self, solver: GroupSolver, link: str) -> Number:
         """Count the turns of a link from here on."""
         turns = self.tracker.turns[link] = turns_of(self.tracker, solver.index, link)
-        return turns.approach[:, :1]
+        return turns.first
 
     def _sign(self, block: Block, solver: GroupSolver) -> tuple[Number, str]:
         """Return the mode whose points lie nearest to the drawn ones, and what chose it."""

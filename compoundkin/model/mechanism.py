@@ -13,6 +13,7 @@ from compoundkin.base.display import ShowsPicture, counted
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, nearest
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
+from compoundkin.model.drawn_poses import told_poses
 from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Link, Mode
 from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
 from compoundkin.model.pairs.contact import as_profiled
@@ -97,6 +98,22 @@ class Mechanism(Written, ShowsPicture):
                 if pose is not None:
                     poses[name] = pose
         return Geometry(points, poses, frozenset(n for n, i in self.links.items() if i.is_drawn), seen, self._profiles)
+
+    @cached_property
+    def drawn_poses(self) -> Mapping[str, Pose]:
+        """The poses of links that the drawing shows. A pair may tell the angle of a link of one point.
+
+        >>> from compoundkin.model.elements import drawn, link
+        >>> from compoundkin.model.pairs import slide
+        >>> guide, way = link("frame", A=0), slide("block", on="frame", through="A", angle=0.5)
+        >>> Mechanism("m", guide, link("block", B=0), way, drawn(A=0, B=1)).drawn_poses["block"].angle.c[0].round(6)
+        np.float64(0.5)
+        """
+        geometry = self.geometry
+        if not self.sketch or len(geometry.drawn) == len(self.links):
+            return geometry.drawn
+        ends = [(pair, pair.ends(geometry)) for pair in self.written_pairs]
+        return told_poses(geometry.points, ends, geometry.sketch, geometry.drawn)
 
     @property
     def _profiles(self) -> float:

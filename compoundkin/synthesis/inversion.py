@@ -113,12 +113,12 @@ def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
     if driven is None or driven.pair.free_is_angle or mechanism.unplaced:
         return mechanism
     pair = driven.pair
-    geometry = mechanism.geometry
-    if all(name in geometry.drawn for name in pair.members):
-        poses = tuple(column(geometry.drawn[name]) for name in pair.members)
-        value = pair.coordinate(pair.ends(geometry), poses).c[0] * pair.driven_by(new.link)
+    drawn = mechanism.drawn_poses
+    if all(name in drawn for name in pair.members):
+        poses = tuple(column(drawn[name]) for name in pair.members)
+        value = pair.shown_coordinate(pair.ends(mechanism.geometry), poses) * pair.driven_by(new.link)
     else:
-        value = pair.drawn_coordinate(mechanism.sketch)
+        value = pair.drawn_length(mechanism.sketch)
     if value is None:
         return mechanism
     return mechanism.replace(replace(new, values=float(value) if np.ndim(value) == 0 else value))

@@ -9,15 +9,15 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arrays import first_entry
-from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference
-from compoundkin.model.pairs.optional_answers import Osculation, Replaceable, TurnCounting, as_drivable
-from compoundkin.model.pairs.wheel_sizes import Sizes, Two, axis_problems, size_problems, two_of
+from compoundkin.model.pairs.optional_answers import DrawnPair, Osculation, Replaceable, TurnCounting, as_drivable
+from compoundkin.model.pairs.wheel_sizes import Sizes, Two, size_problems, two_of, wheel_problems
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,15 +87,7 @@ class Geared(TurnCounting, Replaceable):
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Find unknown links, one link twice, axes the carrier lacks, sizes that are none."""
-        named = (("first", self.first), ("second", self.second), ("carrier", self.carrier))
-        missing = [(key, name) for key, name in named if name not in links]
-        for key, name in missing:
-            yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, list(links)))
-        if not missing and len({name for _, name in named}) < len(named):
-            yield Problem(where, "the two wheels and their carrier are not three different links", "name three links")
-        elif not missing:
-            for key, name, axis in (("first", self.first, self.first_at), ("second", self.second, self.second_at)):
-                yield from axis_problems(links, (name, self.carrier), axis, where, key)
+        yield from wheel_problems(links, self.members, self.letters, where)
         yield from size_problems(self.teeth, self.radii, where)
 
     def completed(self, links: Mapping[str, tuple[str, ...]]) -> Geared:
@@ -130,6 +122,13 @@ class Geared(TurnCounting, Replaceable):
         first, second, carrier = (geometry.drawn[name].angle.c[0] for name in self.members)
         one, two = self.sizes
         return (second - carrier) + (first - carrier) * (one / two)
+
+    def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
+        """Return the second wheel's angle. The first one's may be any of several: no angle is drawn with its turns."""
+        first, _, carrier = seen.poses
+        if own != 1 or first is None or carrier is None:
+            return None
+        return carrier.angle.c[0] + seen.ends[2].measure - ratio(seen.ends) * (first.angle - carrier.angle).c[0]
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """Return the ends with a drawn phase taken on by turns since. The turns are those of wheels and carrier."""

@@ -26,8 +26,12 @@ class Drivable(Pair):
         """Return +1 if driving `link` drives the coordinate itself, else -1."""
         return 1
 
-    def drawn_coordinate(self, sketch: Mapping[str, Number]) -> Number | None:
-        """Return the free coordinate as drawn points alone show it.
+    def shown_coordinate(self, ends: Ends, poses: Poses) -> Number:
+        """Return the free coordinate at the members' drawn poses."""
+        return self.coordinate(ends, poses).c[0]
+
+    def drawn_length(self, sketch: Mapping[str, Number]) -> Number | None:
+        """Return the size of the free coordinate that drawn points alone show. It has no sign.
 
         None where they do not, without the links' poses.
         """
@@ -39,7 +43,31 @@ def as_drivable(pair: Pair) -> Drivable | None:
     return pair if isinstance(pair, Drivable) else None
 
 
-class TurnCounting(Pair):
+class DrawnPair(NamedTuple):
+    """A pair as a drawing shows it.
+
+    It has its ends, the poses of its members as far as they are known, and where letters are drawn.
+    """
+
+    ends: Ends
+    poses: tuple[Pose | None, ...]
+    sketch: Mapping[str, Number]
+
+
+class Orienting(Pair):
+    """A pair that tells a member's angle from the others' poses. Such are slides, gears, wheels."""
+
+    @abstractmethod
+    def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
+        """Return the angle of the member `own`, or None if it is not told."""
+
+
+def as_orienting(pair: Pair) -> Orienting | None:
+    """Return a pair as one that tells angles, or None."""
+    return pair if isinstance(pair, Orienting) else None
+
+
+class TurnCounting(Orienting):
     """A pair that asks for its members' angles with full turns. Such are gears, belts, racks, wheels that roll."""
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:

@@ -14,7 +14,7 @@ from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses
-from compoundkin.model.pairs.optional_answers import TurnCounting
+from compoundkin.model.pairs.optional_answers import DrawnPair, TurnCounting
 from compoundkin.model.pairs.symbols import Mark, Track, Wheel, reach
 from compoundkin.model.pairs.wheel_sizes import FITS
 
@@ -118,6 +118,15 @@ class OnLine(TurnCounting):
             return drawn
         # a phase by a turn of the wheel farther on is the same mechanism, its angle counted from another turn
         return self.phase + whole_turns(drawn - self.phase, TURN * across)
+
+    def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
+        """Return the angle to which the wheel has rolled where its axis is drawn. The line's is not told."""
+        ends, line, at = seen.ends, seen.poses[0], seen.sketch.get(self.at)
+        if own == 0 or line is None or at is None:
+            return None
+        along = line.u.c[0] * ends[0].direction
+        displacement = (np.conjugate(along) * (at - line.at(ends[0].point).c[0])).real
+        return line.angle.c[0] + (ends[0].measure - displacement) / ends[1].measure
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """Return the ends with a drawn phase taken on by turns since. The turns are those of line and wheel."""

@@ -25,12 +25,12 @@ from compoundkin.model.pairs.loop_terms import (
     difference,
     direction,
 )
-from compoundkin.model.pairs.optional_answers import Drivable
+from compoundkin.model.pairs.optional_answers import DrawnPair, Drivable, Orienting
 from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 
 
 @dataclass(frozen=True, eq=False)
-class Prismatic(Drivable):
+class Prismatic(Drivable, Orienting):
     """The link `link` slides on the link `on`. Its point `at` runs along a guide.
 
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x
@@ -131,8 +131,14 @@ class Prismatic(Drivable):
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         return guide.along.dot(block.point - guide.point)
 
-    def drawn_coordinate(self, sketch: Mapping[str, Number]) -> Number | None:
-        """Return the displacement from `through` to `at`, taken to be forward."""
+    def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
+        """Return the angle at which guide and block are parallel."""
+        other = seen.poses[1 - own]
+        along, back = seen.ends[1 - own].along.c[0], np.conjugate(seen.ends[own].along.c[0])
+        return None if other is None else np.angle(other.u.c[0] * along * back)
+
+    def drawn_length(self, sketch: Mapping[str, Number]) -> Number | None:
+        """Return how far `at` is drawn from `through` along the guide, forward or backward."""
         if self.at not in sketch or self.through not in sketch:
             return None
         across = 0.0 if self.offset is None else self.offset

@@ -25,7 +25,7 @@ from compoundkin.model.pairs.loop_terms import (
     difference,
     direction,
 )
-from compoundkin.model.pairs.optional_answers import Drivable, TurnCounting
+from compoundkin.model.pairs.optional_answers import DrawnPair, Drivable, TurnCounting
 from compoundkin.model.pairs.symbols import Mark, Wheel
 from compoundkin.model.pairs.wheel_sizes import radius_problems
 
@@ -115,6 +115,19 @@ class RollingOnCircle(TurnCounting, Drivable):
         turned = (wheel.angle - on.angle).c[0]
         drawn = turned - self._turns * np.angle((line * on.u.conj()).c[0])
         return drawn if self.phase is None else self.phase + whole_turns(drawn - self.phase)
+
+    def shown_coordinate(self, ends: Ends, poses: Poses) -> Number:
+        """Return the direction of the line of centres within a turn. The wheel's angle belongs to any of its turns."""
+        line = poses[1].at(ends[1].point) - poses[0].at(ends[0].point)
+        return np.angle((line * poses[0].u.conj()).c[0])
+
+    def drawn_angle(self, seen: DrawnPair, own: int) -> Number | None:
+        """Return the angle to which the wheel has rolled where it is drawn. The circle's is not told."""
+        ends, on, at = seen.ends, seen.poses[0], seen.sketch.get(self.at)
+        if own == 0 or on is None or at is None:
+            return None
+        direction = np.angle((at - on.at(ends[0].point).c[0]) * np.conjugate(on.u.c[0]))
+        return on.angle.c[0] + ends[1].measure * direction + ends[0].measure
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:
         """Return the ends with a drawn phase taken on by turns since. The turns are those of circle and wheel."""

@@ -33,7 +33,22 @@ def two_of(key: str, value: Any) -> Two | None:
     return one.item() if one.ndim == 0 else one, two.item() if two.ndim == 0 else two
 
 
-def axis_problems(
+def wheel_problems(
+    links: Mapping[str, tuple[str, ...]], members: Sequence[str], axes: Sequence[str], where: str
+) -> Iterator[Problem]:
+    """Find unknown links, one link twice, and axes that are not shared."""
+    named = dict(zip(("first", "second", "carrier"), members, strict=True))
+    missing = [(key, name) for key, name in named.items() if name not in links]
+    for key, name in missing:
+        yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, list(links)))
+    if not missing and len(set(members)) < len(members):
+        yield Problem(where, "the two wheels and their carrier are not three different links", "name three links")
+    elif not missing:
+        for key, axis in zip(("first", "second"), axes, strict=True):
+            yield from _axis_problems(links, (named[key], named["carrier"]), axis, where, key)
+
+
+def _axis_problems(
     links: Mapping[str, tuple[str, ...]], pinned: tuple[str, str], axis: str, where: str, key: str
 ) -> Iterator[Problem]:
     """Find an axis that a wheel and its carrier do not share. These are the links that are `pinned`."""

@@ -79,12 +79,12 @@ def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
 
 def scene_as_drawn(structure: Structure) -> Scene:
     """Return the scene of a drawing. Raises InvalidInput where it does not show every link."""
-    geometry = structure.mechanism.geometry
+    geometry, drawn = structure.mechanism.geometry, structure.mechanism.drawn_poses
     here: dict[str, Pose] = {}
     for name, placed in geometry.points.items():
         letter = next((k for k in placed if k in geometry.sketch), None)
-        if name in geometry.drawn:
-            here[name] = geometry.drawn[name].entry((0, 0))
+        if name in drawn:
+            here[name] = drawn[name].entry((0, 0))
         elif letter is not None and len(placed) == 1:
             here[name] = Pose.of(complex(first_entry(geometry.sketch[letter])) - first_entry(placed[letter]), 1 + 0j)
         else:

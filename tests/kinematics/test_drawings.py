@@ -1,0 +1,141 @@
+"""A drawing leads where it says: driven slides drawn backward, links of one point, drawings far from the frame."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.kinematics import Motion
+from tests.support import REFERENCE, reference
+
+NAMES = ("case_5315", "case_5489", "case_5089", "case_5488", "case_30235")
+
+
+def case(name: str) -> tuple[ck.Mechanism, dict[str, Any], dict[str, Any]]:
+    """A hard case: the mechanism, its drivers' values and what is expected."""
+    entry = reference(name, "hard")
+    return ck.load(REFERENCE / entry["file"]), entry["drivers"], entry["expected"]
+
+
+def quietly(mechanism: ck.Mechanism, values: Any = None, **words: Any) -> Motion:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
+        return ck.solve(mechanism, values, **words)
+
+
+def off_the_drawing(motion: Motion, pose: int = 0) -> float:
+    """How far the points of a pose are from the drawing at most, as a part of the size."""
+    mechanism = motion.structure.mechanism
+    off = [abs(motion.points[k].position.flat[pose] - p) for k, p in mechanism.sketch.items()]
+    return float(np.max(off)) / mechanism.geometry.size
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_exact_drawing_leads_where_it_says(name: str) -> None:
+    """The first pose is the drawing; the last one reached is where an independent continuation leads."""
+    mechanism, values, expected = case(name)
+    motion = quietly(mechanism, values, order=0)
+    last = expected["assembled_at_least_from_the_first_pose_on"] - 1
+    assert motion.assembled[: last + 1].all()
+    assert off_the_drawing(motion) < 1e-6
+    off = [abs(motion.points[k].position[last] - complex(*p)) for k, p in expected["at_last_reached"].items()]
+    assert max(off) < 1e-6 * mechanism.geometry.size
+
+
+def backward(values: Any) -> ck.Mechanism:
+    """A piston that is drawn, and driven, behind the origin of its guide."""
+    return ck.Mechanism(
+        "drawn backward",
+        ck.link("frame", O=0, H=-6 + 3j),
+        ck.link("piston", "B"),
+        ck.link("bar", B=0, C=4),
+        ck.link("rocker", H=0, C=3),
+        ck.slide("piston", on="frame", through="O"),
+        ck.drive("piston", on="frame", values=values),
+        ck.drawn(O=0, H=-6 + 3j, B=-8, C=-8.8598 + 3.9065j),
+    )
+
+
+def test_a_driven_slide_drawn_at_a_negative_displacement() -> None:
+    """C stays where it is drawn, not at -4.06+0.71j."""
+    motion = ck.solve(backward([-8.0, -7.95, -7.9]))
+    assert abs(motion.points["C"].position[0] - (-8.8598 + 3.9065j)) < 1e-4
+    assert np.max(np.abs(np.diff(motion.points["C"].position))) < 0.02
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_length_drawn_by_two_points_takes_the_sign_of_its_values(sign: int) -> None:
+    """Barrel and rod of one letter each: their distance is the driver's value but for its sign."""
+    joints = {"A": 0j, "D": 3 - 1j, "C": 1.2 + 1.6j}
+    length = abs(joints["C"] - joints["D"])
+    mechanism = ck.Mechanism(
+        "boom",
+        ck.link("frame", "A", "D"),
+        ck.link("boom", "A", "C"),
+        ck.link("barrel", "D"),
+        ck.link("rod", "C"),
+        ck.slide("rod", on="barrel", at="C", through="D"),
+        ck.drive("rod", on="barrel", values=sign * np.linspace(length, length + 0.1, 3)),
+        ck.drawn(**joints),
+    )
+    motion = ck.solve(mechanism)
+    assert off_the_drawing(motion) < 1e-12
+    assert abs(motion.links["barrel"].angle[0] - np.angle(sign * (joints["C"] - joints["D"]))) < 1e-12
+
+
+def turned_off(angles: Any, expected: Any) -> Any:
+    """How far angles (radians) are from expected ones (degrees), full turns left out."""
+    return np.abs(np.angle(np.exp(1j * (np.asarray(angles) - np.deg2rad(expected)))))
+
+
+def test_a_carrier_gains_no_turn_where_its_motion_has_a_gap() -> None:
+    """The carrier L1 of a belt turns steadily, and the wheel L4 stands where an independent continuation has it."""
+    mechanism, values, expected = case("case_30235")
+    motion = quietly(mechanism, values, order=0)
+    for pose, angles in expected["link_angles_deg_by_pose_modulo_360"].items():
+        for link, angle in angles.items():
+            assert turned_off(motion.links[link].angle[int(pose)], angle) < 1e-9
+    assert np.max(np.abs(np.diff(motion.links["L1"].angle[:17]))) < 1.0
+    assert abs(np.rad2deg(motion.links["L1"].angle[7]) - 73.0) < 0.1
+
+
+@pytest.mark.parametrize("between", [2, 3, 7, 40])
+def test_turns_do_not_depend_on_the_grid(between: int) -> None:
+    """Part of that motion with poses left out, and with many put in between."""
+    mechanism, values, _ = case("case_30235")
+    whole = quietly(mechanism, {"d0": values["d0"][:17]}, order=0)
+    for chosen in (slice(0, 17, between), slice(0, 17, 16)):
+        sparse = quietly(mechanism, {"d0": values["d0"][:17][chosen]}, order=0)
+        for link in ("L1", "L4"):
+            assert np.max(np.abs(sparse.links[link].angle - whole.links[link].angle[chosen])) < 1e-9
+    dense = np.interp(np.linspace(0.0, 16.0, 16 * between + 1), np.arange(17), values["d0"][:17])
+    motion = quietly(mechanism, {"d0": dense}, order=0)
+    for link in ("L1", "L4"):
+        assert np.max(np.abs(motion.links[link].angle[::between] - whole.links[link].angle)) < 1e-9
+
+
+@pytest.mark.parametrize("poses", [2, 5, 73, 1001])
+@pytest.mark.parametrize("near", [1e-2, -1e-2, 1e-5, -1e-5])
+def test_a_coupler_that_whirls_round_is_counted_at_any_grid(near: float, poses: int) -> None:
+    """It turns with the line from B to D: once in a turn of the crank where D lies inside the circle of B, else not."""
+    mechanism = ck.Mechanism(
+        "whirling",
+        ck.link("frame", A=0, D=10),
+        ck.link("crank", A=0, B=10 - near),
+        ck.link("bar", B=0, C=14, E=2 + 1j),
+        ck.link("rocker", D=0, C=14),
+        ck.link("wheel", E=0),
+        ck.gear("wheel", "crank", carrier="bar", teeth=(20, 30), first_at="E", second_at="B", phase=0.3),
+        ck.drive("crank"),
+    )
+    motion = ck.solve(mechanism, {"crank": np.linspace(np.pi, 3.0 * np.pi, poses)}, order=0)
+    rounds = 1.0 if near < 0.0 else 0.0
+    turned = {link: (motion.links[link].angle[-1] - motion.links[link].angle[0]) / (2.0 * np.pi) for link in
+              ("bar", "wheel")}  # fmt: skip
+    assert abs(turned["bar"] - rounds) < 1e-9
+    # by Willis's equation: (1 - c) * 30 = -(w - c) * 20 for a turn of the crank
+    assert abs(turned["wheel"] - (rounds - 1.5 * (1.0 - rounds))) < 1e-9
