@@ -14,6 +14,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import column, first_of
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.default_modes import regularity
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at, known_configurations
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -70,21 +71,20 @@ def first_state(
         found = search.equations.newton(batch, block, STEPS, LONGEST)
         trial = block.copy()
         solver.close(trial, found.state)
-        order = count + np.arange(len(batch), dtype=float)[:, None]
         count += 1 if designs > 1 else len(batch)
-        cost = distance(solving_order, letters, sketch, trial) if letters else order
+        cost = distance(solving_order, letters, sketch, trial) if letters else -regularity(solver, found.state, trial)
         state, cost = found.state, np.where(found.closed, cost, np.inf)
         if designs == 1:
             first = int(np.argmin(cost))
             state, cost = state[first : first + 1], cost[first : first + 1]
         best = np.where((cost < least)[..., None], state, best)
         least = np.minimum(cost, least)
-        enough = not letters or (search.complete and count == 1) or count >= COMPARED
+        enough = (letters and search.complete and count == 1) or count >= COMPARED
         if enough and np.isfinite(least).all():
             break
     if not np.isfinite(least).any():
         raise NotAssembled(_unfound(solver))
-    return best, "drawing" if letters else "first found"
+    return best, "drawing" if letters else "default"
 
 
 def _every(solver: GroupSolver, block: Block) -> Number | None:
@@ -117,6 +117,7 @@ class _ClosedStates:
         self, solving_order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number]
     ) -> None:
         self.solving_order, self.solver, self.block, self.sketch = solving_order, solver, block, sketch
+        self.drawn = bool(shown(solving_order, solver, sketch))
         self.equations = equations_of(solver)
         self.guesses = self._guesses()
         self.complete = all(self.guesses[k] is not None for k in self.equations.kept)
@@ -137,7 +138,10 @@ class _ClosedStates:
         if not self.complete:
             yield next(starts)
         if single:
-            yield np.concatenate(list(starts))
+            rest = list(starts)
+            # where nothing is drawn none is nearest, and more are tried only where these do not close
+            first = 0 if self.drawn else COMPARED
+            yield from (np.concatenate(part) for part in (rest[:first], rest[first:]) if part)
         else:
             yield from starts
 

@@ -58,8 +58,9 @@ def solve(
 
     The assembly mode of each group is that of `modes` (a link of the group: +1 or -1, or its configuration's number),
     else the one nearest to `hint` (points near their places at the first pose), else nearest to the mechanism's
-    drawing, else +1. `modes` may also be one of `configurations()`, from which the motion then starts, or the name of
-    one at the first pose.
+    drawing. By default a dyad that closes a four-bar loop of pins stands open at the first pose (the larger area of
+    its loop), another has mode +1, a larger group the configuration farthest from being singular. `modes` may also be
+    one of `configurations()`, from which the motion then starts, or the name of one at the first pose.
 
     A mechanism that moves though it is overconstrained is solved without what is redundant, which is then checked.
 

@@ -17,6 +17,7 @@ from compoundkin.kinematics.limits import CLIPPED, LimitRule
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import as_turn_counting
+from compoundkin.structure.four_bars import FourBarLoops, four_bar_loops
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import DrivenPair
 
@@ -57,6 +58,11 @@ class SolvingOrder(PrintsShort):
     def numbered(self) -> tuple[int, ...]:
         """The indices of the groups whose configurations are numbered."""
         return tuple(solver.index for solver in self.solvers if solver.is_numbered)
+
+    @cached_property
+    def four_bars(self) -> Mapping[int, FourBarLoops]:
+        """The four-bar loops of pins that dyads close, by the indices of these groups."""
+        return four_bar_loops(self.structure)
 
     def start(
         self,

@@ -12,11 +12,12 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import CLOSE, approach_path
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.chosen_modes import Shown
+from compoundkin.kinematics.default_modes import open_sign
 from compoundkin.kinematics.first_pose import distance, first_state, shown
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
 from compoundkin.kinematics.group_paths import GroupPath, track
 from compoundkin.kinematics.groups import GroupSolver
-from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.inputs import Inputs, fit
 from compoundkin.kinematics.limits import NEAREST
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 
@@ -48,6 +49,8 @@ class Tracker(PrintsShort):
             for k in range(len(solving_order.solvers)):
                 self.signs[k] = fixed.get(k, 1)
                 self.chosen_by[k] = "sign" if k in fixed else "default"
+            if solving_order.four_bars.keys() - fixed:
+                self.choose(max(solving_order.four_bars.keys() - fixed))
 
     def run(
         self,
@@ -83,15 +86,27 @@ class Tracker(PrintsShort):
             sign = sign * _parity(flips < s[..., None]) * _parity(flips < self.reference)
         return sign
 
-    def choose(self) -> None:
-        """Pass through the groups at the drawn pose, choosing. Track those without a closed form."""
+    def ahead(self, k: int, order: int) -> Block:
+        """Return what is solved before a group, with derivatives by increasing drivers. It is at the drawn pose."""
+        structure, first = self.solving_order.structure, self.approach_path.cut(slice(None), slice(0, 1))
+        rates = {name: 1.0 if angle else self.solving_order.size for name, angle in structure.driven_angles.items()}
+        part = first.driven({name: (values[0], rates[name]) for name, values in first.drives.items()})
+        place = np.zeros((1, 1)), np.arange(self.given.designs)[:, None]
+        return self.run(part, order, *place, upto=k, on_approach=True)
+
+    def place(self, link: str, letter: str) -> Number:
+        """Return a point on its link, (1 or designs, 1). It is that of the motion's pose nearest to the drawn one."""
+        point = fit(self.given.shape)(self.solving_order.structure.mechanism.geometry.points[link][letter])
+        return point if np.ndim(point) == 0 or point.shape[1] == 1 else point[:, [int(self.at)]]
+
+    def choose(self, last: int | None = None) -> None:
+        """Pass through the groups at the drawn pose, choosing, all or up to one. Track those without a closed form."""
         self.turns = {}
         first = self.approach_path.cut(slice(None), slice(0, 1))
-        run(
-            self.solving_order,
-            self.solving_order.start(first.ends, first.series(0), 0, (self.given.designs, 1), NEAREST),
-            _First(self),
-        )
+        block = self.solving_order.start(first.ends, first.series(0), 0, (self.given.designs, 1), NEAREST)
+        run(self.solving_order, block, _First(self), last)
+        if last is not None:
+            _First(self).mode(block, self.solving_order.solvers[last])
 
 
 @dataclass(frozen=True)
@@ -147,7 +162,7 @@ class _First:
         letters = shown(solving_order, solver, tracker.shown.points)
         closing = solving_order.closing(solver)
         if not letters and not closing:
-            return 1, "default"
+            return self._default(block, solver), "default"
         cost = []
         for sign in (1, -1):
             trial = block.copy()
@@ -158,6 +173,14 @@ class _First:
         best = np.where(cost[1] < cost[0], -1.0, 1.0)
         chosen = float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
         return chosen, "redundant" if closing else tracker.shown.source
+
+    def _default(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the sign that a dyad has where nothing chooses."""
+        tracker, k = self.tracker, solver.index
+        loops = tracker.solving_order.four_bars.get(k)
+        if loops is None:
+            return 1
+        return open_sign(loops, tracker.place, block, lambda order: tracker.ahead(k, order))
 
 
 def _parity(passed: Number) -> Number:

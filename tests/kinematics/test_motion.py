@@ -133,9 +133,9 @@ def turned(fixed: complex, pivot: complex, end: complex, length: float) -> compl
 def test_a_drive_seen_from_the_other_link() -> None:
     """Driving the frame on the crank is driving the crank backward; a slide's displacement is the same."""
     angles = ck.deg(np.arange(0, 361, 10))
-    one = ck.solve(four_bar(), {"crank": angles}, speed=2.0, acceleration=0.5, order=3)
+    one = ck.solve(four_bar(), {"crank": angles}, speed=2.0, acceleration=0.5, order=3, modes={"rocker": 1})
     mechanism = four_bar()
-    items = [*mechanism.items[:-1], ck.drive("frame", on="crank", name="back")]
+    items = [*mechanism.items[:-1], ck.drive("frame", on="crank", name="back"), ck.mode(1, "rocker")]
     other = ck.solve(ck.Mechanism("m", *items), {"back": -angles}, speed=-2.0, acceleration=-0.5, order=3)
     for letter in "BCP":
         for k in range(4):
@@ -221,10 +221,10 @@ def test_more_poses_than_a_block(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(solution, "WHOLE", 0)
     monkeypatch.setattr(solution, "BLOCK", 4096)
     angles = np.linspace(0, 20, 9001)
-    whole = ck.solve(four_bar(), {"crank": angles}, order=3)
+    whole = ck.solve(four_bar(), {"crank": angles}, order=3, modes={"rocker": 1})
     assert whole.shape == (9001,)
     for part in (slice(0, 10), slice(4090, 4100), slice(8190, 8196), slice(8995, 9001)):
-        small = ck.solve(four_bar(), {"crank": angles[part]}, order=3)
+        small = ck.solve(four_bar(), {"crank": angles[part]}, order=3, modes={"rocker": 1})
         for k in range(4):
             assert np.allclose(small.points["P"].derivative(k), whole.points["P"].derivative(k)[part], atol=1e-13)
         turns = small.links["rocker"].angle - whole.links["rocker"].angle[part]
@@ -374,10 +374,7 @@ def test_modes_by_default_sign_hint_and_drawing() -> None:
     assert not above(ck.solve(four_bar(), angles, modes={"coupler": 1}))
     assert above(ck.solve(four_bar(), angles, modes={"coupler": -1}))
     assert above(ck.solve(four_bar(), angles, modes={"rocker": -1}))
-    default = ck.solve(four_bar(), angles)
-    assert np.array_equal(
-        default.points["C"].position, ck.solve(four_bar(), angles, modes={"rocker": 1}).points["C"].position
-    )
+    assert above(ck.solve(four_bar(), angles))
     for y in (2.0, -2.0):
         assert above(ck.solve(four_bar(), angles, hint={"C": (3, y)})) == (y > 0)
         drawn = four_bar(1.0, 3.0, 3.0, 4.0, ck.drawn(C=(3, y)))

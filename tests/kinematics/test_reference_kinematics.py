@@ -44,6 +44,8 @@ def six_bar() -> ck.Mechanism:
         ck.link("bar", F=(0, 0), G=(55, 0)),
         ck.link("block", C=(0, 0)),
         ck.slide("block", on="bar", at="C", through="F", angle=0),
+        ck.mode(1, "rocker"),
+        ck.mode(1, "bar"),
         ck.drive("crank"),
     )
 

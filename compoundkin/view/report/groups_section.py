@@ -29,7 +29,6 @@ CHOSEN_BY = {
     "drawing": "nearest to the drawing",
     "hint": "nearest to the hint",
     "default": "taken by default",
-    "first found": "the first that was found",
     "redundant": "in which the redundant pairs close",
     "number": "chosen by number",
     "configuration": "that of the configuration given",

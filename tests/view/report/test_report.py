@@ -81,8 +81,8 @@ def test_equations_differ_from_unknowns_as_mobility_does_from_drivers() -> None:
 
 
 def test_a_mode_by_sign_and_by_default_says_so() -> None:
-    by_sign = (ck.mode(-1, "rocker"),), "-1, chosen by sign (the other one; "
-    for items, told in (((), "+1, taken by default ("), by_sign):
+    by_sign = (ck.mode(1, "rocker"),), "+1, chosen by sign ("
+    for items, told in (((), "-1, taken by default (the other one; "), by_sign):
         section = report(ck.solve(four_bar(4.0, ck.drive("crank"), *items))).section("groups")
         assert section is not None
         assert dict(section.blocks[-1].facts)["mode"].startswith(told)  # type: ignore[union-attr]
