@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.poses import FIXED
+from compoundkin.model.pairs.contact import generic_jacobian
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.composites import GROUND
 from compoundkin.structure.parts import LINK_FREEDOMS
@@ -181,7 +181,7 @@ def _rows(part: Subsystem) -> Iterator[tuple[Constraint, Matrix]]:
         ends = pins.get(constraint.letter) or pair.generic(rng)
         if constraint.letter:
             pins[constraint.letter] = ends
-        yield constraint, np.asarray(pair.jacobian(ends, (FIXED,) * len(ends)), dtype=float)
+        yield constraint, generic_jacobian(pair, ends)
 
 
 def _taking_part(null_space: Matrix, sizes: Sequence[int]) -> list[bool]:

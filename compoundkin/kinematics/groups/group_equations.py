@@ -159,7 +159,7 @@ class GroupEquations:
         for number in self.others:
             pair = self.pairs[number]
             closure = pair.closure(block.ends[pair.name], self._links(number, bodies, block, k))
-            found += [c.c[k] if len(c.c) > k else 0.0 for c in closure]
+            found += [c.c[k] * w if len(c.c) > k else 0.0 for c, w in zip(closure, self._lengths(pair), strict=True)]
         return found
 
     def _rows(self, bodies: Mapping[int, Pose], block: Block) -> list[Row]:
@@ -176,16 +176,20 @@ class GroupEquations:
         pair = self.pairs[number]
         poses = self._links(number, bodies, block, 0)
         table = pair.jacobian(block.ends[pair.name], poses)
-        for r in range(pair.held):
+        for r, length in enumerate(self._lengths(pair)):
             row: Row = {}
             for side, member in enumerate(self.members[number]):
                 if member.body is not None:
-                    x, y, theta = (table[..., r, 3 * side + j] for j in range(3))
+                    x, y, theta = (table[..., r, 3 * side + j] * length for j in range(3))
                     arm = poses[side].z.c[0] - bodies[member.body].z.c[0]
                     # derivatives by a link's x, y, theta as derivatives by those of the body it is fixed in
                     turn = theta if poses[side] is bodies[member.body] else theta + y * arm.real - x * arm.imag
                     add(row, first[member.body], (x, y, turn))
             yield row
+
+    def _lengths(self, pair: Pair) -> Iterator[float]:
+        """Yield by what a pair's equations are multiplied, so that all are lengths and close alike in any unit."""
+        return (self.size / scale for scale in pair.held_scales(self.size))
 
     def _links(self, number: int, bodies: Mapping[int, Pose], block: Block, k: int) -> Poses:
         """Return the poses of a pair's members, to order k at most."""

@@ -60,6 +60,7 @@ class Pair(ABC):
     code: ClassVar[str]  # the letter in a group's name
     title: ClassVar[str]  # "revolute pair"
     held: ClassVar[int]  # how many relative coordinates stay zero
+    held_angles: ClassVar[tuple[int, ...]] = ()  # which of these are angles (else lengths)
     free: ClassVar[tuple[str, ...]]  # the names of the others; the first is its `coordinate`
     free_is_angle: ClassVar[bool]  # whether the coordinate is an angle (else a length)
     is_simple: ClassVar[bool] = False  # whether its coordinate only turns a member about a point, or only shifts it
@@ -107,6 +108,10 @@ class Pair(ABC):
     @abstractmethod
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """Return the held relative coordinates as series: zero where the pair is closed."""
+
+    def held_scales(self, size: float) -> tuple[float, ...]:
+        """Return how large each held coordinate is if it is not zero: 1 for angles, the size for lengths."""
+        return tuple(1.0 if k in self.held_angles else size for k in range(self.held))
 
     @abstractmethod
     def coordinate(self, ends: Ends, poses: Poses) -> Series:

@@ -55,6 +55,7 @@ class Geared(TurnCounting, Replaceable):
     )
 
     held: ClassVar[int] = 1
+    held_angles: ClassVar[tuple[int, ...]] = (0,)
     free: ClassVar[tuple[str, ...]] = ("angle",)
     free_is_angle: ClassVar[bool] = True
 

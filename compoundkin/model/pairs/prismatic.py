@@ -72,6 +72,7 @@ class Prismatic(Drivable, Orienting):
     code: ClassVar[str] = "P"
     title: ClassVar[str] = "prismatic pair"
     held: ClassVar[int] = 2
+    held_angles: ClassVar[tuple[int, ...]] = (1,)
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
     is_simple: ClassVar[bool] = True

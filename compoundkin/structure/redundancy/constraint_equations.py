@@ -15,6 +15,7 @@ from compoundkin.base.series import constant
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contact import generic_jacobian
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.structure.composites import Pins, driven_pair
@@ -185,7 +186,7 @@ class ConstraintEquations:
             # all links on a pin share its one place
             at = f"pin {pair.letters[0]}" if number < len(self.pins) else f"pair {pair.name}"
             ends = places.setdefault(at, pair.generic(rng))
-            tables.append((pair, pair.jacobian(ends, (FIXED,) * len(ends))[..., : pair.held, :]))
+            tables.append((pair, generic_jacobian(pair, ends)[..., : pair.held, :]))
         return self._scaled(self._filled(iter(tables)), 1.0)[0]
 
     def _filled(self, tables: Iterator[tuple[Pair, Any]]) -> Array:
