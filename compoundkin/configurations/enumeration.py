@@ -146,7 +146,7 @@ class AllModes:
 def closed_redundant(solving_order: SolvingOrder, block: Block) -> Number:
     """Tell where the pairs left out as redundant are closed. Not all configurations of the others close them."""
     pairs = solving_order.structure.redundant
-    return residual(pairs, block) <= (CLOSED * solving_order.size) ** 2 if pairs else True
+    return residual(pairs, block, solving_order.size) <= CLOSED**2 if pairs else True
 
 
 def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] | None = None) -> Configurations:

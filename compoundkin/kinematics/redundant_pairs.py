@@ -11,6 +11,7 @@ from compoundkin.base.errors import NotAssembled, NotDetermined, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.optional_answers import held_scales
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.redundancy import mobility_analysis
 from compoundkin.structure.redundancy.constraint_equations import ROUNDED
@@ -48,12 +49,13 @@ def check_redundant(motion: Motion) -> None:
 def opening(motion: Motion, pair: Pair) -> Number:
     """Return the residual of a redundant pair at each pose (designs x poses).
 
-    Lengths are in the user's unit; 0 where not assembled.
+    It is a length in the user's unit, an angle the arc of it at the mechanism's size; 0 where not assembled.
     """
     poses = tuple(motion.poses[name] for name in pair.members)
     held = pair.closure(motion.inputs.ends[pair.name], poses)
-    squares = sum(np.abs(np.broadcast_to(one.c[0], motion.failed.shape)) ** 2 for one in held)
-    return np.where(motion.failed == 0, np.sqrt(squares), 0.0)
+    parts = [one.c[0] / scale for one, scale in zip(held, held_scales(pair, motion.size), strict=True)]
+    squares = sum(np.abs(np.broadcast_to(part, motion.failed.shape)) ** 2 for part in parts)
+    return np.where(motion.failed == 0, np.sqrt(squares) * motion.size, 0.0)
 
 
 def _problem(motion: Motion, pair: Pair, gap: Number) -> Problem:

@@ -16,7 +16,7 @@ from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.limits import CLIPPED, LimitRule
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.optional_answers import as_turn_counting
+from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales
 from compoundkin.structure.four_bars import FourBarLoops, four_bar_loops
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import DrivenPair
@@ -131,13 +131,14 @@ def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | N
     return block
 
 
-def residual(pairs: Sequence[Pair], block: Block) -> Number:
-    """Return the sum of squares of what left-out pairs ought to hold."""
+def residual(pairs: Sequence[Pair], block: Block, size: float) -> Number:
+    """Return the sum of squares of what left-out pairs ought to hold. Lengths are parts of the size."""
     total: Number = 0.0
     for pair in pairs:
         poses = tuple(block.world[name] for name in pair.members)
-        for held in pair.closure(block.ends[pair.name], poses):
-            total = total + np.abs(held.c[0]) ** 2
+        held = pair.closure(block.ends[pair.name], poses)
+        for one, scale in zip(held, held_scales(pair, size), strict=True):
+            total = total + np.abs(one.c[0] / scale) ** 2
     return total
 
 

@@ -168,7 +168,9 @@ class _First:
             trial = block.copy()
             solver.close(trial, sign)
             cost.append(
-                residual(closing, trial) if closing else distance(solving_order, letters, tracker.shown.points, trial)
+                residual(closing, trial, solving_order.size)
+                if closing
+                else distance(solving_order, letters, tracker.shown.points, trial)
             )
         best = np.where(cost[1] < cost[0], -1.0, 1.0)
         chosen = float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)

@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.model.pairs.contact import generic_jacobian
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.composites import GROUND
 from compoundkin.structure.parts import LINK_FREEDOMS
-from compoundkin.structure.system import Constraint, System
+from compoundkin.structure.system import Constraint, System, generic_jacobian
 
 # Random Jacobians of some hundred columns keep their least singular value far above this fraction of the
 # largest, and rounding keeps that of a deficient one far below.

@@ -11,8 +11,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
+from compoundkin.base.poses import FIXED
+from compoundkin.base.series import Number
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contact import as_profiled
+from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.composites import GROUND, Composites, pin_at
 from compoundkin.structure.parts import LINK_FREEDOMS, Dropped
 
@@ -125,3 +131,16 @@ def _pin_sides(on_pin: tuple[int, ...], vertex: int) -> Iterator[tuple[int, int]
 
 def _constraint(pair: Pair, sides: tuple[int, ...], letter: str) -> Constraint:
     return Constraint(pair, sides, letter, tuple(dict.fromkeys([s for s in sides if s != GROUND])))
+
+
+def generic_jacobian(pair: Pair, ends: Ends) -> Number:
+    """Return the rows of a pair at random ends, its profile being of size 1.
+
+    So is all else there; otherwise the rank of a mechanism would depend on the unit of its lengths.
+    """
+    rows = np.array(pair.jacobian(ends, (FIXED,) * len(ends)), dtype=float)
+    profiled = as_profiled(pair)
+    if profiled:
+        rows[..., 2::3] /= profiled.extent
+        rows[..., pair.held :, :] *= profiled.extent / profiled.coordinate_scale
+    return rows

@@ -15,11 +15,11 @@ from compoundkin.kinematics.groups.contract import GroupSolver, MountedBody
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends, table
 from compoundkin.model.pairs.geared import as_geared
-from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, as_turn_counting
+from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, as_turn_counting, held_scales
 from compoundkin.structure.parts import Body, Group
 
-# A higher pair whose closure a coordinate changes by less than this (length by length, or angle) does not determine
-# it: rounding of a right angle between a rack and its pinion's guide, or of the ratio with which a train locks.
+# A higher pair whose closure a coordinate changes by less than this (both in parts of the size, or radians) does not
+# determine it: rounding of a right angle between a rack and its pinion's guide, or of a ratio with which a train locks.
 FLAT = 1e-13
 UNIT = Series((0.0, 1.0))
 
@@ -36,8 +36,17 @@ class GearTrainSolver(GroupSolver):
     modes: ClassVar[int] = 1
     sign_means: ClassVar[str] = "there is only one mode"
 
-    def __init__(self, index: int, group: Group, lowers: tuple[tuple[Drivable, Body], ...], highers: tuple[Pair, ...]):
+    def __init__(
+        self,
+        index: int,
+        group: Group,
+        size: float,
+        lowers: tuple[tuple[Drivable, Body], ...],
+        highers: tuple[Pair, ...],
+    ) -> None:
         super().__init__(index, group)
+        # of several bodies all coordinates are angles
+        self.flat = FLAT * held_scales(highers[0], size)[0] / (1.0 if lowers[0][0].free_is_angle else size)
         self.mounted = tuple(MountedBody(pair, highers[0], body) for pair, body in lowers)
         self.highers = highers
         self.counted_from = tuple(mounted.side.other for mounted in self.mounted)
@@ -55,7 +64,7 @@ class GearTrainSolver(GroupSolver):
             own = next(j for j, name in enumerate(higher.members) if name in group.links)
             mount, wheel = as_drivable(lower), as_turn_counting(higher)
             if mount and wheel and wheel.is_affine(lower, own):
-                return cls(index, group, ((mount, group.bodies[0]),), (higher,))
+                return cls(index, group, size, ((mount, group.bodies[0]),), (higher,))
         highers = tuple(pair for pair in pairs if as_geared(pair))
         pins = [pin for pair in pairs if pair.is_simple and pair.free_is_angle and (pin := as_drivable(pair))]
         if not highers or len(pins) + len(highers) < len(pairs) or len(pins) != len(group.bodies):
@@ -65,7 +74,7 @@ class GearTrainSolver(GroupSolver):
             hung = [(pair, body) for body in left for pair in pins if _hangs(pair, body, left)]
             found += hung[:1]
             left = [body for body in left if body not in [b for _, b in found]]
-        return None if left else cls(index, group, tuple(found), highers)
+        return None if left else cls(index, group, size, tuple(found), highers)
 
     def close(self, block: Block, mode: Number) -> None:
         """Assemble the group; a mode has no effect."""
@@ -77,7 +86,7 @@ class GearTrainSolver(GroupSolver):
         lead = self._closures(block.leading(self.links), [UNIT])[0].c[1]
         rates = (self._closures(block.copy(), [constant(1.0)])[0] - start[0]).c[1:]
         slope = Series((lead, *rates) if any(np.any(rate != 0.0) for rate in rates) else (lead,))
-        free = np.abs(lead) <= FLAT
+        free = np.abs(lead) <= self.flat
         if np.any(free):
             slope = Series((np.where(free, np.nan, lead), *slope.c[1:]))
             block.fail(~free, self.index)
@@ -89,7 +98,7 @@ class GearTrainSolver(GroupSolver):
         units = ([*rest[:j], UNIT, *rest[j + 1 :]] for j in range(len(rest)))
         slopes = [[_second(c) for c in self._closures(block.leading(self.links), unit)] for unit in units]
         inverse = inverted(table(*zip(*slopes, strict=True)))
-        free = ~(np.abs(inverse).max(axis=(-1, -2)) < 1.0 / FLAT)
+        free = ~(np.abs(inverse).max(axis=(-1, -2)) < 1.0 / self.flat)
         block.fail(~free, self.index)
         inverse = np.where(free[..., None, None], np.nan, inverse)
         solved = []

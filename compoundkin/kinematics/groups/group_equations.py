@@ -26,6 +26,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.bars import Member, add, bars_of
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Poses
+from compoundkin.model.pairs.optional_answers import held_scales
 
 # Newton stops when no correction exceeds this (of the mechanism's size, or radians): it doubles its digits with every
 # step, so that the pose is then exact to rounding.
@@ -189,7 +190,7 @@ class GroupEquations:
 
     def _lengths(self, pair: Pair) -> Iterator[float]:
         """Yield by what a pair's equations are multiplied, so that all are lengths and close alike in any unit."""
-        return (self.size / scale for scale in pair.held_scales(self.size))
+        return (self.size / scale for scale in held_scales(pair, self.size))
 
     def _links(self, number: int, bodies: Mapping[int, Pose], block: Block, k: int) -> Poses:
         """Return the poses of a pair's members, to order k at most."""

@@ -15,7 +15,7 @@ import numpy as np
 from compoundkin.base.curves import Curve
 from compoundkin.base.curves.samples import spans
 from compoundkin.base.errors import Problem
-from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.model.pairs.contact_search import Freedom
 from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, table
@@ -217,16 +217,3 @@ class Profiled(Contact):
 def as_profiled(pair: Pair) -> Profiled | None:
     """Return a pair as one that leads a member along a profile, or None."""
     return pair if isinstance(pair, Profiled) else None
-
-
-def generic_jacobian(pair: Pair, ends: Ends) -> Number:
-    """Return the rows of a pair at random ends, its profile of the size 1 as all else is there.
-
-    Otherwise the rank of a mechanism would depend on the unit of its lengths.
-    """
-    rows = np.array(pair.jacobian(ends, (FIXED,) * len(ends)), dtype=float)
-    profiled = as_profiled(pair)
-    if profiled:
-        rows[..., 2::3] /= profiled.extent
-        rows[..., pair.held :, :] *= profiled.extent / profiled.coordinate_scale
-    return rows

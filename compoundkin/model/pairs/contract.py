@@ -109,10 +109,6 @@ class Pair(ABC):
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """Return the held relative coordinates as series: zero where the pair is closed."""
 
-    def held_scales(self, size: float) -> tuple[float, ...]:
-        """Return how large each held coordinate is if it is not zero: 1 for angles, the size for lengths."""
-        return tuple(1.0 if k in self.held_angles else size for k in range(self.held))
-
     @abstractmethod
     def coordinate(self, ends: Ends, poses: Poses) -> Series:
         """Return the (first) free relative coordinate as a series."""

@@ -38,9 +38,7 @@ class Geared(TurnCounting, Replaceable):
     _: KW_ONLY
     carrier: str = field(default="frame", metadata=link_key("The link that carries both axes."))
     teeth: Sizes = field(default=None, metadata=value_key("two", "Numbers of teeth of the two wheels."))
-    radii: Sizes = field(
-        default=None, metadata=value_key("two", "Radii of the two wheels, of pitch circles for gears.")
-    )
+    radii: Sizes = field(default=None, metadata=value_key("two", "Radii of the wheels, of pitch circles for gears."))
     phase: Number | None = field(
         default=None,
         metadata=value_key("angle", "Angle of the second from the carrier where that of the first is zero."),

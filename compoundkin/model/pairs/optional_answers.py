@@ -146,3 +146,8 @@ def lower_equivalent(pair: Pair, ends: Ends) -> Equivalent | None:
 def osculation(pair: Pair, ends: Ends, poses: Poses) -> Osculation | None:
     """Return the centres of curvature of a higher pair, where they are known."""
     return pair.osculation(ends, poses) if isinstance(pair, Replaceable) else None
+
+
+def held_scales(pair: Pair, size: float) -> tuple[float, ...]:
+    """Return how large each held coordinate is if it is not zero. That is 1 for angles, the size for lengths."""
+    return tuple(1.0 if k in pair.held_angles else size for k in range(pair.held))

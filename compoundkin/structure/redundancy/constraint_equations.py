@@ -15,11 +15,11 @@ from compoundkin.base.series import constant
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contact import generic_jacobian
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.structure.composites import Pins, driven_pair
 from compoundkin.structure.parts import LINK_FREEDOMS
+from compoundkin.structure.system import generic_jacobian
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 

@@ -207,6 +207,9 @@ def test_generic_ends_close_and_are_regular(kind: type[Pair], seed: int) -> None
     matrix = pair.jacobian(ends, fixed)
     assert np.linalg.matrix_rank(matrix[: kind.held]) == kind.held
     assert np.linalg.matrix_rank(matrix) == kind.held + 1
+    # where its members are tells lengths but no angles
+    places = np.delete(matrix[: kind.held], np.s_[2::3], axis=1)
+    assert tuple(np.flatnonzero(np.all(np.abs(places) < 1e-12, axis=1))) == kind.held_angles
     assert pair.generic(rng) != ends
     hash(pair.rank_key)
 
