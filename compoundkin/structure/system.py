@@ -134,7 +134,7 @@ def _constraint(pair: Pair, sides: tuple[int, ...], letter: str) -> Constraint:
 
 
 def generic_jacobian(pair: Pair, ends: Ends) -> Number:
-    """Return the rows of a pair at random ends, its profile being of size 1.
+    """Return a pair's rows at random ends, its profile of the size 1.
 
     So is all else there; otherwise the rank of a mechanism would depend on the unit of its lengths.
     """

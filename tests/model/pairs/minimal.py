@@ -33,7 +33,6 @@ class Level(Pair):
     code: ClassVar[str] = "T"
     title: ClassVar[str] = "level pair"
     held: ClassVar[int] = 1
-    held_angles: ClassVar[tuple[int, ...]] = (0,)
     free: ClassVar[tuple[str, ...]] = ("displacement", "offset")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "levels"
@@ -72,7 +71,6 @@ class Guided(Level):
     code: ClassVar[str] = "U"
     title: ClassVar[str] = "guided pair"
     held: ClassVar[int] = 2
-    held_angles: ClassVar[tuple[int, ...]] = (1,)
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     table: ClassVar[str] = "guideds"
 
