@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from compoundkin.base.errors import (
     CompoundkinError,
+    DrawnBeyondEnd,
     InvalidInput,
     InvalidMechanism,
     NotAssembled,
@@ -19,6 +20,6 @@ from compoundkin.base.errors import (
 )
 
 __all__ = [
-    "CompoundkinError", "InvalidInput", "InvalidMechanism", "NotAssembled", "NotDetermined", "Problem",
-    "UnassembledPoses", "UnknownName",
+    "CompoundkinError", "DrawnBeyondEnd", "InvalidInput", "InvalidMechanism", "NotAssembled", "NotDetermined",
+    "Problem", "UnassembledPoses", "UnknownName",
 ]  # fmt: skip

@@ -73,6 +73,10 @@ class UnassembledPoses(UserWarning):
     """Some poses of a motion cannot be assembled; they are NaN, masked and explained."""
 
 
+class DrawnBeyondEnd(UserWarning):
+    """The pose drawn is beyond an end of a guide."""
+
+
 def nearest(name: str, known: Sequence[str]) -> str:
     """Return the remedy for an unknown name. It is the closest known one, or the list of what there is.
 

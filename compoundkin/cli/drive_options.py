@@ -138,11 +138,13 @@ def _order(structure: Structure, asked: Mapping[str, Any]) -> int:
 
 def _pass_on(warning: warnings.WarningMessage, motion: Motion) -> None:
     """The sentence on poses that cannot be assembled; any other warning as it is."""
-    from compoundkin.base.errors import UnassembledPoses
+    from compoundkin.base.errors import DrawnBeyondEnd, UnassembledPoses
 
     if issubclass(warning.category, UnassembledPoses):
         missing = int((motion.failed != 0).sum())
         say(f"Warning: {missing:,} of {motion.failed.size:,} poses cannot be assembled.")
+    elif issubclass(warning.category, DrawnBeyondEnd):
+        say(f"Warning: {warning.message}.")
     else:
         warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 

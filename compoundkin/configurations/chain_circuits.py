@@ -10,7 +10,7 @@ from compoundkin.base.arrays import TURN, Number, wrapped
 from compoundkin.base.bracketing import bisected
 from compoundkin.configurations.circuit import Branch, ChangePoint, Circuit, Limit, Toggle
 from compoundkin.configurations.segment_poses import SegmentPoses
-from compoundkin.configurations.segments import AWAY, CHANGE, LIMIT, NONE, RANGE, SegmentChain, Segments, Visit
+from compoundkin.configurations.segments import AWAY, CHANGE, END, LIMIT, NONE, RANGE, SegmentChain, Segments, Visit
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.pairs import Pair
 
@@ -118,7 +118,11 @@ class _Maker:
         return Branch(self.first + i, self.number, low + shift, high + shift, ends, open_ends, middle, part, shift)
 
     def _open(self, row: int, side: int) -> str:
-        kind = self.placing.segments.kind[row, side]
+        segments = self.placing.segments
+        kind = segments.kind[row, side]
+        if kind == END:
+            pair = self.placing.sweep.solving_order.guide_ends.pairs[int(segments.group[row, side])]
+            return f"an end of {pair.name}"
         return {RANGE: "the end of the range", AWAY: "a link at infinity"}.get(int(kind), "a place not resolved")
 
     def _changes(self) -> tuple[ChangePoint, ...]:

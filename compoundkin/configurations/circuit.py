@@ -44,7 +44,7 @@ class Branch:
 
     `low` and `high` bound the driver's value; of a branch that turns fully they are one or more full turns apart.
     `ends` are the limit positions at both, None where the branch ends otherwise, which `open_ends` tell: at the end of
-    the range, at infinity; or, for a full turn, not at all. `configuration` is that in the middle.
+    the range, of a guide, at infinity; or, for a full turn, not at all. `configuration` is that in the middle.
     """
 
     number: int

@@ -17,6 +17,7 @@ from compoundkin.configurations import closed_form_segments, general_segments
 from compoundkin.configurations.chain_circuits import built, toggles_of
 from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit, Toggle
 from compoundkin.configurations.driver_range import range_of, starting_values
+from compoundkin.configurations.end_segments import cut_at_ends
 from compoundkin.configurations.enumeration import AllModes, closed_redundant
 from compoundkin.configurations.routes import Route, located, place_of, route
 from compoundkin.configurations.segment_poses import SegmentPoses, Sweep
@@ -193,7 +194,7 @@ def _lifted(sweep: Sweep, segments: Segments, fineness: int) -> tuple[Segments, 
         if segments.rows > MOST_SEGMENTS:
             what = f"the circuits are in more than {MOST_SEGMENTS:,} pieces: the groups multiply them"
             raise InvalidInput(Problem("circuits", what, "ask for a part of the mechanism"))
-    return _with_redundant(sweep, segments), lost
+    return cut_at_ends(sweep, _with_redundant(sweep, segments), fineness), lost
 
 
 def _with_redundant(sweep: Sweep, segments: Segments) -> Segments:

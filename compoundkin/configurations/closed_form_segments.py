@@ -12,7 +12,8 @@ import numpy as np
 from compoundkin.base.bracketing import bisected, least
 from compoundkin.base.series import Number
 from compoundkin.configurations.segment_poses import Sweep
-from compoundkin.configurations.segments import AWAY, CHANGE, LIMIT, NONE, TOUCHING, Segments
+from compoundkin.configurations.segments import AWAY, CHANGE, END, LIMIT, NONE, TOUCHING, Segments
+from compoundkin.kinematics.block import Block
 
 # Each segment is sampled in so many cells; the curve of a margin between two samples is that of half a turn of the
 # driver or less, divided by it.
@@ -50,21 +51,25 @@ def lifted(sweep: Sweep, segments: Segments, k: int, fineness: int = 1) -> Segme
 
     The group is of one mode or two; cells are divided by `fineness`.
     """
-    margins = _Margins(sweep, segments, k, CELLS * fineness)
-    events = _events(margins)
+    margins = Margins(sweep, segments, k, CELLS * fineness)
+    events = events_of(margins)
     modes = (1, -1) if sweep.solving_order.solvers[k].modes == 2 else (1,)
-    cuts = list(_cuts(margins, events, modes))
-    return _glued(segments, k, cuts, margins.at_ends())
+    cuts = list(cuts_between(margins, events, modes))
+    return glued(segments, k, cuts, margins.at_ends())
 
 
-class _Margins:
-    """The margin of a group along segments: negative where it cannot be assembled."""
+class Margins:
+    """What is negative where segments do not go on, along them.
 
-    def __init__(self, sweep: Sweep, segments: Segments, k: int, cells: int) -> None:
+    It is the margin of group `k`; or of something else, which a subclass knows, after all groups.
+    """
+
+    def __init__(self, sweep: Sweep, segments: Segments, k: int | None, cells: int) -> None:
         self.sweep, self.k = sweep, k
         rows = np.arange(segments.rows)
         # mode +1 stands for both
-        self.segments = replace(segments, signs={**segments.signs, k: np.ones(segments.rows)})
+        mode = {} if k is None else {k: np.ones(segments.rows)}
+        self.segments = replace(segments, signs={**segments.signs, **mode})
         self.phi = np.linspace(0.0, np.pi, cells + 1)
         sides = np.full(cells + 1, NONE)
         sides[0], sides[-1] = 0, 1
@@ -78,20 +83,26 @@ class _Margins:
         return self._at(rows, self.segments.at(rows, phi[:, None]), None)[:, 0]
 
     def _at(self, rows: Number, s: Number, sides: Number | None) -> Number:
-        block = self.sweep.run(self.segments, rows, s, sides=sides, upto=self.k + 1)
+        block = self.sweep.run(self.segments, rows, s, sides=sides, upto=None if self.k is None else self.k + 1)
+        margin = self.of(block)
+        return np.broadcast_to(np.where(np.isnan(margin), -1.0, margin), s.shape)
+
+    def of(self, block: Block) -> Number:
+        """Return the margin in a block."""
+        assert self.k is not None
         solver = self.sweep.solving_order.solvers[self.k]
         margin = solver.margin(block)
         if margin is None:
             # a group that tells no margin: whether it has a pose
             margin = np.where(np.isfinite(block.world[solver.group.links[0]].z.c[0]), 1.0, -1.0)
-        return np.broadcast_to(np.where(np.isnan(margin), -1.0, margin), s.shape)
+        return margin
 
     def at_ends(self) -> Number:
         """Return where the margin is zero at an end already, (rows, 2)."""
         return np.abs(self.samples[:, [0, -1]]) < TOUCHING
 
 
-def _events(margins: _Margins) -> list[list[Event]]:
+def events_of(margins: Margins) -> list[list[Event]]:
     """Return the zeros of the margin on every segment, in order."""
     m, phi = margins.samples, margins.phi
     good = m >= 0
@@ -130,7 +141,7 @@ def _dips(m: Number, good: Number) -> tuple[Number, Number]:
     return rows, at + 1
 
 
-def _centred(margins: _Margins, rows: Number, place: Number) -> Number:
+def _centred(margins: Margins, rows: Number, place: Number) -> Number:
     """Double zeros to more digits than their flat minimum shows: where the root of the margin, a line, is zero."""
     for aside in BESIDE:
         before, after = (np.sqrt(np.abs(margins(rows, place + d))) if len(rows) else place for d in (-aside, aside))
@@ -138,7 +149,7 @@ def _centred(margins: _Margins, rows: Number, place: Number) -> Number:
     return place
 
 
-def _zeros(margins: _Margins, rows: Number, low: Number, high: Number) -> Number:
+def _zeros(margins: Margins, rows: Number, low: Number, high: Number) -> Number:
     """Return the zero of the margin in every bracket, from the side where the group is assembled."""
     if not len(rows):
         return np.zeros(0)
@@ -147,8 +158,8 @@ def _zeros(margins: _Margins, rows: Number, low: Number, high: Number) -> Number
     return np.where(rising, high, low)
 
 
-def _cuts(margins: _Margins, events: list[list[Event]], modes: tuple[int, ...]) -> Iterator[Cut]:
-    """Return the parts of the segments between zeros where the group is assembled, once for each mode."""
+def cuts_between(margins: Margins, events: list[list[Event]], modes: tuple[int, ...]) -> Iterator[Cut]:
+    """Return the parts of segments between zeros, those that go on, in each mode."""
     parts = []
     for row, found in enumerate(events):
         marks = [None, *found, None]
@@ -161,12 +172,14 @@ def _cuts(margins: _Margins, events: list[list[Event]], modes: tuple[int, ...]) 
             yield from (Cut(*part, sign) for sign in modes)
 
 
-def _glued(segments: Segments, k: int, cuts: list[Cut], at_limit: Number) -> Segments:
+def glued(segments: Segments, k: int | None, cuts: list[Cut], at_limit: Number) -> Segments:
     """Return the lifted segments, their ends glued."""
     parent = np.array([cut.parent for cut in cuts], dtype=int)
     first, last = (np.array([getattr(cut, name) for cut in cuts]) for name in ("first", "last"))
     low, high = (segments.at(parent, phi[:, None])[:, 0] for phi in (first, last))
-    signs = {**{j: sign[parent] for j, sign in segments.signs.items()}, k: np.array([cut.sign for cut in cuts], float)}
+    signs = {j: sign[parent] for j, sign in segments.signs.items()}
+    if k is not None:
+        signs[k] = np.array([cut.sign for cut in cuts], float)
     curves = {j: tuple(curve[row] for row in parent) for j, curve in segments.curves.items()}
     ends = _Ends(segments, k, cuts, at_limit)
     glue = np.array([ends.glue(cut, side) for cut in cuts for side in (0, 1)], dtype=int).reshape(-1, 2, 4)
@@ -176,7 +189,7 @@ def _glued(segments: Segments, k: int, cuts: list[Cut], at_limit: Number) -> Seg
 class _Ends:
     """Which of the cuts has an end at an event of a parent, or at the parent's own end."""
 
-    def __init__(self, segments: Segments, k: int, cuts: list[Cut], at_limit: Number) -> None:
+    def __init__(self, segments: Segments, k: int | None, cuts: list[Cut], at_limit: Number) -> None:
         self.segments, self.k, self.at_limit = segments, k, at_limit
         self.single = not any(cut.sign < 0 for cut in cuts)
         self.known: dict[tuple[int, Event | None, int, int], int] = {}
@@ -189,6 +202,8 @@ class _Ends:
         event = cut.ends if own else cut.starts
         if event is None:
             return self._as_parent(cut, own)
+        if self.k is None:
+            return END, NONE, NONE, NONE
         if self.single:
             return AWAY, self.k, NONE, NONE
         side = 1 - own if event.touching else own

@@ -16,8 +16,8 @@ from compoundkin.base.series import Number
 
 # What the end of a segment is: a limit position of a group; a change point of a group, where its modes meet and the
 # motion goes on; the seam where a full turn begins again; the end of the range that was asked for; a place where a
-# link goes to infinity.
-LIMIT, CHANGE, SEAM, RANGE, AWAY = range(5)
+# link goes to infinity; the end of a guide, where the `group` is the index of its pair.
+LIMIT, CHANGE, SEAM, RANGE, AWAY, END = range(6)
 NONE = -1
 # A margin (a squared sine, or a length) that is below this at its least touches zero: rounding times its curvature.
 TOUCHING = 1e-12

@@ -114,6 +114,13 @@ def _pair_of(first: Any, second: Any) -> dict[str, Any]:
     return {"type": "array", "prefixItems": [first, second], "minItems": 2, "maxItems": 2}
 
 
+def _ends(value: Any) -> dict[str, Any]:
+    """Return two ends of a guide, or a table of one that there is."""
+    end = {"anyOf": [value, NAME]}
+    one = {"type": "object", "properties": {"from": end, "to": end}, "minProperties": 1, "additionalProperties": False}
+    return {"anyOf": [_pair_of(end, end), one]}
+
+
 NUMBER = {"type": "number"}
 NAME = {"type": "string", "minLength": 1}
 
@@ -194,4 +201,6 @@ FRAGMENTS: dict[Kind, dict[str, Any]] = {
     },
     "published": {"anyOf": [_ref("single"), _pair_of(NUMBER, NUMBER)]},
     "margin": _ref("single"),
+    "reach": _ends(_ref("numbers")),
+    "sweep": _ends(_ref("angle")),
 }

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.files.single_values import bad, wrong
-from compoundkin.files.written_quantities import READERS
+from compoundkin.files.value_readers import READERS
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.profiles import disc
 
@@ -116,7 +116,7 @@ class Recovery:
             "name": name, "text": name, "names": (), "point": point, "points": {name: point}, "drawing": {},
             "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
             "two": (1.0, 1.0), "profile": PROFILE, "program": None, "place": point, "places": (),
-            "turned": (),
+            "turned": (), "reach": None, "sweep": None,
         }  # fmt: skip
         return values.get(kind, 0.0)
 

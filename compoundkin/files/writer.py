@@ -119,6 +119,16 @@ def _published(value: complex, angle: bool) -> Any:
     return exact_numbers.point(value) if value.imag else exact_numbers.coordinate(value.real, angle)
 
 
+def _reach(value: Any, angle: bool) -> Any:
+    """Return both ends of a guide; a table of the one that there is where the other is open."""
+    said = {
+        key: end if isinstance(end, str) else exact_numbers.coordinate(end, angle)
+        for key, end in zip(("from", "to"), value, strict=True)
+        if end is not None
+    }
+    return list(said.values()) if len(said) == len(value) else said
+
+
 WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "name": lambda value, _: value,
     "text": lambda value, _: value,
@@ -147,4 +157,6 @@ WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "at": lambda value, _: None,
     "published": _published,
     "margin": exact_numbers.coordinate,
+    "reach": lambda value, _: _reach(value, False),
+    "sweep": lambda value, _: _reach(value, True),
 }

@@ -8,24 +8,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.files.single_values import (
-    Reader,
-    bad,
-    flag,
-    held,
-    name,
-    names,
-    numbers,
-    points,
-    sign,
-    single,
-    table,
-    text,
-    two,
-    whole,
-    wrong,
-)
-from compoundkin.model.fields import Kind
+from compoundkin.files.single_values import bad, held, numbers, single, wrong
 from compoundkin.model.geometry import polar, vector
 
 # {from, to, step} beyond this many values is taken for a slip: it would only fill the memory.
@@ -183,31 +166,3 @@ def places(value: Any, where: str, angle: bool | None = None) -> tuple[complex, 
     if not isinstance(value, list):
         raise wrong(where, value, "a list of points", "write [[x, y], [x, y]]")
     return tuple(place(one, f"{where}[{index}]") for index, one in enumerate(value))
-
-
-READERS: dict[Kind, Reader] = {
-    "name": name,
-    "text": text,
-    "names": names,
-    "length": numbers,
-    "angle": degrees,
-    "point": point,
-    "sign": sign,
-    "flag": flag,
-    "two": two,
-    "points": points,
-    "drawing": table,
-    "whole": whole,
-    "span": single,
-    "times": times,
-    "coordinate": coordinate,
-    "number": single,
-    "turn": turn,
-    "place": place,
-    "places": places,
-    "values": values,
-    "rate": rate,
-    "at": table,
-    "published": published,
-    "margin": margin,
-}

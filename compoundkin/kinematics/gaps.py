@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +22,8 @@ class Gap:
 
     `begin` and `end` are the driver values at which the group stops and starts to close, found to 1e-9;
     where the run reaches an end of the motion (`open_begin`, `open_end`) they are the motion's own value
-    there. `first` and `last` are the indices of the poses along the motion.
+    there. `first` and `last` are the indices of the poses along the motion. `pair` is named where the poses
+    are beyond an end of its guide: `links` are then those that it joins, and no group is named.
     """
 
     design: tuple[int, ...]
@@ -34,6 +36,7 @@ class Gap:
     links: tuple[str, ...]
     group: str
     reason: str
+    pair: str = ""
 
 
 def gaps(motion: Motion) -> tuple[Gap, ...]:
@@ -61,11 +64,10 @@ def gaps(motion: Motion) -> tuple[Gap, ...]:
         begin = _edges(motion, designs, first - 1, first)
         end = _edges(motion, designs, last + 1, last)
         middle = (first + last) // 2
-        reasons = _reasons(motion, designs, middle)
+        blames = _blames(motion, designs, middle)
     axes = motion.shape[:-1]
     found = []
     for k, (d, a, b) in enumerate(runs.tolist()):
-        group = motion.structure.groups[int(motion.failed[d, middle[k]]) - 1]
         design = tuple(int(i) for i in np.unravel_index(d, axes)) if axes else ()
         found.append(
             Gap(
@@ -76,9 +78,7 @@ def gaps(motion: Motion) -> tuple[Gap, ...]:
                 _at(end, k),
                 a == 0,
                 b == motion.inputs.poses - 1,
-                group.links,
-                group.name,
-                reasons[k],
+                *blames[k],
             )
         )
     return tuple(found)
@@ -107,12 +107,27 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[s
     return {name: np.broadcast_to(np.ravel(values[0]), len(designs)) for name, values in drives.items()}
 
 
-def _reasons(motion: Motion, designs: Number, poses: Number) -> list[str]:
+class _Blame(NamedTuple):
+    """What a gap says of its cause, in the order of its fields."""
+
+    links: tuple[str, ...]
+    group: str
+    reason: str
+    pair: str = ""
+
+
+def _blames(motion: Motion, designs: Number, poses: Number) -> list[_Blame]:
     part = motion.inputs.pick(designs, poses.astype(float))
     block = motion.block(part, 0, poses.astype(float)[:, None], designs[:, None])
-    solvers = motion.solving_order.solvers
-    failed = motion.failed[designs, poses]
-    return [solvers[index - 1].why(block, k) for k, index in enumerate(failed.tolist())]
+    found = []
+    for k, index in enumerate(motion.failed[designs, poses].tolist()):
+        passed = motion.solving_order.guide_ends.passed(index, block, k)
+        if passed is not None:
+            found.append(_Blame(passed.pair.members, "", passed.reason, passed.pair.name))
+        else:
+            group, solver = motion.structure.groups[index - 1], motion.solving_order.solvers[index - 1]
+            found.append(_Blame(group.links, group.name, solver.why(block, k)))
+    return found
 
 
 def _at(values: Mapping[str, Number], k: int) -> dict[str, float]:

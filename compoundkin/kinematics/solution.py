@@ -9,8 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem, UnassembledPoses
+from compoundkin.base.errors import (
+    DrawnBeyondEnd,
+    InvalidInput,
+    NotAssembled,
+    NotDetermined,
+    Problem,
+    UnassembledPoses,
+)
 from compoundkin.base.poses import Pose
+from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
 from compoundkin.kinematics.chosen_modes import shown_by, signs_of
@@ -66,7 +74,7 @@ def solve(
 
     Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
     NotAssembled where a group has no pose at all or a redundant pair opens; warns UnassembledPoses where some poses do
-    not close.
+    not close, DrawnBeyondEnd where the drawing is beyond an end of a guide.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
@@ -85,11 +93,34 @@ def solve(
         motion = replace(_settled(solving_order, tracker.given, tracker, order), time=times)
         if solving_order.structure.relaxation:
             check_redundant(motion)
+    _warn(motion)
+    return motion
+
+
+def _warn(motion: Motion) -> None:
+    """Warn of poses that cannot be assembled, and of a drawing beyond an end."""
+    if motion.solving_order.guide_ends.pairs:
+        _warn_of_drawing(motion.tracker)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         how_many = f"{missing} of {motion.failed.size} poses cannot be assembled"
-        warnings.warn(f"{how_many}: Motion.assembled masks them, gaps() explains", UnassembledPoses, stacklevel=2)
-    return motion
+        warnings.warn(f"{how_many}: Motion.assembled masks them, gaps() explains", UnassembledPoses, stacklevel=3)
+
+
+def _warn_of_drawing(tracker: Tracker) -> None:
+    """Warn where the pose drawn, at the driver values it shows, is beyond an end of a guide."""
+    solving_order, shown = tracker.solving_order, tracker.shown
+    drivers = solving_order.structure.driven
+    given = tracker.given
+    if any(drawn_value(solving_order, given, name, shown.poses, shown.beside) is None for name in drivers):
+        return
+    first = tracker.approach_path.cut(slice(None), slice(0, 1))
+    with np.errstate(all="ignore"):
+        block = tracker.run(first, 0, *places(slice(0, given.designs), slice(0, 1)), on_approach=True)
+        failed = np.broadcast_to(block.failed, block.shape).ravel()
+        passed = [solving_order.guide_ends.passed(int(index), block, k) for k, index in enumerate(failed)]
+    for reason in dict.fromkeys(one.reason for one in passed if one):
+        warnings.warn(f"as it is drawn, {reason}", DrawnBeyondEnd, stacklevel=4)
 
 
 def _check_order(order: int) -> None:

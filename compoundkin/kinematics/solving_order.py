@@ -14,6 +14,7 @@ from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.limits import CLIPPED, LimitRule
+from compoundkin.kinematics.passed_ends import GuideEnds
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales
@@ -44,6 +45,8 @@ class SolvingOrder(PrintsShort):
         )
         for solver in self.solvers:
             self.ends.update(solver.ends)
+        self.guide_ends = GuideEnds(structure, self.size)
+        self.ends.update(self.guide_ends.bounds(geometry))
 
     @cached_property
     def turning(self) -> frozenset[str]:
@@ -121,8 +124,11 @@ class Choice(Protocol):
 
 def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None = None) -> Block:
     """Assemble the groups one after another, up to one; return the block. Each is in the mode that is chosen."""
+    guide_ends = solving_order.guide_ends
+    guide_ends.mask(block, None)
     for solver in solving_order.solvers[:upto]:
         solver.close(block, choose.mode(block, solver))
+        guide_ends.mask(block, solver.index)
         for link in solver.group.links if solving_order.turning else ():
             pose = block.world[link]
             near = choose.angle(solver, link) if link in solving_order.turning and pose.theta is None else None

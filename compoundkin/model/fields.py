@@ -37,6 +37,8 @@ from compoundkin.base.errors import Problem, nearest
 #   turned   list of segments over degrees                tuple of ProgramSegment over radians
 #   program  such a list, or a table of it and a start    Program over radians
 #   profile  table with a kind, and the keys of that profile   Profile
+#   reach    [from, to], each a length or a letter, or {from, to} of which one may be left out   tuple of two
+#   sweep    the same of angles in degrees                tuple of two, radians
 # Of a driven coordinate, an angle (degrees in files) or a length, as its pair has it:
 #   values   number or nested list, {from, to, step}, {rad = ...}   float or array
 #   coordinate  number or nested list, {rad = ...}        float or array
@@ -49,7 +51,7 @@ Kind = Literal[
     "name", "text", "names", "length", "angle", "point", "sign", "flag", "two", "points", "drawing",
     "values", "rate", "at", "published", "margin",
     "whole", "span", "times", "coordinate", "segments", "law",
-    "number", "turn", "place", "places", "turned", "program", "profile",
+    "number", "turn", "place", "places", "turned", "program", "profile", "reach", "sweep",
 ]  # fmt: skip
 
 

@@ -123,6 +123,9 @@ def no_numbers(pair: Pair, where: str) -> Iterator[Problem]:
 def _numbers_of(pair: Pair, key: Key) -> tuple[Any, ...]:
     """Return the numbers and arrays that a pair holds under a key."""
     value: Any = getattr(pair, key.name, None)
+    if key.kind in ("reach", "sweep"):
+        ends = value if isinstance(value, tuple | list) else (value,)
+        return tuple(end for end in ends if end is not None and not isinstance(end, str))
     if key.kind not in ("length", "angle", "two") or (value is None and key.default is None and not key.required):
         return ()
     return value if key.kind == "two" else (value,)

@@ -55,7 +55,7 @@ class Composer(LetteredLinks):
     """
 
     title: str
-    _slides: list[dict[str, str]] = field(default_factory=list)
+    _slides: list[dict[str, Any]] = field(default_factory=list)
     _drives: list[dict[str, Any]] = field(default_factory=list)
 
     def __repr__(self) -> str:

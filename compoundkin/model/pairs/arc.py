@@ -15,13 +15,14 @@ from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import Contact, Touch, row
 from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.guide_ends import EndedArc, Reach, reach_key
 from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Groove, Mark, Stud, arc_line, reach
 
 
 @dataclass(frozen=True, eq=False)
-class ArcSlot(Contact):
+class ArcSlot(Contact, EndedArc):
     """A point of `link` that runs along a circular slot in the link `on`.
 
     The point is `at`, the circle of `radius` about `centre_at`.
@@ -41,6 +42,7 @@ class ArcSlot(Contact):
     )
     centre_at: str = field(metadata=point_key("on", "The point of the slotted link about which the slot is curved."))
     radius: Number = field(metadata=value_key("length", "Radius of the circle on which the middle of the pin runs."))
+    reach: Reach = field(default=None, metadata=reach_key("sweep", "From where counterclockwise to where it is cut."))
 
     code: ClassVar[str] = "A"
     title: ClassVar[str] = "pin-in-arc pair"
@@ -58,6 +60,11 @@ class ArcSlot(Contact):
         yield from super().problems(links, where)
         if not np.all(np.asarray(self.radius) > 0):
             yield Problem(f"{where}.radius", f"{self.radius!r} is not a positive length")
+        yield from self.reach_problems(links, where)
+
+    def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
+        """Find named ends that leave the arc no length."""
+        yield from self.reach_misfits(geometry, where)
 
     def ends(self, geometry: Geometry) -> Ends:
         """Return the centre with the radius; the pin."""
@@ -110,6 +117,13 @@ class ArcSlot(Contact):
         """Return a groove as long as the pin's way, and the pin."""
         way = reach(np.unwrap(np.ravel(self.coordinate(ends, poses).c[0])))
         return Groove(0, arc_line(ends[0].point, ends[0].measure, *way)), Stud(1, ends[1].point)
+
+    def with_ends(
+        self, marks: tuple[Mark, ...], bounds: tuple[Number, Number], ends: Ends, poses: Poses
+    ) -> tuple[Mark, ...]:
+        """Return the whole groove, and the pin."""
+        low, high = (float(bound) for bound in bounds)
+        return (Groove(0, arc_line(ends[0].point, ends[0].measure, low, high), (True, True)), *marks[1:])
 
 
 arc = word("arc", ArcSlot)

@@ -139,8 +139,8 @@ class Cam(Profiled):
             return None
         middle, radius = self.profile.circle
         reach = radius - ends[1].measure if self.inside else radius + ends[1].measure
-        at = {"at": self.at, "centre_at": "middle of the disc"}
-        arc = ArcSlot(self.link, on=self.on, radius=reach, name=self.name, **at)
+        centre = "middle of the disc"
+        arc = ArcSlot(self.link, on=self.on, at=self.at, centre_at=centre, radius=reach, name=self.name)
         return arc.equivalent((End(middle, 1 + 0j, reach), End(ends[1].point)))
 
     def loop_terms(self, ends: Ends) -> LoopTerms | None:

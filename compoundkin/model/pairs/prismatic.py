@@ -15,6 +15,7 @@ from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import NameWording, link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
+from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
 from compoundkin.model.pairs.loop_terms import (
     Auxiliary,
     LoopTerms,
@@ -30,7 +31,7 @@ from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 
 
 @dataclass(frozen=True, eq=False)
-class Prismatic(Drivable, Orienting):
+class Prismatic(Drivable, Orienting, Ended):
     """The link `link` slides on the link `on`. Its point `at` runs along a guide.
 
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x
@@ -68,6 +69,7 @@ class Prismatic(Drivable, Orienting):
     turn: Number | None = field(
         default=None, metadata=value_key("angle", "Angle from the guide to the x axis of the sliding link.")
     )
+    reach: Reach = field(default=None, metadata=reach_key("reach", "From where to where the block may go."))
 
     code: ClassVar[str] = "P"
     title: ClassVar[str] = "prismatic pair"
@@ -97,6 +99,11 @@ class Prismatic(Drivable, Orienting):
         yield from super().problems(links, where)
         if self.toward is not None and self.toward == self.through:
             yield Problem(f"{where}.toward", f"a guide from {self.through!r} to itself has no direction")
+        yield from self.reach_problems(links, where)
+
+    def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
+        """Find named ends that are not one after the other along the guide."""
+        yield from self.reach_misfits(geometry, where)
 
     def ends(self, geometry: Geometry) -> Ends:
         """Return guide point and direction on each link. The two directions are parallel when the pair is closed."""
@@ -198,6 +205,13 @@ class Prismatic(Drivable, Orienting):
         guide, block = ends
         low, high = reach(self.coordinate(ends, poses).c[0])
         return (Sliding(guide.point, guide.along.c[0], low, high, block.point, block.along.c[0]),)
+
+    def with_ends(
+        self, marks: tuple[Mark, ...], bounds: tuple[Number, Number], ends: Ends, poses: Poses
+    ) -> tuple[Mark, ...]:
+        """Return a block on its whole guide."""
+        low, high, stops = self.way_shown(bounds, self.coordinate(ends, poses).c[0])
+        return tuple(mark._replace(low=low, high=high, stops=stops) for mark in marks if isinstance(mark, Sliding))
 
 
 slide = word("slide", Prismatic)

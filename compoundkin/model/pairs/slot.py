@@ -18,6 +18,7 @@ from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import Contact, Touch, row
 from compoundkin.model.pairs.contract import Ends, Pair, Poses
+from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
 from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.model.pairs.revolute import Revolute
@@ -25,7 +26,7 @@ from compoundkin.model.pairs.symbols import Groove, Mark, Stud, reach
 
 
 @dataclass(frozen=True, eq=False)
-class Slot(Contact):
+class Slot(Contact, Ended):
     """The point `at` of `link` runs along a straight slot in the link `on`.
 
     The slot is the line through the point `through` of `on`, in the direction `angle` (radians, from the x axis of
@@ -55,6 +56,7 @@ class Slot(Contact):
     offset: Number = field(
         default=0.0, metadata=value_key("length", "Distance by which the slot lies to the left of `through`.")
     )
+    reach: Reach = field(default=None, metadata=reach_key("reach", "From where to where the pin may go."))
 
     code: ClassVar[str] = "S"
     title: ClassVar[str] = "pin-in-slot pair"
@@ -72,6 +74,7 @@ class Slot(Contact):
         yield from super().problems(links, where)
         if self.toward == self.through:
             yield Problem(f"{where}.toward", f"a slot from {self.through!r} to itself has no direction")
+        yield from self.reach_problems(links, where)
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
         """Find two points of the slot at one place."""
@@ -79,6 +82,8 @@ class Slot(Contact):
         if self.toward is not None and not np.all(np.abs(points[self.toward] - points[self.through]) > 0):
             what = f"{self.through!r} and {self.toward!r} are at one place, so that the slot has no direction"
             yield Problem(f"{where}.toward", what, "name another point or give an angle")
+        else:
+            yield from self.reach_misfits(geometry, where)
 
     def ends(self, geometry: Geometry) -> Ends:
         """Return a point and the direction of the slot; the pin."""
@@ -132,6 +137,14 @@ class Slot(Contact):
         """Return a groove as long as the pin's way, and the pin."""
         travel = np.linspace(*reach(self.coordinate(ends, poses).c[0]), 2)
         return Groove(0, ends[0].point + ends[0].along.c[0] * travel), Stud(1, ends[1].point)
+
+    def with_ends(
+        self, marks: tuple[Mark, ...], bounds: tuple[Number, Number], ends: Ends, poses: Poses
+    ) -> tuple[Mark, ...]:
+        """Return the whole groove, and the pin."""
+        low, high, stops = self.way_shown(bounds, self.coordinate(ends, poses).c[0])
+        line = ends[0].point + ends[0].along.c[0] * np.array([low, high])
+        return (Groove(0, line, stops), *marks[1:])
 
 
 slot = word("slot", Slot)

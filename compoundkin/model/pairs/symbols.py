@@ -32,7 +32,7 @@ class Stud(NamedTuple):
 class Sliding(NamedTuple):
     """A straight guide on the first member, and a block on the second.
 
-    It is used from `low` to `high` as seen from `at`.
+    It is used from `low` to `high` as seen from `at`; `stops` tell at which of both it ends.
 
     `turn` is the direction of the guide as the sliding member carries it.
     """
@@ -43,13 +43,15 @@ class Sliding(NamedTuple):
     high: float
     block: Number
     turn: Number
+    stops: tuple[bool, bool] = (False, False)
 
 
 class Groove(NamedTuple):
-    """The middle line of a groove in a member, an array of points."""
+    """The middle line of a groove in a member, an array of points. `stops` tell at which of both ends it ends."""
 
     member: int
     line: Number
+    stops: tuple[bool, bool] = (False, False)
 
 
 class Wheel(NamedTuple):

@@ -42,6 +42,8 @@ def gap_sentence(sample: Sample, gap: Gap) -> str:
     spans = [_span(driver, gap) for driver in sample.varying]
     where = listed(spans) if spans else "At this pose"
     where = where[:1].upper() + where[1:]
+    if gap.pair:
+        return f"{where}, {gap.reason}."
     return f"{where}, the {gap.group} group of {listed(gap.links)} does not close: {gap.reason}."
 
 

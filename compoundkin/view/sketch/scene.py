@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.arrays import entry
+from compoundkin.base.arrays import entry, first_entry
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics import Motion
@@ -17,6 +17,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.guide_ends import as_ended, bounds_name
 from compoundkin.model.pairs.symbols import Mark
 from compoundkin.structure import DrivenPair, Structure
 
@@ -89,11 +90,16 @@ class Scene:
     @cached_property
     def seen(self) -> tuple[Seen, ...]:
         """The marks of all pairs."""
-        return tuple(
-            Seen(pair, mark, pair.members)
-            for pair in self.structure.pairs
-            for mark in pair.glyph(self.ends[pair.name], tuple(self.whole[name] for name in pair.members))
-        )
+        return tuple(Seen(pair, mark, pair.members) for pair in self.structure.pairs for mark in self._marks(pair))
+
+    def _marks(self, pair: Pair) -> tuple[Mark, ...]:
+        ends, poses = self.ends[pair.name], tuple(self.whole[name] for name in pair.members)
+        marks, ended = pair.glyph(ends, poses), as_ended(pair)
+        if ended is None:
+            return marks
+        known = self.ends.get(bounds_name(pair))
+        bounds = ended.bounds(self.mechanism.geometry) if known is None else [side.point for side in known]
+        return ended.with_ends(marks, (first_entry(bounds[0]), first_entry(bounds[1])), ends, poses)
 
     @cached_property
     def numbers(self) -> Mapping[str, int]:

@@ -1,4 +1,4 @@
-"""`Painter`, a scene on its window, and slides: blocks on guides, rods through blocks, cylinders."""
+"""`Painter`, a scene on its window, and slides: blocks on guides, rods through blocks."""
 
 from __future__ import annotations
 
@@ -19,10 +19,8 @@ from compoundkin.view.sketch.sketch_style import BLOCK, PIN, style_of
 
 # A guide goes on by this much beyond the places that the block takes, in picture units.
 BEYOND = 22.0
-CYLINDER = 17.0
-# A cylinder ends at this part of the shortest length, and its piston keeps this distance from both ends.
-BARREL = 0.92
-PISTON = 7.0
+# Its stop is so far beyond the last place of the block's middle.
+STOP = BLOCK[0] / 2.0 + 2.0
 
 
 class Layer(IntEnum):
@@ -111,15 +109,15 @@ class Painter:
 
 
 def sliding(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
-    """Draw a block on its guide. A driven one between moving links is a cylinder with its rod."""
+    """Draw a block on its guide, or a rod that runs through it."""
     guide, block = seen.members
     if not (painter.shows(guide) and painter.shows(block)):
         yield from _half(painter, seen, mark)
-    elif painter.is_cylinder(seen):
-        yield from _cylinder(painter, seen, mark)
     elif painter.is_rod(seen):
         # the link that carries the guide is the block, and the guide the rod that runs through it
-        yield Laid(Layer.BAR, Polyline(rod_line(painter, block, mark), painter.style("bar", block)), block)
+        rod = rod_line(painter, block, mark)
+        yield Laid(Layer.BAR, Polyline(rod, painter.style("bar", block)), block)
+        yield from stops(painter, block, rod, mark.stops[::-1], Layer.BAR)
         yield painter.block_at(guide, painter.place(guide, mark.at), painter.along(guide, mark.along))
     else:
         yield from _guide(painter, guide, mark)
@@ -141,7 +139,8 @@ def rod_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, compl
     """Return the two ends of a rod that runs through a block."""
     ends = [painter.place(link, mark.block - mark.turn * s) for s in (mark.low, mark.high)]
     e = painter.along(link, mark.turn)
-    return _spanned((ends[1] - e * BEYOND, ends[0] + e * BEYOND, painter.place(link, mark.block)), e)
+    before, after = (STOP if stop else BEYOND for stop in mark.stops[::-1])
+    return _spanned((ends[1] - e * before, ends[0] + e * after, painter.place(link, mark.block)), e)
 
 
 def guide_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
@@ -149,7 +148,25 @@ def guide_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, com
     e = painter.along(link, mark.along)
     span = min(mark.low, 0.0), max(mark.high, 0.0)
     start, stop = (painter.place(link, mark.at + mark.along * s) for s in span)
-    return start - e * (BEYOND if mark.low < 0 else 0.0), stop + e * (BEYOND if mark.high > 0 else 0.0)
+    before, after = (STOP if stopped else BEYOND for stopped in mark.stops)
+    return start - e * (before if mark.low < 0 else 0.0), stop + e * (after if mark.high > 0 else 0.0)
+
+
+def _stopped(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
+    """Return where a guide has its stops: a block at its end touches them."""
+    e = painter.along(link, mark.along)
+    low, high = (painter.place(link, mark.at + mark.along * s) for s in (mark.low, mark.high))
+    return low - e * STOP, high + e * STOP
+
+
+def stops(
+    painter: Painter, link: str, line: tuple[complex, ...], shown: tuple[bool, bool], layer: Layer
+) -> Iterator[Laid]:
+    """Draw bars across the ends of a line, those that are shown."""
+    for place, inner, is_shown in ((line[0], line[1], shown[0]), (line[-1], line[-2], shown[1])):
+        across = 1j * direction(place - inner) * BLOCK[1] * 0.8
+        if is_shown:
+            yield Laid(layer, Polyline((place - across, place + across), painter.style("line", link)), link)
 
 
 def _spanned(points: tuple[complex, ...], e: complex) -> tuple[complex, complex]:
@@ -162,12 +179,15 @@ def _guide(painter: Painter, link: str, mark: Sliding) -> Iterator[Laid]:
     e = painter.along(link, mark.along)
     if link != FRAME:
         yield Laid(Layer.BAR, Polyline(guide_line(painter, link, mark), painter.style("bar", link)), link)
+        yield from stops(painter, link, _stopped(painter, link, mark), mark.stops, Layer.BAR)
         yield from painter.stub(link, painter.place(link, mark.at))
         return
     low, high = (painter.place(link, mark.at + mark.along * s) for s in (mark.low, mark.high))
     side = _outer_side(e, (low + high) / 2.0, painter.middle)
     down = 1j * e * side * BLOCK[1] / 2.0
-    start, stop = low - e * BEYOND, high + e * BEYOND
+    before, after = (STOP if stop else BEYOND for stop in mark.stops)
+    start, stop = low - e * before, high + e * after
+    yield from stops(painter, FRAME, _stopped(painter, link, mark), mark.stops, Layer.FRAME)
     yield Laid(Layer.FRAME, Polyline((start + down, stop + down), "frame"), FRAME)
     yield Laid(Layer.FRAME, Polyline((start - down, stop - down), "hatch"), FRAME)
     yield Laid(Layer.BACK, hatching(start + down, stop + down, side), FRAME)
@@ -179,21 +199,3 @@ def _outer_side(e: complex, place: complex, middle: complex) -> float:
     if abs(across.imag) > 0.5:
         return 1.0 if across.imag > 0 else -1.0
     return 1.0 if (np.conjugate(across) * (place - middle)).real > 0 else -1.0
-
-
-def _cylinder(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
-    """A cylinder from its foot, and the rod with its piston."""
-    barrel, rod = seen.members
-    foot, eye, e = painter.place(barrel, mark.at), painter.place(rod, mark.block), painter.along(barrel, mark.along)
-    scale = painter.window.scale
-    shortest, longest = sorted((abs(mark.low) * scale, abs(mark.high) * scale))
-    out = e if (np.conjugate(e) * (eye - foot)).real >= 0 else -e
-    length = BARREL * shortest if shortest > 2.0 * BLOCK[0] else max(0.6 * longest, BLOCK[0])
-    here = float((np.conjugate(out) * (eye - foot)).real)
-    piston = min(max(PISTON + here - shortest, PISTON), length - PISTON)
-    rim = box(foot + out * length / 2.0, out, length, CYLINDER)
-    yield Laid(Layer.BAR, Polygon(rim, painter.style("plate", barrel)), barrel)
-    style = painter.style("bar", rod)
-    yield Laid(Layer.BAR, Polyline((foot + out * piston, eye), style), rod)
-    across = 1j * out * (CYLINDER / 2.0 - 1.5)
-    yield Laid(Layer.BAR, Polyline((foot + out * piston - across, foot + out * piston + across), style), rod)

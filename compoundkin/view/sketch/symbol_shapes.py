@@ -9,13 +9,16 @@ import numpy as np
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Sliding, Strap, Stud, Track, Wheel
+from compoundkin.view.sketch.cylinder_shapes import cylinder
 from compoundkin.view.sketch.scene import Seen
 from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Strokes, direction, hatching, ticks
 from compoundkin.view.sketch.sketch_style import PIN, STUD
-from compoundkin.view.sketch.slide_shapes import BEYOND, Laid, Layer, Painter, sliding
+from compoundkin.view.sketch.slide_shapes import BEYOND, Laid, Layer, Painter, sliding, stops
 
 # Teeth nearer than this to each other are not drawn one by one.
 CLOSEST = 7.0
+# A groove ends so far beyond the middle of a pin at its end.
+TRACK = 7.0
 TOOTH = 3.0
 RIM = 9.0
 # A wheel of a smaller radius does not show how it is turned.
@@ -41,6 +44,12 @@ def marks(painter: Painter) -> Iterator[Laid]:
             yield from painted(painter, seen, seen.mark)
 
 
+def _slide(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
+    """Draw a slide; a driven one between moving links is a cylinder with its rod."""
+    is_whole = all(map(painter.shows, seen.members))
+    yield from (cylinder if is_whole and painter.is_cylinder(seen) else sliding)(painter, seen, mark)
+
+
 def _groove(painter: Painter, seen: Seen, mark: Groove) -> Iterator[Laid]:
     link = seen.members[mark.member]
     line = painter.line(link, mark.line)
@@ -48,6 +57,8 @@ def _groove(painter: Painter, seen: Seen, mark: Groove) -> Iterator[Laid]:
     layer = Layer.FRAME if link == FRAME else Layer.GROOVE
     yield Laid(layer, Polyline(line, painter.style("track", link)), link)
     yield Laid(layer, Polyline(line, "knock"), link)
+    ends = [place + TRACK * direction(place - inner) for place, inner in ((line[0], line[1]), (line[-1], line[-2]))]
+    yield from stops(painter, link, (ends[0], line[0], line[-1], ends[1]), mark.stops, layer)
     own = [painter.place(link, p) for p in painter.scene.points[link].values()]
     if link != FRAME and min(abs(p - q) for p in own for q in line) > 2.0 * PIN:
         yield from painter.stub(link, min(line, key=lambda q: min(abs(p - q) for p in own)))
@@ -131,7 +142,7 @@ def _outline(painter: Painter, seen: Seen, mark: Outline) -> Iterator[Laid]:
 
 
 PAINTED: dict[type[Mark], Callable[[Painter, Seen, Any], Iterator[Laid]]] = {
-    Sliding: sliding,
+    Sliding: _slide,
     Groove: _groove,
     Stud: _stud,
     Wheel: _disc,

@@ -1,0 +1,86 @@
+"""What reads each kind of value of a mechanism file, and the ends of guides."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from compoundkin.base.series import Number
+from compoundkin.files.single_values import (
+    Reader,
+    flag,
+    name,
+    names,
+    numbers,
+    points,
+    sign,
+    single,
+    table,
+    text,
+    two,
+    whole,
+    wrong,
+)
+from compoundkin.files.written_quantities import (
+    coordinate,
+    degrees,
+    margin,
+    place,
+    places,
+    point,
+    published,
+    rate,
+    times,
+    turn,
+    values,
+)
+from compoundkin.model.fields import Kind
+
+
+def reach(value: Any, where: str, angle: bool | None = None) -> tuple[Number | str | None, Number | str | None]:
+    """Read from where to where a guide reaches.
+
+    It is ``[from, to]``, numbers or letters; ``{from}``, ``{to}`` or both.
+
+    >>> reach([0.8, "B"], "slides[0].reach"), reach({"to": 2}, "slides[0].reach")
+    ((0.8, 'B'), (None, 2.0))
+    """
+    how = "write [from, to], numbers or points, or { to = ... } where it is open"
+    if isinstance(value, dict) and value and value.keys() <= {"from", "to"}:
+        value = [value.get("from"), value.get("to")]
+    elif not isinstance(value, list) or len(value) != 2 or None in value:
+        raise wrong(where, value, "two ends", how)
+    low, high = (
+        end if end is None or isinstance(end, str) else coordinate(end, f"{where}[{index}]", bool(angle))
+        for index, end in enumerate(value)
+    )
+    return low, high
+
+
+READERS: dict[Kind, Reader] = {
+    "name": name,
+    "text": text,
+    "names": names,
+    "length": numbers,
+    "angle": degrees,
+    "point": point,
+    "sign": sign,
+    "flag": flag,
+    "two": two,
+    "points": points,
+    "drawing": table,
+    "whole": whole,
+    "span": single,
+    "times": times,
+    "coordinate": coordinate,
+    "number": single,
+    "turn": turn,
+    "place": place,
+    "places": places,
+    "values": values,
+    "rate": rate,
+    "at": table,
+    "published": published,
+    "margin": margin,
+    "reach": lambda value, where, _: reach(value, where),
+    "sweep": lambda value, where, _: reach(value, where, True),
+}

@@ -1,0 +1,104 @@
+"""Ends of guides while a block is solved: poses beyond them are not assembled, and the end is named."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import entry
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.poses import End
+from compoundkin.base.series import Number
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.quantities import degrees
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.guide_ends import Ended, as_ended, bounds_name
+from compoundkin.structure.kinematic_structure import Structure
+
+# An end is reached, not passed, within this part of the size (or radians): positions are right to a few units of
+# 1e-12, and gaps are found to 1e-9.
+AT_END = 1e-11
+
+
+class PassedEnd(NamedTuple):
+    """An end of a guide that a pose is beyond. Its pair, and the words for it."""
+
+    pair: Ended
+    reason: str
+
+
+class GuideEnds(PrintsShort):
+    """The pairs of a structure whose guides have ends.
+
+    They go by the group after which all their links are known. A pose
+    beyond an end fails as one of a group does: as the first failure, by a number above those of the groups.
+    """
+
+    def __init__(self, structure: Structure, size: float) -> None:
+        self.size = size
+        self.pairs = tuple(own for pair in structure.mechanism.written_pairs if (own := as_ended(pair)))
+        self._groups = len(structure.groups)
+        self._after: dict[int | None, list[tuple[int, Ended]]] = {}
+        known = set(structure.ground.links)
+        for index, group in [(None, None), *enumerate(structure.groups)] if self.pairs else ():
+            known.update(group.links if group else ())
+            found = [(k, pair) for k, pair in enumerate(self.pairs) if known.issuperset(pair.members)]
+            placed = {k for some in self._after.values() for k, _ in some}
+            self._after[index] = [(k, pair) for k, pair in found if k not in placed]
+
+    def bounds(self, geometry: Geometry) -> dict[str, Ends]:
+        """Return where guides begin and end, as numbers that go with the pairs' sides."""
+        return {bounds_name(pair): tuple(End(value) for value in pair.bounds(geometry)) for pair in self.pairs}
+
+    def mask(self, block: Block, index: int | None) -> None:
+        """Note the poses beyond an end that is known after a group. None: before all of them."""
+        for k, pair in self._after.get(index, ()):
+            outside = self._margin(block, pair) < 0.0
+            if np.any(outside):
+                block.fail(~outside, self._groups + k)
+
+    def margin(self, block: Block) -> Number:
+        """Return how far a block is from the nearest end, negative beyond.
+
+        It is in parts of the size, or radians.
+        """
+        return np.minimum.reduce([np.broadcast_to(one, block.shape) for one in self._margins(block)])
+
+    def nearest(self, block: Block) -> Number:
+        """Return the index of the pair whose end is nearest, or passed by most."""
+        return np.argmin([np.broadcast_to(one, block.shape) for one in self._margins(block)], axis=0)
+
+    def passed(self, failed: int, block: Block, at: int) -> PassedEnd | None:
+        """Return which end a failed pose of a column is beyond. None where a group does not close."""
+        if failed <= self._groups:
+            return None
+        pair = self.pairs[failed - self._groups - 1]
+        start, stop = self._distances(block, pair)
+        is_end = bool(entry(stop, (at, 0)) < entry(start, (at, 0)))
+        poses = tuple(block.world[name] for name in pair.members)
+        here = _shown(pair, pair.coordinate(block.ends[pair.name], poses).c[0], at)
+        there = _shown(pair, block.ends[bounds_name(pair)][is_end].point, at)
+        assert pair.reach is not None
+        letter = pair.reach[is_end]
+        told = f"{letter} at {there}" if isinstance(letter, str) else there
+        word = "beyond the end" if is_end else "before the beginning"
+        return PassedEnd(pair, f"{pair.letters[0]} at {here} is {word} of {pair.name}, {told}")
+
+    def _margins(self, block: Block) -> list[Number]:
+        return [self._margin(block, pair) for pair in self.pairs]
+
+    def _margin(self, block: Block, pair: Ended) -> Number:
+        scale = 1.0 if pair.free_is_angle else self.size
+        return np.minimum(*self._distances(block, pair)) / scale + AT_END
+
+    def _distances(self, block: Block, pair: Ended) -> tuple[Number, Number]:
+        poses = tuple(block.world[name] for name in pair.members)
+        low, high = (side.point for side in block.ends[bounds_name(pair)])
+        return pair.inside((low, high), block.ends[pair.name], poses)
+
+
+def _shown(pair: Ended, value: Any, at: int) -> str:
+    one = float(entry(value, (at, 0)))
+    return f"{float(degrees(one)):.6g} degrees" if pair.free_is_angle else f"{one:.6g}"
