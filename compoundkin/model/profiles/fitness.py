@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +10,10 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN
 from compoundkin.base.bracketing import bisected
+from compoundkin.base.curves import Curve
 from compoundkin.base.curves.samples import spans
 from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.series import Number
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.profiles.envelopes import Oscillating, reach
 
@@ -21,8 +23,8 @@ if TYPE_CHECKING:
 FOLLOWERS = ("knife", "roller", "flat")
 # Spans of degrees add up to a full turn but for rounding.
 ROUNDING = 1e-9
-# A base circle that will do is looked for in these steps (an oscillating face allows but a range of them), up to this
-# many times the size of the mechanism; then by halving to six digits.
+# A base circle that will do is looked for in these steps (an oscillating face allows but a range of them), from this
+# part of the size of the mechanism up to this many times it; then by halving to six digits.
 GROWTH = 1.1
 MOST = 1e3
 DIGITS = 1e-7
@@ -177,12 +179,18 @@ def undercuts(made: Synthesised) -> Iterator[Problem]:
 
 def undercut_spans(made: Synthesised) -> tuple[Span, ...]:
     """Return the angles of the cam between which its profile would turn back."""
+    curve, margins = _turning_back(made)
+    found = (spans(curve.samples, 0.0, TURN, margin) for margin in margins)
+    return next((between for between in found if between), ())
+
+
+def _turning_back(made: Synthesised) -> tuple[Curve, tuple[Callable[[Number], Number], ...]]:
+    """Return the curve that makes the profile, and what must be positive all along it."""
     envelope = made.envelope
-    if made.follower != "flat":
-        return envelope.pitch().undercut(made.roller) if made.roller else ()
-    faced = envelope.faced()
-    turns_on = spans(faced.samples, 0.0, TURN, lambda s: -envelope.turning(s))
-    return turns_on or spans(faced.samples, 0.0, TURN, envelope.radius)
+    if made.follower == "flat":
+        return envelope.faced(), (lambda s: -envelope.turning(s), envelope.radius)
+    pitch = envelope.pitch()
+    return pitch, (lambda s: 1.0 + made.roller * pitch.curvature(s),) if made.roller else ()
 
 
 def least_base(made: Synthesised) -> float | None:
@@ -190,14 +198,17 @@ def least_base(made: Synthesised) -> float | None:
     size = max(made.prime, abs(made.pivot or 0.0), abs(made.offset), made.program.lift)
     low, high = made.base, made.base
     while not _will_do(replace(made, base=high)):
-        low, high = high, GROWTH * high
+        low, high = high, max(GROWTH * high, size / MOST)
         if high > MOST * size:
             return None
     return float(bisected(lambda base: _will_do(replace(made, base=float(base))), high, low, HALVINGS, DIGITS)[0])
 
 
 def _will_do(made: Synthesised) -> bool:
-    return not any(_dimensions(made)) and not undercut_spans(made)
+    if any(_dimensions(made)):
+        return False
+    curve, margins = _turning_back(made)
+    return not any(np.any(margin(curve.samples.s) <= 0.0) for margin in margins)
 
 
 def _upwards(value: float) -> str:
