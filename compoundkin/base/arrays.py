@@ -13,6 +13,9 @@ Number: TypeAlias = Any
 
 TURN = 2.0 * np.pi
 
+# Lengths that can be computed with: the fourth power of one, as in the discriminant of a dyad, is a number still.
+LONGEST, SHORTEST = 1e50, 1e-50
+
 
 # --- plane vectors ---
 

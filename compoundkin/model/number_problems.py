@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arrays import LONGEST, SHORTEST
 from compoundkin.base.errors import Problem, nearest
 from compoundkin.model.attributes import RATES
 from compoundkin.model.elements import Drive
@@ -30,6 +31,8 @@ _OBLIQUE = cmath.rect(1.0, 1.0)
 def point_problems(mechanism: Written) -> Iterator[Problem]:
     """Find points that are misspelt in the drawing, no numbers, or coincident."""
     size = _size(mechanism)
+    if 0.0 < size < SHORTEST:
+        yield _off_scale("links", f"the farthest point is at {size:g}")
     for name, link in mechanism.links.items():
         if not link.points:
             yield Problem(f"links.{name}.points", "a link needs at least one point")
@@ -40,12 +43,16 @@ def point_problems(mechanism: Written) -> Iterator[Problem]:
                 yield Problem(where, "this point is neither given nor drawn", _undrawn(letter, mechanism.sketch))
             elif p is not None and not is_finite(p):
                 yield Problem(where, f"{p!r} is empty or not finite")
+            elif p is not None and is_too_great(p):
+                yield _off_scale(where, f"{p!r} is too far away")
         yield from _lengths(mechanism, name, size)
     for letter, p in mechanism.sketch.items():
         if letter not in mechanism.carriers:
             yield Problem(f"drawn.{letter}", "no link carries this point", nearest(letter, list(mechanism.carriers)))
         if not is_finite(p):
             yield Problem(f"drawn.{letter}", f"{p!r} is empty or not finite")
+        elif is_too_great(p):
+            yield _off_scale(f"drawn.{letter}", f"{p!r} is too far away")
 
 
 def is_finite(value: Any) -> bool:
@@ -56,6 +63,15 @@ def is_finite(value: Any) -> bool:
         return bool(np.size(value)) and bool(np.all(np.isfinite(value)))
     except (TypeError, ValueError, OverflowError):  # a text, a ragged list, a whole number of hundreds of digits
         return False
+
+
+def is_too_great(value: Any) -> bool:
+    """Return whether a finite value, or one of an array, is beyond what can be computed with."""
+    return bool(np.max(np.abs(value)) > LONGEST)
+
+
+def _off_scale(where: str, what: str) -> Problem:
+    return Problem(where, what, "choose another unit: lengths are between 1e-50 and 1e50 of it")
 
 
 def _undrawn(letter: str, sketch: Mapping[str, Any]) -> str:
@@ -115,6 +131,8 @@ def no_numbers(pair: Pair, where: str) -> Iterator[Problem]:
         for value in _numbers_of(pair, key):
             if not is_finite(value) or np.iscomplexobj(value):
                 yield Problem(f"{where}.{key.name}", f"{value!r} is empty or not finite, or not a number")
+            elif is_too_great(value):
+                yield _off_scale(f"{where}.{key.name}", f"{value!r} is too great")
         flag = getattr(pair, key.name, None)
         if key.kind == "flag" and not isinstance(flag, bool | np.bool_):
             yield Problem(f"{where}.{key.name}", f"{flag!r} is neither True nor False")
@@ -137,6 +155,8 @@ def drive_problems(drive: Drive, where: str) -> Iterator[Problem]:
         value = getattr(drive, key)
         if value is not None and not is_finite(value):
             yield Problem(f"{where}.{key}", "the value is empty or not finite")
+        elif value is not None and is_too_great(value):
+            yield _off_scale(f"{where}.{key}", "the value is too great")
     for key, default in ((key.name, key.default) for key in drive.keys if key.name in DRIVEN):
         if drive.law is not None and not np.array_equal(getattr(drive, key), default):
             remedy = f"leave the {key} or the law out"

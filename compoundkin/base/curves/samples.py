@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import LONGEST, Number
 from compoundkin.base.bracketing import bisected
 from compoundkin.base.errors import InvalidMechanism, Problem
 
@@ -156,9 +156,11 @@ def check_points(s: Number, points: Number, size: float, closed: bool) -> None:
 
     It is closed where the last is the first.
     """
-    lost = ~np.isfinite(points)
+    lost = ~(np.abs(points) <= LONGEST)
     if lost.any():
-        raise InvalidMechanism(Problem(f"s = {s[lost][0]:g}", "the point of the curve is not a finite number"))
+        raise InvalidMechanism(
+            Problem(f"s = {s[lost][0]:g}", "the point of the curve is not a finite number, or beyond 1e50")
+        )
     gap = abs(points[-1] - points[0])
     if closed and gap > CLOSES * size:
         what = f"the curve ends {gap:g} away from where it begins"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN
+from compoundkin.base.arrays import LONGEST, TURN
 from compoundkin.base.bracketing import bisected
 from compoundkin.base.curves import Curve
 from compoundkin.base.curves.samples import spans
@@ -48,6 +48,8 @@ def _numbers(made: Synthesised) -> Iterator[Problem]:
         value: Any = getattr(made, key)
         if not _is_number(value) or np.iscomplexobj(value):
             yield Problem(key, f"{value!r} is not a finite number", "give one number; one profile for each design")
+        elif abs(value) > LONGEST:
+            yield Problem(key, f"{value!r} is too great", "choose another unit")
     if made.pivot is not None and not _is_number(made.pivot):
         yield Problem("pivot", f"{made.pivot!r} is not a point", "give one point; one profile for each design")
     if not isinstance(made.clockwise, bool | np.bool_):
