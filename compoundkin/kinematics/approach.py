@@ -26,9 +26,9 @@ def approach_path(
 ) -> tuple[Inputs, float, float]:
     """Return the way from the drawn drivers to the motion, where, and the reference.
 
-    `at` is the place of the motion, between two poses too, that is nearest to the drawing. The approach path is one pose where the drawing shows no driver, or shows them at a place of the motion. The
-    reference is the place along the motion to which the modes belong: just before `at` where the path comes from
-    before, else just after.
+    It leads to the place `at`, between two poses too, that is nearest to the drawing. It is one pose where the drawing
+    shows no driver, or shows them at a place of the motion. The reference is the place along the motion to which the
+    modes belong: just before `at` where the path comes from before, else just after.
     """
     shown = {name: drawn_value(solving_order, given, name, drawn, sketch) for name in solving_order.structure.driven}
     values = {name: value for name, value in shown.items() if value is not None}

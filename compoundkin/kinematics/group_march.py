@@ -14,6 +14,8 @@ from compoundkin.kinematics.groups.group_equations import GroupEquations
 # What the terms of the prediction, first to third, may move at most (parts of the size, or radians) in one step: what
 # is left out is then below a hundredth, from which Newton converges unless a limit position is near.
 MOVES = (0.5, 0.2, 0.02)
+# A step goes at most this part of the way to a limit position: a longer one would have to be tried again.
+NEARER = 0.7
 # A corrector that moves farther than this may have left its branch.
 STRAY = 0.03
 # What is interpolated may be off by this part of a step: near a limit position steps are so short that it is smooth.
@@ -36,7 +38,8 @@ TERMS = len(MOVES)
 class GroupMarch:
     """One continuation of a group's state along a way.
 
-    All designs take the same steps, those that meet a limit stay behind. `around(s)` is what surrounds the group at a place, with `TERMS` derivatives by s; no step is longer than `longest`.
+    All designs take the same steps, those that meet a limit stay behind. `around(s)` is what surrounds the group at a
+    place, with `TERMS` derivatives by s; no step is longer than `longest`.
     """
 
     def __init__(
@@ -78,7 +81,10 @@ class GroupMarch:
         if is_good:
             self._take(self.here + h, state, rates, side)
         self.trials = 0 if is_good and within else self.trials + 1
-        if self.trials > MOST_TRIALS:
+        near = self._spread(self.state) <= FARTHEST
+        if not near[self.alive].all():
+            self.good, is_good, length = near, False, 0.0
+        elif self.trials > MOST_TRIALS:
             # those that hold up the others stay behind
             fast = self.good & (strides > 2.0 * most)
             self.good, is_good, length = fast & ~fast[self.alive].all(), False, 0.0
@@ -95,13 +101,11 @@ class GroupMarch:
     def _strides(self, rates: list[Number]) -> Number:
         """Return how far the prediction is good, by the farthest move that each of its terms may make."""
         weights = self._weights(self.state)
-        strides = np.full(len(self.state), np.inf)
-        for k, (most, c) in enumerate(zip(MOVES, rates, strict=True), 1):
-            moves = np.abs(c * weights).max(axis=(1, 2))
-            strides = np.fmin(
-                strides, np.divide(most, moves, out=np.full(len(moves), np.inf), where=moves > 0.0) ** (1.0 / k)
-            )
-        return strides
+        moves = [np.abs(c * weights).max(axis=(1, 2)) for c in rates]
+        strides = [_root(most, move, k) for k, (most, move) in enumerate(zip(MOVES, moves, strict=True), 1)]
+        # at a limit position states go with the square root of the distance, of which two terms in a row tell
+        distance = np.fmax(_root(moves[0], 4.0 * moves[1], 1), _root(moves[1], 2.0 * moves[2], 1))
+        return np.fmin.reduce([*strides, NEARER * distance])
 
     def _weights(self, state: Number) -> Number:
         """Return the weights of changes of the state: parts of the size, or of how far a body has gone, and radians."""
@@ -128,7 +132,6 @@ class GroupMarch:
         found = self.equations.newton(guess, block)
         spread = self._spread(self.state)
         good = found.closed.reshape(len(self.state)) & (found.moved.reshape(len(self.state)) <= STRAY * spread)
-        good = good & (spread <= FARTHEST)
         state = np.where(good[:, None, None], found.state, self.state)
         new_rates, new_side = self._rates(state, block)
         # the middle of the step as it will be interpolated, against the prediction
@@ -144,3 +147,8 @@ class GroupMarch:
         self.s.append(self.here)
         self.states.append(self.state)
         self.slopes.append(self.rates[0])
+
+
+def _root(most: Number, move: Number, k: int) -> Number:
+    """Return the step in which a term of order `k` makes a move, infinite where it makes none."""
+    return np.divide(most, move, out=np.full(np.shape(move), np.inf), where=move > 0.0) ** (1.0 / k)

@@ -85,6 +85,12 @@ class Inputs(PrintsShort):
         """Return the drivers as series."""
         return {name: rates(values, order) for name, values in self.drives.items()}
 
+    @property
+    def is_rigid(self) -> bool:
+        """Whether no dimension varies along the motion."""
+        values = (v for ends in self.ends.values() for end in ends for v in end if isinstance(v, np.ndarray))
+        return all(v.shape[-1] == 1 for v in values)
+
     @cached_property
     def _rigid(self) -> bool:
         """Whether every dimension is a number."""

@@ -20,6 +20,7 @@ from compoundkin.base.errors import (
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
+from compoundkin.kinematics.branch import Branch, course_of, leads_on
 from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
 from compoundkin.kinematics.chosen_modes import shown_by, signs_of
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
@@ -28,7 +29,7 @@ from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.kinematics.tracking import Tracker
+from compoundkin.kinematics.tracking import Begin, Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
@@ -150,8 +151,27 @@ def _settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order
     while True:
         motion, near = _run(solving_order, given, tracker, order)
         near |= near_groups(tracker)
-        if not near or not pass_through(tracker, near):
+        if near and pass_through(tracker, near):
+            continue
+        if not tracker.lost or not _with_branch(tracker):
             return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
+
+
+def _with_branch(tracker: Tracker) -> bool:
+    """Track the branch of the drawn pose over the driver's value, for what its motion has lost. Tell whether it did."""
+    if tracker.branch is not None or tracker.begin is not None:
+        return False
+    course = course_of(tracker.solving_order, tracker.given, tracker.approach_path)
+    if course is None or not leads_on(course, tracker.given, tracker.paths.values()):
+        return False
+    states = {k: path.states[:, :1] for k, path in tracker.approach_paths.items()}
+    begin = Begin(course.at, tracker.signs, states)
+    around = Tracker(tracker.solving_order, course.inputs(tracker.given), tracker.fixed, tracker.shown, begin)
+    _settled(tracker.solving_order, around.given, around, 0)
+    tracker.branch = Branch(course, around.paths)
+    if tracker.turns:
+        tracker.choose()
+    return True
 
 
 def _run(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
@@ -184,6 +204,8 @@ def starting_configuration(
         tracker = Tracker(solving_order, given, signs_of(solving_order), shown_by(solving_order))
     except NotAssembled:
         return None
+    if tracker.lost:
+        _with_branch(tracker)
     block = tracker.run(tracker.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))
     if np.broadcast_to(block.failed, block.shape)[design, 0]:
         return None

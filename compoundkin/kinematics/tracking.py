@@ -11,6 +11,7 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import CLOSE, approach_path
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.branch import Branch
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.default_modes import open_sign
 from compoundkin.kinematics.first_pose import distance, first_state, shown
@@ -22,10 +23,26 @@ from compoundkin.kinematics.limits import NEAREST
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
 
 
+@dataclass(frozen=True)
+class Begin:
+    """A place where the pose drawn is known to be. It has the dyads' signs and the other groups' states there."""
+
+    at: float
+    signs: Mapping[int, Number]
+    states: Mapping[int, Number]
+
+
 class Tracker(PrintsShort):
     """Chooses and keeps the configuration of every group, for given inputs."""
 
-    def __init__(self, solving_order: SolvingOrder, given: Inputs, fixed: Mapping[int, int], shown: Shown) -> None:
+    def __init__(
+        self,
+        solving_order: SolvingOrder,
+        given: Inputs,
+        fixed: Mapping[int, int],
+        shown: Shown,
+        begin: Begin | None = None,
+    ) -> None:
         self.solving_order = solving_order
         self.given = given
         self.fixed = fixed
@@ -39,8 +56,15 @@ class Tracker(PrintsShort):
         # where along the approach path and the motion each group passes a change point, (designs, count), padded
         self.approach_flips: dict[int, Number] = {}
         self.flips: dict[int, Number] = {}
-        self.approach_path, self.at, self.reference = approach_path(solving_order, given, shown.poses, shown.beside)
-        if solving_order.turning and solving_order.structure.mechanism.geometry.drawn:
+        # where the drawn pose is known to be, and its states; and what is known of the branch beyond what was reached
+        self.begin = begin
+        self.branch: Branch | None = None
+        if begin is None:
+            way = approach_path(solving_order, given, shown.poses, shown.beside)
+        else:
+            way = given.at(np.array([begin.at])).of_poses(1), begin.at, begin.at + CLOSE
+        self.approach_path, self.at, self.reference = way
+        if begin is None and solving_order.turning and solving_order.structure.mechanism.geometry.drawn:
             first = self.approach_path.cut(slice(None), slice(0, 1))
             self.given, self.approach_path = recounted(solving_order, (given, self.approach_path), first)
         if shown.points or solving_order.numbered or solving_order.turning:
@@ -72,7 +96,7 @@ class Tracker(PrintsShort):
             part.ends, part.series(order), order, np.broadcast_shapes(s.shape, designs.shape)
         )
         block.doubles = doubles or {}
-        return run(self.solving_order, block, _Kept(self, designs, s, on_approach), upto)
+        return run(self.solving_order, block, _Kept(self, part, designs, s, on_approach), upto)
 
     def sign(self, k: int, designs: Number, s: Number, on_approach: bool = False) -> Number:
         """Return the sign of a dyad's mode. It changes wherever the dyad passes a change point."""
@@ -99,6 +123,13 @@ class Tracker(PrintsShort):
         point = fit(self.given.shape)(self.solving_order.structure.mechanism.geometry.points[link][letter])
         return point if np.ndim(point) == 0 or point.shape[1] == 1 else point[:, [int(self.at)]]
 
+    @property
+    def lost(self) -> bool:
+        """Whether some group without a closed form was not reached everywhere from the drawn pose."""
+        last = self.given.poses - 1.0
+        reach = [self.paths[k].reach for k in self.solving_order.numbered]
+        return any(not np.all((each[:, 0] <= 0.0) & (each[:, 1] >= last)) for each in reach)
+
     def choose(self, last: int | None = None) -> None:
         """Pass through the groups at the drawn pose, choosing, all or up to one. Track those without a closed form."""
         self.turns = {}
@@ -114,15 +145,21 @@ class _Kept:
     """The choice at places along the motion, or along the way to it: the configuration that was chosen is kept."""
 
     tracker: Tracker
+    part: Inputs
     designs: Number
     s: Number
     on_approach: bool
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the tracked state, or the sign."""
+        tracker, k = self.tracker, solver.index
+        if solver.is_numbered and self.on_approach:
+            return tracker.approach_paths[k].seeds(self.designs, self.s)
         if solver.is_numbered:
-            paths = self.tracker.approach_paths if self.on_approach else self.tracker.paths
-            return paths[solver.index].seeds(self.designs, self.s)
+            found = tracker.paths[k].seeds(self.designs, self.s)
+            if tracker.branch is None or not np.isnan(found).any():
+                return found
+            return np.where(np.isnan(found), tracker.branch.seeds(k, self.part.drives, self.designs, self.s), found)
         return self.tracker.sign(solver.index, self.designs, self.s, self.on_approach)
 
     def angle(self, solver: GroupSolver, link: str) -> Number | None:
@@ -140,6 +177,8 @@ class _First:
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the chosen mode, and note it."""
         tracker, k = self.tracker, solver.index
+        if tracker.begin is not None:
+            return self._begun(tracker.begin, solver)
         if not solver.is_numbered:
             tracker.signs[k], tracker.chosen_by[k] = self._sign(block, solver)
             return tracker.signs[k]
@@ -153,6 +192,15 @@ class _First:
         """Count the turns of a link from here on."""
         turns = self.tracker.turns[link] = turns_of(self.tracker, solver.index, link)
         return turns.first
+
+    def _begun(self, begin: Begin, solver: GroupSolver) -> Number:
+        """Return the mode that is known."""
+        tracker, k = self.tracker, solver.index
+        if not solver.is_numbered:
+            tracker.signs[k] = begin.signs[k]
+            return begin.signs[k]
+        tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, begin.states[k])
+        return begin.states[k]
 
     def _sign(self, block: Block, solver: GroupSolver) -> tuple[Number, str]:
         """Return the mode whose points lie nearest to the drawn ones, and what chose it."""

@@ -85,6 +85,36 @@ def test_the_drawn_pose_lies_between_two_poses_and_its_motion_goes_through_it() 
     assert max(abs(motion.points[k].position[2] - p) for k, p in PLACES.items()) < 1e-12
 
 
+@pytest.mark.parametrize(
+    ("first", "last"), [(215, 480), (210, 470), (300, 480), (-200, -100), (0, 900), (880, 0), (0, 355), (300, 460)]
+)
+def test_the_branch_is_reached_through_the_wrap_of_a_full_turn(first: int, last: int) -> None:
+    """Ranges that contain the branch only after whole turns, in part at both ends, several times, or not at all."""
+    degrees = np.arange(first, last + np.sign(last - first), 5.0 * np.sign(last - first))
+    turned = degrees % 360.0
+    assert np.array_equal(solved(degrees), (turned > BRANCH[0]) & (turned < BRANCH[1]))
+
+
+def test_through_the_wrap_poses_have_the_same_rates() -> None:
+    degrees = np.arange(110.0, 210.0, 5.0)
+    near, far = (ck.solve(stephenson(), {"FG": np.deg2rad(degrees + turn)}, speed=1.0) for turn in (0.0, -720.0))
+    for k in range(3):
+        assert np.allclose(near.points["E"].derivative(k), far.points["E"].derivative(k), rtol=1e-8, atol=1e-10)
+
+
+def test_single_poses_beyond_what_the_nearer_way_crosses() -> None:
+    """From 106.70 degrees the nearer way to -70 leads down across a limit, the other one does not."""
+    there = ck.solve(stephenson(), {"FG": np.deg2rad(np.arange(110.0, 206.0, 5.0))})
+    alone = ck.solve(stephenson(), {"FG": np.deg2rad(205.0 - 360.0)})
+    assert abs(complex(alone.points["E"].position) - there.points["E"].position[-1]) < 1e-12
+
+
+def test_the_farther_way_where_the_nearer_one_crosses_a_limit() -> None:
+    """Drawn near the lower limit: 290 to 120 degrees is asked for downwards, its nearest end lies beyond that limit."""
+    degrees = np.concatenate([np.linspace(466.0, 400.0, 12), np.linspace(200.0, 120.0, 9)])
+    assert np.array_equal(solved(degrees), (degrees < BRANCH[1]))
+
+
 # --- mechanisms that were refused, jumped, or took minutes ---------------------------------------------------
 
 

@@ -1,0 +1,100 @@
+"""The branch of the drawn pose over its driver's value, to which a motion comes through a whole turn or after a gap."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.arrays import TURN, whole_turns
+from compoundkin.base.series import Number
+from compoundkin.kinematics.approach import SPACING, spacings
+from compoundkin.kinematics.group_paths import GroupPath
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.solving_order import SolvingOrder
+
+# A full turn may be longer by rounding.
+ROUNDING = 1.0 + 1e-9
+
+
+@dataclass(frozen=True)
+class Course:
+    """The values of the one driver that moves, over which a branch is tracked.
+
+    At the place `at` of the course the driver is at `start`, (1 or designs, 1), as drawn; from place to place it takes
+    a `step`. Where it `wraps`, values that differ by a whole turn are the same pose.
+    """
+
+    driver: str
+    start: Number
+    step: float
+    at: float
+    count: int
+    wraps: bool
+
+    def inputs(self, given: Inputs) -> Inputs:
+        """Return it as the inputs of a motion. The other drivers stand where they are in `given`."""
+        first = given.cut(slice(None), slice(0, 1))
+        drives = {name: (values[0],) for name, values in first.drives.items()}
+        way = self.step * (np.arange(self.count)[None] - self.at)
+        return first.driven({**drives, self.driver: (self.start + way,)}).of_poses(self.count)
+
+    def places(self, value: Number, designs: Number) -> tuple[Number, ...]:
+        """Return the places of a driver's values on the course, the nearest to the drawn one first."""
+        way = value - (self.start if len(self.start) == 1 else self.start[designs[:, 0]])
+        if not self.wraps:
+            return (self.at + way / self.step,)
+        way = way - whole_turns(way)
+        return tuple(self.at + around / self.step for around in (way, way - np.copysign(TURN, way)))
+
+
+@dataclass(frozen=True)
+class Branch:
+    """The tracked states of groups, by index, along a course."""
+
+    course: Course
+    paths: Mapping[int, GroupPath]
+
+    def seeds(self, k: int, drives: Mapping[str, tuple[Number, ...]], designs: Number, s: Number) -> Number:
+        """Return the states of a group at the drivers' values in a block, NaN where the branch does not reach."""
+        places = self.course.places(drives[self.course.driver][0], designs)
+        found, *others = (self.paths[k].seeds(designs, np.broadcast_to(place, s.shape)) for place in places)
+        for other in others:
+            found = np.where(np.isnan(found), other, found)
+        return found
+
+
+def course_of(solving_order: SolvingOrder, given: Inputs, approach_path: Inputs) -> Course | None:
+    """Return the course of a motion from its drawn pose. None where more than one driver moves, or dimensions vary."""
+    moving = {name for way in (given, approach_path) for name, values in way.drives.items() if _moves(values[0])}
+    if len(moving) != 1 or not given.is_rigid:
+        return None
+    (name,) = moving
+    start = np.atleast_2d(approach_path.drives[name][0])[:, :1]
+    angle = solving_order.structure.driven[name].pair.free_is_angle
+    if angle and not solving_order.turning:
+        each = round(TURN / SPACING)
+        return Course(name, start, TURN / each, float(each), 2 * each + 1, wraps=True)
+    ways = given.drives[name][0] - start
+    low, high = min(float(np.min(ways)), 0.0), max(float(np.max(ways)), 0.0)
+    count = max(2, 1 + spacings(solving_order, name, np.array(high - low)))
+    step = (high - low) / (count - 1)
+    return Course(name, start, step, -low / step, count, wraps=False)
+
+
+def leads_on(course: Course, given: Inputs, paths: Iterable[GroupPath]) -> bool:
+    """Tell whether a course may lead to poses of a motion that are not reached along it.
+
+    It cannot where a motion that passes each value once leaves the branch at both ends.
+    """
+    steps = np.diff(given.drives[course.driver][0])
+    once = given.poses > 1 and bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+    once = once and bool(np.all(np.abs(np.sum(steps, axis=-1)) <= TURN * ROUNDING))
+    low, high = np.moveaxis(np.stack([path.reach for path in paths]), -1, 0)
+    last = given.poses - 1.0
+    return not once or not bool(np.all((low > 0.0) & (high < last) | (low <= 0.0) & (high >= last)))
+
+
+def _moves(value: Number) -> bool:
+    return np.ndim(value) > 1 and bool(np.any(value != value[:, :1]))
