@@ -9,13 +9,26 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, whole_turns
 from compoundkin.base.series import Number
-from compoundkin.kinematics.approach import SPACING, spacings
-from compoundkin.kinematics.group_paths import GroupPath
+from compoundkin.kinematics.approach import CLOSE, SPACING, spacings
+from compoundkin.kinematics.group_march import GroupPath
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
 
 # A full turn may be longer by rounding.
 ROUNDING = 1.0 + 1e-9
+
+
+@dataclass(frozen=True)
+class Begin:
+    """A place where the pose drawn is known to be. It has the dyads' signs and the other groups' states there."""
+
+    at: float
+    signs: Mapping[int, Number]
+    states: Mapping[int, Number]
+
+    def way(self, given: Inputs) -> tuple[Inputs, float, float]:
+        """Return the approach path, which is one pose. Return also its place and the reference."""
+        return given.at(np.array([self.at])).of_poses(1), self.at, self.at + CLOSE
 
 
 @dataclass(frozen=True)
@@ -41,7 +54,7 @@ class Course:
         return first.driven({**drives, self.driver: (self.start + way,)}).of_poses(self.count)
 
     def places(self, value: Number, designs: Number) -> tuple[Number, ...]:
-        """Return the places of a driver's values on the course, the nearest to the drawn one first."""
+        """Return the places of a driver's values. The nearest to the drawn one comes first."""
         way = value - (self.start if len(self.start) == 1 else self.start[designs[:, 0]])
         if not self.wraps:
             return (self.at + way / self.step,)
@@ -50,14 +63,14 @@ class Course:
 
 
 @dataclass(frozen=True)
-class Branch:
+class TrackedBranch:
     """The tracked states of groups, by index, along a course."""
 
     course: Course
     paths: Mapping[int, GroupPath]
 
     def seeds(self, k: int, drives: Mapping[str, tuple[Number, ...]], designs: Number, s: Number) -> Number:
-        """Return the states of a group at the drivers' values in a block, NaN where the branch does not reach."""
+        """Return the states of a group at the drivers' values. They are NaN where the branch does not reach."""
         places = self.course.places(drives[self.course.driver][0], designs)
         found, *others = (self.paths[k].seeds(designs, np.broadcast_to(place, s.shape)) for place in places)
         for other in others:
@@ -66,7 +79,7 @@ class Branch:
 
 
 def course_of(solving_order: SolvingOrder, given: Inputs, approach_path: Inputs) -> Course | None:
-    """Return the course of a motion from its drawn pose. None where more than one driver moves, or dimensions vary."""
+    """Return the course of a motion. None where more than one driver moves, or dimensions vary."""
     moving = {name for way in (given, approach_path) for name, values in way.drives.items() if _moves(values[0])}
     if len(moving) != 1 or not given.is_rigid:
         return None
@@ -84,7 +97,7 @@ def course_of(solving_order: SolvingOrder, given: Inputs, approach_path: Inputs)
 
 
 def leads_on(course: Course, given: Inputs, paths: Iterable[GroupPath]) -> bool:
-    """Tell whether a course may lead to poses of a motion that are not reached along it.
+    """Tell whether a course leads to poses that its motion does not reach.
 
     It cannot where a motion that passes each value once leaves the branch at both ends.
     """

@@ -17,7 +17,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.default_modes import regularity
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at, known_configurations
-from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.kinematics.solving_order import SolvingOrder, residual
 from compoundkin.model.elements import FRAME
 from compoundkin.model.geometry import fitted_pose
 
@@ -50,6 +50,24 @@ def distance(solving_order: SolvingOrder, letters: Letters, sketch: Mapping[str,
         gap = block.world[link].at(first_of(points[link][letter])).c[0] - first_of(sketch[letter])
         total = total + np.abs(gap) ** 2
     return total
+
+
+def nearest_sign(
+    solving_order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number]
+) -> Number:
+    """Return the sign of a dyad that is nearest to a sketch. It is a number, or an array (designs, 1).
+
+    Where it closes redundant pairs, these choose.
+    """
+    letters, closing, cost = shown(solving_order, solver, sketch), solving_order.closing(solver), []
+    for sign in (1, -1):
+        trial = block.copy()
+        solver.close(trial, sign)
+        cost.append(
+            residual(closing, trial, solving_order.size) if closing else distance(solving_order, letters, sketch, trial)
+        )
+    best = np.where(cost[1] < cost[0], -1.0, 1.0)
+    return float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
 
 
 def first_state(

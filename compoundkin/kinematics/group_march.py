@@ -1,8 +1,9 @@
-"""One continuation of a group's state along a way: predictor and corrector, all designs taking the same steps."""
+"""One continuation of a group's state along a way, and what was tracked: the path of the group."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,6 +34,37 @@ FARTHEST = 1e3
 LENGTHS = StepLengths(first=np.inf, longest=np.inf, shortest=0.0, easy=1, most=1_000_000_000)
 # The terms of the prediction, first to third.
 TERMS = len(MOVES)
+
+
+@dataclass(frozen=True)
+class GroupPath:
+    """The tracked states of one group.
+
+    Its nodes are `s`, the states (designs, nodes, 3 n), with their slopes by s, and the reach (designs, 2) of s within
+    which each design was tracked.
+    """
+
+    s: Number
+    states: Number
+    slopes: Number
+    reach: Number
+
+    def seeds(self, designs: Number, s: Number) -> Number:
+        """Interpolate by cubics for design indices and places `s` (broadcast together): NaN beyond reach."""
+        low, high = self.reach[designs, 0], self.reach[designs, 1]
+        if len(self.s) == 1:
+            out = self.states[designs, np.zeros(np.shape(s), dtype=int)]
+        else:
+            i = np.clip(np.searchsorted(self.s, s, side="right") - 1, 0, len(self.s) - 2)
+            h = (self.s[i + 1] - self.s[i])[..., None]
+            t = (s - self.s[i])[..., None] / h
+            out = (
+                (1 + 2 * t) * (1 - t) ** 2 * self.states[designs, i]
+                + t * (1 - t) ** 2 * h * self.slopes[designs, i]
+                + t * t * (3 - 2 * t) * self.states[designs, i + 1]
+                - t * t * (1 - t) * h * self.slopes[designs, i + 1]
+            )
+        return np.where(((s >= low) & (s <= high))[..., None], out, np.nan)
 
 
 class GroupMarch:

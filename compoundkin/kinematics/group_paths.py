@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import CLOSE, pace
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.group_march import TERMS, GroupMarch
+from compoundkin.kinematics.group_march import TERMS, GroupMarch, GroupPath
 from compoundkin.kinematics.groups import equations_of
 from compoundkin.kinematics.inputs import Inputs
 
@@ -22,37 +21,6 @@ if TYPE_CHECKING:
 SPACINGS = 6.0
 # Drivers that take less than this part of a spacing a pose stand still.
 SLOWEST = 1e-9
-
-
-@dataclass(frozen=True)
-class GroupPath:
-    """The tracked states of one group.
-
-    Its nodes are `s`, the states (designs, nodes, 3 n), with their slopes by s, and the reach (designs, 2) of s within
-    which each design was tracked.
-    """
-
-    s: Number
-    states: Number
-    slopes: Number
-    reach: Number
-
-    def seeds(self, designs: Number, s: Number) -> Number:
-        """Interpolate by cubics for design indices and places `s` (broadcast together): NaN beyond reach."""
-        low, high = self.reach[designs, 0], self.reach[designs, 1]
-        if len(self.s) == 1:
-            out = self.states[designs, np.zeros(np.shape(s), dtype=int)]
-        else:
-            i = np.clip(np.searchsorted(self.s, s, side="right") - 1, 0, len(self.s) - 2)
-            h = (self.s[i + 1] - self.s[i])[..., None]
-            t = (s - self.s[i])[..., None] / h
-            out = (
-                (1 + 2 * t) * (1 - t) ** 2 * self.states[designs, i]
-                + t * (1 - t) ** 2 * h * self.slopes[designs, i]
-                + t * t * (3 - 2 * t) * self.states[designs, i + 1]
-                - t * t * (1 - t) * h * self.slopes[designs, i + 1]
-            )
-        return np.where(((s >= low) & (s <= high))[..., None], out, np.nan)
 
 
 def track(tracker: Tracker, k: int, state: Number) -> tuple[GroupPath, GroupPath]:

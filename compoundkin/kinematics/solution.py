@@ -19,27 +19,19 @@ from compoundkin.base.errors import (
 )
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.approach import drawn_value
-from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
-from compoundkin.kinematics.branch import Branch, course_of, leads_on
-from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
+from compoundkin.kinematics.block import places
 from compoundkin.kinematics.chosen_modes import shown_by, signs_of
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
 from compoundkin.kinematics.driver_values import by_name, inputs, times_of
-from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
+from compoundkin.kinematics.solved_blocks import settled, with_branch
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.kinematics.tracking import Begin, Tracker
+from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import HIGHEST_ORDER
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
 from compoundkin.structure.kinematic_structure import Structure
-
-# Up to so many poses are solved at once: gathering blocks would copy more than the caches save.
-WHOLE = 65536
-# Longer motions are solved in blocks of so many poses: their arrays stay in a second-level cache of 2 MB, and the
-# calls take far less time than the work.
-BLOCK = 16384
 
 
 def solve(
@@ -91,7 +83,7 @@ def solve(
         signs, shown = signs_of(solving_order, modes), shown_by(solving_order, modes, hint)
         with diagnosing(solving_order.structure):
             tracker = Tracker(solving_order, given, signs, shown)
-        motion = replace(_settled(solving_order, tracker.given, tracker, order), time=times)
+        motion = replace(settled(solving_order, tracker.given, tracker, order), time=times)
         if solving_order.structure.relaxation:
             check_redundant(motion)
     _warn(motion)
@@ -146,55 +138,6 @@ def solving_order_of(mechanism: Mechanism | Structure) -> SolvingOrder:
     return solving_order
 
 
-def _settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> Motion:
-    """Solve; again where a group is found to pass through a change point, from which its mode changes sign."""
-    while True:
-        motion, near = _run(solving_order, given, tracker, order)
-        near |= near_groups(tracker)
-        if near and pass_through(tracker, near):
-            continue
-        if not tracker.lost or not _with_branch(tracker):
-            return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
-
-
-def _with_branch(tracker: Tracker) -> bool:
-    """Track the branch of the drawn pose over the driver's value, for what its motion has lost. Tell whether it did."""
-    if tracker.branch is not None or tracker.begin is not None:
-        return False
-    course = course_of(tracker.solving_order, tracker.given, tracker.approach_path)
-    if course is None or not leads_on(course, tracker.given, tracker.paths.values()):
-        return False
-    states = {k: path.states[:, :1] for k, path in tracker.approach_paths.items()}
-    begin = Begin(course.at, tracker.signs, states)
-    around = Tracker(tracker.solving_order, course.inputs(tracker.given), tracker.fixed, tracker.shown, begin)
-    _settled(tracker.solving_order, around.given, around, 0)
-    tracker.branch = Branch(course, around.paths)
-    if tracker.turns:
-        tracker.choose()
-    return True
-
-
-def _run(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
-    """Solve block by block and gather; also the groups that come near a limit position."""
-    designs, poses = given.designs, given.poses
-    near: set[int] = set()
-    parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
-    if len(parts) == 1:
-        block = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
-        failed = np.broadcast_to(block.failed, (designs, poses))
-        return Motion(solving_order.structure, order, given, dict(block.world), failed, tracker), _near(block)
-    store = JoinedBlocks(designs, poses)
-    for d, m in parts:
-        block = tracker.run(given.cut(d, m), order, *places(d, m))
-        store.take(block, d, m)
-        near |= _near(block)
-    return Motion(solving_order.structure, order, given, store.poses(), store.failed, tracker), near
-
-
-def _near(block: Block) -> set[int]:
-    return {k for k, margin in block.margins.items() if np.any(margin < NEAR)}
-
-
 def starting_configuration(
     solving_order: SolvingOrder, values: Mapping[str, float], design: int
 ) -> Configuration | None:
@@ -205,7 +148,7 @@ def starting_configuration(
     except NotAssembled:
         return None
     if tracker.lost:
-        _with_branch(tracker)
+        with_branch(tracker)
     block = tracker.run(tracker.given, 0, *places(slice(0, given.designs), slice(0, given.poses)))
     if np.broadcast_to(block.failed, block.shape)[design, 0]:
         return None

@@ -11,25 +11,17 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import CLOSE, approach_path
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.branch import Branch
+from compoundkin.kinematics.branch import Begin, TrackedBranch
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.default_modes import open_sign
-from compoundkin.kinematics.first_pose import distance, first_state, shown
+from compoundkin.kinematics.first_pose import first_state, nearest_sign, shown
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
-from compoundkin.kinematics.group_paths import GroupPath, track
+from compoundkin.kinematics.group_march import GroupPath
+from compoundkin.kinematics.group_paths import track
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs, fit
 from compoundkin.kinematics.limits import NEAREST
-from compoundkin.kinematics.solving_order import SolvingOrder, residual, run
-
-
-@dataclass(frozen=True)
-class Begin:
-    """A place where the pose drawn is known to be. It has the dyads' signs and the other groups' states there."""
-
-    at: float
-    signs: Mapping[int, Number]
-    states: Mapping[int, Number]
+from compoundkin.kinematics.solving_order import SolvingOrder, run
 
 
 class Tracker(PrintsShort):
@@ -58,23 +50,25 @@ class Tracker(PrintsShort):
         self.flips: dict[int, Number] = {}
         # where the drawn pose is known to be, and its states; and what is known of the branch beyond what was reached
         self.begin = begin
-        self.branch: Branch | None = None
-        if begin is None:
-            way = approach_path(solving_order, given, shown.poses, shown.beside)
-        else:
-            way = given.at(np.array([begin.at])).of_poses(1), begin.at, begin.at + CLOSE
-        self.approach_path, self.at, self.reference = way
+        self.branch: TrackedBranch | None = None
+        self.approach_path, self.at, self.reference = (
+            begin.way(given) if begin else approach_path(solving_order, given, shown.poses, shown.beside)
+        )
         if begin is None and solving_order.turning and solving_order.structure.mechanism.geometry.drawn:
             first = self.approach_path.cut(slice(None), slice(0, 1))
             self.given, self.approach_path = recounted(solving_order, (given, self.approach_path), first)
         if shown.points or solving_order.numbered or solving_order.turning:
             self.choose()
         else:
-            for k in range(len(solving_order.solvers)):
-                self.signs[k] = fixed.get(k, 1)
-                self.chosen_by[k] = "sign" if k in fixed else "default"
-            if solving_order.four_bars.keys() - fixed:
-                self.choose(max(solving_order.four_bars.keys() - fixed))
+            self._take_signs()
+
+    def _take_signs(self) -> None:
+        """Note the signs of dyads where nothing is drawn or tracked; four-bar loops stand open."""
+        for k in range(len(self.solving_order.solvers)):
+            self.signs[k] = self.fixed.get(k, 1)
+            self.chosen_by[k] = "sign" if k in self.fixed else "default"
+        if self.solving_order.four_bars.keys() - self.fixed:
+            self.choose(max(self.solving_order.four_bars.keys() - self.fixed))
 
     def run(
         self,
@@ -125,7 +119,7 @@ class Tracker(PrintsShort):
 
     @property
     def lost(self) -> bool:
-        """Whether some group without a closed form was not reached everywhere from the drawn pose."""
+        """Whether some group without a closed form was not reached everywhere."""
         last = self.given.poses - 1.0
         reach = [self.paths[k].reach for k in self.solving_order.numbered]
         return any(not np.all((each[:, 0] <= 0.0) & (each[:, 1] >= last)) for each in reach)
@@ -211,17 +205,7 @@ class _First:
         closing = solving_order.closing(solver)
         if not letters and not closing:
             return self._default(block, solver), "default"
-        cost = []
-        for sign in (1, -1):
-            trial = block.copy()
-            solver.close(trial, sign)
-            cost.append(
-                residual(closing, trial, solving_order.size)
-                if closing
-                else distance(solving_order, letters, tracker.shown.points, trial)
-            )
-        best = np.where(cost[1] < cost[0], -1.0, 1.0)
-        chosen = float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
+        chosen = nearest_sign(solving_order, solver, block, tracker.shown.points)
         return chosen, "redundant" if closing else tracker.shown.source
 
     def _default(self, block: Block, solver: GroupSolver) -> Number:

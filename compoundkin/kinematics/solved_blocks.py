@@ -1,0 +1,68 @@
+"""A motion solved block by block; again where it passes a change point, or leaves what was reached of its branch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
+from compoundkin.kinematics.branch import Begin, TrackedBranch, course_of, leads_on
+from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.kinematics.tracking import Tracker
+
+# Up to so many poses are solved at once: gathering blocks would copy more than the caches save.
+WHOLE = 65536
+# Longer motions are solved in blocks of so many poses: their arrays stay in a second-level cache of 2 MB, and the
+# calls take far less time than the work.
+BLOCK = 16384
+
+
+def settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> Motion:
+    """Solve until no further change point is found, and nothing more is reached."""
+    while True:
+        motion, near = _run(solving_order, given, tracker, order)
+        near |= near_groups(tracker)
+        if near and pass_through(tracker, near):
+            continue
+        if not tracker.lost or not with_branch(tracker):
+            return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
+
+
+def with_branch(tracker: Tracker) -> bool:
+    """Track the branch of the drawn pose, for what its motion has lost. Tell whether it did."""
+    if tracker.branch is not None or tracker.begin is not None:
+        return False
+    course = course_of(tracker.solving_order, tracker.given, tracker.approach_path)
+    if course is None or not leads_on(course, tracker.given, tracker.paths.values()):
+        return False
+    states = {k: path.states[:, :1] for k, path in tracker.approach_paths.items()}
+    begin = Begin(course.at, tracker.signs, states)
+    around = Tracker(tracker.solving_order, course.inputs(tracker.given), tracker.fixed, tracker.shown, begin)
+    settled(tracker.solving_order, around.given, around, 0)
+    tracker.branch = TrackedBranch(course, around.paths)
+    if tracker.turns:
+        tracker.choose()
+    return True
+
+
+def _run(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
+    """Solve block by block and gather; also the groups that come near a limit position."""
+    designs, poses = given.designs, given.poses
+    near: set[int] = set()
+    parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
+    if len(parts) == 1:
+        block = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
+        failed = np.broadcast_to(block.failed, (designs, poses))
+        return Motion(solving_order.structure, order, given, dict(block.world), failed, tracker), _near(block)
+    store = JoinedBlocks(designs, poses)
+    for d, m in parts:
+        block = tracker.run(given.cut(d, m), order, *places(d, m))
+        store.take(block, d, m)
+        near |= _near(block)
+    return Motion(solving_order.structure, order, given, store.poses(), store.failed, tracker), near
+
+
+def _near(block: Block) -> set[int]:
+    return {k for k, margin in block.margins.items() if np.any(margin < NEAR)}
