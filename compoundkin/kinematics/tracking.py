@@ -35,10 +35,8 @@ class Tracker(PrintsShort):
         shown: Shown,
         begin: Begin | None = None,
     ) -> None:
-        self.solving_order = solving_order
-        self.given = given
-        self.fixed = fixed
-        self.shown = shown
+        self.solving_order, self.given = solving_order, given
+        self.fixed, self.shown, self.begin = fixed, shown, begin
         self.signs: dict[int, Number] = {}
         self.paths: dict[int, GroupPath] = {}
         self.approach_paths: dict[int, GroupPath] = {}
@@ -48,12 +46,9 @@ class Tracker(PrintsShort):
         # where along the approach path and the motion each group passes a change point, (designs, count), padded
         self.approach_flips: dict[int, Number] = {}
         self.flips: dict[int, Number] = {}
-        # where the drawn pose is known to be, and its states; and what is known of the branch beyond what was reached
-        self.begin = begin
         self.branch: TrackedBranch | None = None
-        self.approach_path, self.at, self.reference = (
-            begin.way(given) if begin else approach_path(solving_order, given, shown.poses, shown.beside)
-        )
+        way = begin.way(given) if begin else approach_path(solving_order, given, shown.poses, shown.beside)
+        self.approach_path, self.at, self.reference = way
         if begin is None and solving_order.turning and solving_order.structure.mechanism.geometry.drawn:
             first = self.approach_path.cut(slice(None), slice(0, 1))
             self.given, self.approach_path = recounted(solving_order, (given, self.approach_path), first)
