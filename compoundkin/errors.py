@@ -12,6 +12,7 @@ from compoundkin.base.errors import (
     DrawnBeyondEnd,
     InvalidInput,
     InvalidMechanism,
+    LikelySlip,
     NotAssembled,
     NotDetermined,
     Problem,
@@ -20,6 +21,6 @@ from compoundkin.base.errors import (
 )
 
 __all__ = [
-    "CompoundkinError", "DrawnBeyondEnd", "InvalidInput", "InvalidMechanism", "NotAssembled", "NotDetermined",
-    "Problem", "UnassembledPoses", "UnknownName",
+    "CompoundkinError", "DrawnBeyondEnd", "InvalidInput", "InvalidMechanism", "LikelySlip", "NotAssembled",
+    "NotDetermined", "Problem", "UnassembledPoses", "UnknownName",
 ]  # fmt: skip

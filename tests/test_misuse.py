@@ -12,10 +12,10 @@ import compoundkin as ck
 SIX_BAR = ck.solve(ck.catalog.load_named("six-bar"))
 
 REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
-    "a list of names": (lambda: SIX_BAR.table(["G.velocity"]), "one text for each quantity"),
-    "a number for a name": (lambda: ck.quantity(SIX_BAR, 3), "3 is no name"),
-    "a list of names to plot": (lambda: ck.plot(SIX_BAR, ["G", "bar"]), "one text for each quantity"),
-    "a list of kinds": (lambda: ck.draw(SIX_BAR, kind=["groups"]), "there is no picture"),
+    "a list of names": (lambda: SIX_BAR.table(["G.velocity"]), "one text for each"),
+    "a number for a name": (lambda: ck.quantity(SIX_BAR, 3), "3 is no text"),
+    "a list of names to plot": (lambda: ck.plot(SIX_BAR, ["G", "bar"]), "one text for each"),
+    "a list of kinds": (lambda: ck.draw(SIX_BAR, kind=["groups"]), "is no text; write one text"),
     "vectors switched on": (lambda: ck.draw(SIX_BAR, kind="polygon", vectors=True), "velocity, acceleration"),
     "vectors of an animation switched on": (lambda: ck.animate(SIX_BAR, vectors=True), "velocity, acceleration"),
 }

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from compoundkin.analysis.cam_follower import direction_of, velocity_at
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import dot
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
@@ -134,6 +135,7 @@ class CamAnalysis(Shows):
         return f"CamAnalysis({self.pair.name!r}, follower {self.follower!r})"
 
 
+@checked
 def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
     """Return the analysis of a cam or flat-faced cam pair over a motion.
 
@@ -153,8 +155,6 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
     >>> found.radius_of_curvature.round(9).tolist()
     [20.0, 20.0]
     """
-    if not isinstance(motion, Motion):
-        raise InvalidInput(Problem("motion", f"{motion!r} is not a motion", "solve() the mechanism first"))
     pair = _pair_of(motion, name)
     ends, poses = motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members)
     touch = pair.touch(ends, poses)
@@ -178,6 +178,7 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
     )
 
 
+@checked
 def cam_pairs(motion: Motion) -> tuple[str, ...]:
     """Return the names of the pairs that can be analysed, in order."""
     return tuple(pair.name for pair in motion.mechanism.written_pairs if as_profiled(pair))

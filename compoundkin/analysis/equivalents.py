@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import entry, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import End, Pose
@@ -44,6 +45,7 @@ class Replacement:
         return f"{self.pair.name} ({self.pair.title}): a bar of length {self.length:.6g}"
 
 
+@checked
 def equivalent_linkage(motion: Motion, at: int = 0) -> Mechanism:
     """Return the mechanism of lower pairs with the same velocities and accelerations.
 
@@ -72,10 +74,6 @@ class _Builder:
     """Collects the links of the linkage and the points that they gain."""
 
     def __init__(self, motion: Motion, at: int) -> None:
-        if not isinstance(motion, Motion):
-            raise InvalidInput(Problem("motion", f"{motion!r} is not a motion", "solve() the mechanism first"))
-        if not isinstance(at, int | np.integer) or isinstance(at, bool):
-            raise InvalidInput(Problem("at", f"{at!r} is not an index", "give the flat index of a pose"))
         if not 0 <= at < motion.failed.size or not motion.regular.flat[at]:
             what = f"pose {at} is not assembled, or at a limit position"
             raise InvalidInput(Problem("at", what, f"give the index of one of the {motion.failed.size} poses"))

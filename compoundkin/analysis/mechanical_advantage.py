@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from compoundkin.analysis.coupler.relative_motion import SMALL, moving, relative_link, relative_point
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, dot
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
@@ -57,6 +58,7 @@ class Advantage(PrintsShort):
     defined: Number
 
 
+@checked
 @np.errstate(all="ignore")
 def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage:
     """Return how many times the force or torque at `input` is available at `output`.
@@ -104,9 +106,6 @@ def _rate(motion: Motion, port: Port, where: str) -> tuple[Number, Number]:
         return _named(motion, port, where, scale)
     if isinstance(port, TorquePort):
         return np.asarray(relative_link(motion, port.link, port.on).angular_velocity), scale
-    if not isinstance(port, ForcePort):
-        text = f"{port!r} is no place for a force or torque"
-        raise InvalidInput(Problem(where, text, "a link, pair or driver by name, TorquePort(...) or ForcePort(...)"))
     velocity = np.asarray(relative_point(motion, port.link, port.point, port.on).velocity)
     return dot(np.exp(1j * _angle(motion, port.angle, where)), velocity), scale * size
 

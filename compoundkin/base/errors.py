@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
+
+from compoundkin.base.texts import written_out
 
 
 @dataclass(frozen=True)
@@ -20,7 +23,7 @@ class Problem:
 
     def __str__(self) -> str:
         text = f"{self.where}: {self.what}" if self.where else self.what
-        return f"{text}; {self.remedy}" if self.remedy else text
+        return written_out(f"{text}; {self.remedy}" if self.remedy else text)
 
 
 class CompoundkinError(Exception):
@@ -39,6 +42,10 @@ class CompoundkinError(Exception):
         self.problems: tuple[Problem, ...] = tuple(problems)
         self.heading = heading
         super().__init__(self._text())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # as the text alone it would lose its problems on the way from another process
+        return type(self), (self.problems, self.heading)
 
     def _text(self) -> str:
         if len(self.problems) == 1 and not self.heading:
@@ -77,7 +84,22 @@ class DrawnBeyondEnd(UserWarning):
     """The pose drawn is beyond an end of a guide."""
 
 
-def nearest(name: str, known: Sequence[str]) -> str:
+class LikelySlip(UserWarning):
+    """A value that can be meant as it is, but is most often a slip."""
+
+
+def warn(text: str, category: type[Warning]) -> None:
+    """Warn at the line of the user's program that called the package."""
+    import inspect
+    import warnings
+
+    own, frame, depth = __name__.partition(".")[0], inspect.currentframe(), 1
+    while frame is not None and str(frame.f_globals.get("__name__")).startswith(f"{own}."):
+        frame, depth = frame.f_back, depth + 1
+    warnings.warn(text, category, stacklevel=depth)
+
+
+def nearest(name: object, known: Sequence[str]) -> str:
     """Return the remedy for an unknown name. It is the closest known one, or the list of what there is.
 
     >>> nearest("crnk", ["crank", "rod"])
@@ -87,7 +109,7 @@ def nearest(name: str, known: Sequence[str]) -> str:
     """
     import difflib
 
-    close = difflib.get_close_matches(name, known, n=1)
+    close = difflib.get_close_matches(str(name), known, n=1)
     if close:
         return f"did you mean {close[0]!r}?"
     return f"known: {', '.join(known[:12])}{' ...' if len(known) > 12 else ''}" if known else "there is none"

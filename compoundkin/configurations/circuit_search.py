@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN
 from compoundkin.base.display import Shows, counted
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, nearest
@@ -104,6 +105,7 @@ class Circuits(Shows):
         return f"Circuits({counted(len(self.circuits), 'circuit')}, {branches} of the driver {self.driver!r})"
 
 
+@checked
 def circuits(
     mechanism: Mechanism | Structure,
     driver: str | None = None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import product
 from math import prod
@@ -10,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN, Number, first_entry
 from compoundkin.base.bracketing import bisected
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
@@ -149,7 +149,8 @@ def closed_redundant(solving_order: SolvingOrder, block: Block) -> Number:
     return residual(pairs, block, solving_order.size) <= CLOSED**2 if pairs else True
 
 
-def configurations(mechanism: Mechanism | Structure, values: Mapping[str, Any] | None = None) -> Configurations:
+@checked
+def configurations(mechanism: Mechanism | Structure, values: Any = None) -> Configurations:
     """Find all configurations of a mechanism at driver values.
 
     These are radians or lengths; arrays; those of `solve` if left out.

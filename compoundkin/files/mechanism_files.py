@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.suffixes import SUFFIXES, suffix_of
 from compoundkin.files import toml_text
@@ -20,6 +21,7 @@ Syntax: TypeAlias = Literal["toml", "json"]
 SYNTAXES: tuple[Syntax, ...] = ("toml", "json")
 
 
+@checked
 def load(path: str | os.PathLike[str]) -> Mechanism:
     """Return the mechanism of a TOML or JSON file, distinguished by the suffix.
 

@@ -16,6 +16,7 @@ from typing import Any, BinaryIO, ClassVar, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import Kind, everything, form_of
 from compoundkin.files.atomic import write_atomically
@@ -118,6 +119,7 @@ class Savable:
         write_atomically(path, lambda file: file.write(content))
 
 
+@checked
 def save(what: Any, path: str | os.PathLike[str]) -> None:
     """Save anything to a file in the form that its suffix tells.
 

@@ -7,6 +7,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.suffixes import SUFFIXES, suffix_for
 
@@ -34,6 +35,7 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(file.stem for file in folder().glob(f"*{SUFFIX}")))
 
 
+@checked
 def path(name: str) -> Path:
     """Return the file of a shipped mechanism. Raises UnknownName with the nearest name there is.
 
@@ -48,6 +50,7 @@ def path(name: str) -> Path:
     return folder() / (name + SUFFIX)
 
 
+@checked
 def load_named(name: str) -> Mechanism:
     """Return a shipped mechanism by its name. Raises UnknownName with the nearest name there is.
 
@@ -60,6 +63,7 @@ def load_named(name: str) -> Mechanism:
     return load(path(name))
 
 
+@checked
 def resolve(name_or_path: str | PathLike[str]) -> Path:
     """Return the file that a user means. An existing file, or else a shipped mechanism's.
 

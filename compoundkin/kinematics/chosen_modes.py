@@ -26,8 +26,6 @@ def signs_of(
     if isinstance(modes, str):
         written = {link: mode.sign for mode in mechanism.modes for link in mode.links}
         return {**_by_group(solving_order, written), **read_name(solving_order, modes)}
-    if modes is not None and not isinstance(modes, Mapping):
-        raise InvalidInput(Problem("modes", f"{modes!r} does not name a link", "write {'link of the group': -1}"))
     called, written = dict(modes or {}), {link: mode.sign for mode in mechanism.modes for link in mode.links}
     return {**_by_group(solving_order, written), **_by_group(solving_order, called)}
 

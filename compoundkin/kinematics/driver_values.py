@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.kinematics.inputs import Inputs, fit, mapped
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -99,10 +100,7 @@ def _rate(drive: Drive, what: Any, default: Number, only: bool) -> Any:
 
 
 def _number(where: str, value: Any) -> Number:
-    try:
-        out = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidInput(Problem(where, f"{value!r} is not a number or an array of numbers")) from None
+    out = real_numbers(where, value)
     if out.size == 0 or not np.isfinite(out).all():
         raise InvalidInput(Problem(where, "the value is empty or not finite"))
     return float(out) if out.ndim == 0 else out
@@ -166,10 +164,7 @@ def times_of(mechanism: Mechanism, values: Mapping[str, Any] | None, time: Any) 
 
 
 def _checked(time: Any) -> Number:
-    try:
-        out = np.asarray(time, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidInput(Problem("time", f"{time!r} is not a number or an array of numbers")) from None
+    out = real_numbers("time", time)
     if out.size == 0 or not np.isfinite(out).all():
         raise InvalidInput(Problem("time", "the times are empty or not finite", "give seconds, in order of the motion"))
     return out

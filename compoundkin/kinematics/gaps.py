@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, column
 from compoundkin.base.bracketing import bisected
 from compoundkin.kinematics.motion import Motion
@@ -39,6 +40,7 @@ class Gap:
     pair: str = ""
 
 
+@checked
 def gaps(motion: Motion) -> tuple[Gap, ...]:
     """Return all gaps of a motion, design by design, in its order.
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
+from compoundkin.base.copies import CopiesFields
 from compoundkin.base.display import ShowsPicture, way
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
@@ -24,7 +25,7 @@ from compoundkin.structure.kinematic_structure import Structure
 
 
 @dataclass(frozen=True)
-class Motion(ShowsPicture):
+class Motion(CopiesFields, ShowsPicture):
     """A mechanism solved: every link's pose with all derivatives, over designs and poses.
 
     `shape` is the broadcast shape of dimensions and driver values, the last axis the motion. Poses that
@@ -81,7 +82,7 @@ class Motion(ShowsPicture):
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
         """The motion of every link by its name."""
-        return Named("link", tuple(self.mechanism.links), lambda name: LinkMotion(self.grid, self.poses[name], name))
+        return Named("link", tuple(self.mechanism.links), self._link)
 
     @cached_property
     def pairs(self) -> Mapping[str, PairMotion]:
@@ -170,6 +171,9 @@ class Motion(ShowsPicture):
         told = f", {missing} of them not assembled" if missing else ""
         return f"Motion({self.mechanism.title!r} at {self.shape} poses to order {self.order}{told})"
 
+    def _link(self, name: str) -> LinkMotion:
+        return LinkMotion(self.grid, self.poses[name], name)
+
     def _point(self, name: str) -> PointMotion:
         link = self.mechanism.carriers[name][0]
         return PointMotion(self.grid, self._derivative(link, name), name)
@@ -177,7 +181,7 @@ class Motion(ShowsPicture):
     def _derivative(self, link: str, name: str) -> Any:
         pose = self.poses[link]
         p = fit(self.shape)(self.mechanism.geometry.points[link][name])
-        return lambda k: pose.derivative(p, k)
+        return partial(pose.derivative, p)
 
     def _pair(self, name: str) -> PairMotion:
         pair = self.solving_order.pairs[name]

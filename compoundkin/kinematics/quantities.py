@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.model.attributes import (
     ALSO,
@@ -126,14 +127,14 @@ def known_owners(motion: HasQuantities) -> list[str]:
     return list(dict.fromkeys(name for kind in CATALOGUE for name in getattr(motion, kind)))
 
 
+@checked
 def quantity(motion: HasQuantities, name: str) -> Quantity:
     """Return the quantity of a name such as "G.velocity".
 
-    "G" alone is G.position, "bar" bar.angle, "slot" slot.value.
-    Points have position, velocity, acceleration, jerk, x, y, speed; links angle, angular_velocity,
-    angular_acceleration, angular_jerk; pairs and drivers value, rate, second, third (and angle or
-    displacement for value). A vector has parts: "G.velocity.x", "G.velocity.y", "G.velocity.length".
-    Raises UnknownName with the nearest known name.
+    "G" alone is G.position, "bar" bar.angle, "slot" slot.value. Points have position, velocity, acceleration, jerk, x,
+    y, speed; links angle, angular_velocity, angular_acceleration, angular_jerk; pairs and drivers value, rate, second,
+    third (and angle or displacement for value). A vector has parts: "G.velocity.x", ".y", ".length". Raises UnknownName
+    with the nearest known name.
 
     >>> from compoundkin.model.elements import drive, link
     >>> from compoundkin.kinematics import solve
@@ -149,8 +150,7 @@ def quantity(motion: HasQuantities, name: str) -> Quantity:
 def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
     """Return the quantity of a name, or a vector and which part is meant. Raises UnknownName."""
     if not isinstance(name, str):
-        remedy = 'write "G.velocity", one text for each quantity'
-        raise InvalidInput(Problem("quantity", f"{name!r} is no name", remedy))
+        raise InvalidInput(Problem("quantity", f"{name!r} is no name", 'write "G.velocity", one text for each'))
     try:
         return _whole(motion, name), ""
     except UnknownName:

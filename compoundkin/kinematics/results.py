@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -116,7 +116,7 @@ class LinkMotion:
     def at(self, point: Any) -> PointMotion:
         """Return the motion of any point given in its frame, complex or (x, y)."""
         p = self._grid.fitted(vector("point", point))
-        return PointMotion(self._grid, lambda k: self._pose.derivative(p, k))
+        return PointMotion(self._grid, partial(self._pose.derivative, p))
 
     def __repr__(self) -> str:
         return told(self, self._grid, self._name)
@@ -174,6 +174,10 @@ class Named(Mapping[str, Any]):
     def __init__(self, kind: str, names: tuple[str, ...], make: Any) -> None:
         self._kind, self._names, self._make = kind, names, make
         self._made: dict[str, Any] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        # all entries, for what makes them may be a function within another, which cannot be pickled
+        return {"_kind": self._kind, "_names": self._names, "_make": None, "_made": dict(self)}
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._made:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import (
     DrawnBeyondEnd,
     InvalidInput,
@@ -16,6 +16,7 @@ from compoundkin.base.errors import (
     NotDetermined,
     Problem,
     UnassembledPoses,
+    warn,
 )
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.approach import drawn_value
@@ -34,9 +35,10 @@ from compoundkin.structure import decompose
 from compoundkin.structure.kinematic_structure import Structure
 
 
+@checked
 def solve(
     mechanism: Mechanism | Structure,
-    values: Mapping[str, Any] | None = None,
+    values: Any = None,
     *,
     time: Any = None,
     speed: Any = None,
@@ -97,7 +99,7 @@ def _warn(motion: Motion) -> None:
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         how_many = f"{missing} of {motion.failed.size} poses cannot be assembled"
-        warnings.warn(f"{how_many}: Motion.assembled masks them, gaps() explains", UnassembledPoses, stacklevel=3)
+        warn(f"{how_many}: Motion.assembled masks them, gaps() explains", UnassembledPoses)
 
 
 def _warn_of_drawing(tracker: Tracker) -> None:
@@ -113,7 +115,7 @@ def _warn_of_drawing(tracker: Tracker) -> None:
         failed = np.broadcast_to(block.failed, block.shape).ravel()
         passed = [solving_order.guide_ends.passed(int(index), block, k) for k, index in enumerate(failed)]
     for reason in dict.fromkeys(one.reason for one in passed if one):
-        warnings.warn(f"as it is drawn, {reason}", DrawnBeyondEnd, stacklevel=4)
+        warn(f"as it is drawn, {reason}", DrawnBeyondEnd)
 
 
 def _check_order(order: int) -> None:
@@ -125,8 +127,6 @@ def _check_order(order: int) -> None:
 
 def solving_order_of(mechanism: Mechanism | Structure) -> SolvingOrder:
     """Return the solving order of a mechanism, made once and kept with it."""
-    if not isinstance(mechanism, Mechanism | Structure):
-        raise InvalidInput(Problem("mechanism", f"{mechanism!r} is not a mechanism", "load() one from a file"))
     owner = mechanism.mechanism if isinstance(mechanism, Structure) else mechanism
     solving_order: SolvingOrder | None = owner.__dict__.get("_solving_order")
     if solving_order is None:

@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias
 
-from compoundkin.base.display import PrintsShort
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.display import PrintsShort, short
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.fields import Key
@@ -101,6 +104,7 @@ class Expectation:
 Item: TypeAlias = Link | Pair | Drive | Mode | Drawn | Expectation
 
 
+@checked
 def link(name: str, *letters: str, **points: Any) -> Link:
     """Return a link with its points. ``A=(x, y)`` or complex numbers in the link's frame, or letters alone.
 
@@ -125,6 +129,7 @@ def link(name: str, *letters: str, **points: Any) -> Link:
     return Link(name, placed if placed else dict.fromkeys(letters))
 
 
+@checked
 def drive(
     link: str,
     *,
@@ -152,6 +157,7 @@ def drive(
     return Drive(name or link, link, on, pair, **numbers, law=as_law(f"drives.{name or link}.law", law))
 
 
+@checked
 def drawn(**points: Any) -> Drawn:
     """Return points as drawn, in global coordinates. The dimensions of links given by letters, and the assembly mode.
 
@@ -161,6 +167,7 @@ def drawn(**points: Any) -> Drawn:
     return Drawn(_points("drawn", points))
 
 
+@checked
 def mode(sign: int, *links: str) -> Mode:
     """Return the choice of an assembly mode, +1 or -1, for the links' group.
 
@@ -172,6 +179,7 @@ def mode(sign: int, *links: str) -> Mode:
     return Mode(links, sign)
 
 
+@checked
 def expect(quantity: str, value: Any, tolerance: float, **at: float) -> Expectation:
     """Return a published number to hold the solved motion against.
 
@@ -180,9 +188,10 @@ def expect(quantity: str, value: Any, tolerance: float, **at: float) -> Expectat
     >>> expect("block.angle", 0.5, 1e-3, crank=1.0).at
     (('crank', 1.0),)
     """
-    return Expectation(
-        quantity, complex(vector("expected", value)), float(real("expected.tolerance", tolerance)), tuple(at.items())
-    )
+    published = vector("expected", value)
+    if np.ndim(published):
+        raise InvalidMechanism(Problem("expected", f"{short(value)} is not one number", "give a number or (x, y)"))
+    return Expectation(quantity, complex(published), float(real("expected.tolerance", tolerance)), tuple(at.items()))
 
 
 def _points(where: str, points: Mapping[str, Any]) -> dict[str, Number]:

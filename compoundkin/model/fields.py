@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields
 from typing import Any, Literal, ParamSpec, TypeVar
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import Problem, nearest
 
 # What a value is: how a file writes it and how Python holds it.
@@ -195,7 +196,7 @@ def word(name: str, kind: Callable[P, Made]) -> Callable[P, Made]:
     made.__doc__ = f"{text[0]}\n\n{arguments}{''.join(text[1:])}"
     made.__name__, made.__qualname__, made.__module__ = name, name, kind.__module__
     made.__signature__ = signature  # type: ignore[attr-defined]
-    return made
+    return checked(made)
 
 
 # What a sentence on a field leaves out for those who write Python.

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.display import PrintsShort
+from compoundkin.base.arguments import checked
+from compoundkin.base.display import PrintsShort, short
 from compoundkin.base.errors import InvalidMechanism, Problem
+from compoundkin.base.given_numbers import planar_numbers, real_numbers
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 
@@ -84,16 +86,18 @@ def fitted_pose(points: Mapping[str, Number], sketch: Mapping[str, Number]) -> P
     return Pose(constant(sketch[a] - turned * points[a]), constant(turned))
 
 
+@checked
 def deg(angle: Any) -> Number:
     """Return degrees as radians: a number, a list, a range or an array.
 
     >>> round(deg(180), 6)
     3.141593
     """
-    value = np.deg2rad(np.asarray(angle, dtype=float))
+    value = np.deg2rad(real_numbers("angle", angle))
     return float(value) if value.ndim == 0 else value
 
 
+@checked
 def polar(radius: Any, angle: Any) -> Number:
     """Return the planar vector of a length and an angle (radians).
 
@@ -102,7 +106,8 @@ def polar(radius: Any, angle: Any) -> Number:
     >>> polar(2.0, 0.0)
     (2+0j)
     """
-    value = np.asarray(radius) * (np.cos(angle) + 1j * np.sin(angle))
+    turned = real_numbers("angle", angle)
+    value = real_numbers("radius", radius) * (np.cos(turned) + 1j * np.sin(turned))
     return complex(value) if value.ndim == 0 else value
 
 
@@ -114,19 +119,21 @@ def vector(where: str, value: Any) -> Number:
     >>> vector("A", (1, [2, 3])).tolist()
     [(1+2j), (1+3j)]
     """
-    try:
-        if isinstance(value, tuple | list) and len(value) == 2:
-            x, y = (np.asarray(v, dtype=float) for v in value)
+    if isinstance(value, tuple | list) and len(value) == 2:
+        x, y = (real_numbers(where, v, InvalidMechanism) for v in value)
+        try:
             out = x + 1j * y
-        elif value is None or isinstance(value, tuple | list | str):
-            raise ValueError
-        else:
-            out = np.asarray(value, dtype=complex)
-    except (TypeError, ValueError):
-        raise InvalidMechanism(
-            Problem(where, f"{value!r} is not a point", "write (x, y) or a complex number")
-        ) from None
+        except ValueError:
+            raise _no_point(where, value) from None
+    elif value is None or isinstance(value, tuple | list | str):
+        raise _no_point(where, value)
+    else:
+        out = planar_numbers(where, value, InvalidMechanism)
     return complex(out) if out.ndim == 0 else _frozen(out)
+
+
+def _no_point(where: str, value: Any) -> InvalidMechanism:
+    return InvalidMechanism(Problem(where, f"{short(value)} is not a point", "write (x, y) or a complex number"))
 
 
 def _frozen(array: Any) -> Any:
@@ -143,10 +150,7 @@ def real(where: str, value: Any) -> Number:
     """
     if value is None:
         return None
-    try:
-        out = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidMechanism(Problem(where, f"{value!r} is not a number or an array of numbers")) from None
+    out = real_numbers(where, value, InvalidMechanism)
     return float(out) if out.ndim == 0 else _frozen(out)
 
 
@@ -156,7 +160,7 @@ def place_of(value: Any, where: str = "profile") -> complex:
         if isinstance(value, str):  # Python reads "1+2j" as a number
             raise ValueError
         return complex(value) if np.ndim(value) == 0 else complex(*(float(v) for v in value))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidMechanism(Problem(where, f"{value!r} is not a point", "write (x, y)")) from None
 
 
@@ -164,7 +168,7 @@ def number_of(value: Any, where: str) -> float:
     """Return one real number; raises InvalidMechanism naming `where` for anything else."""
     try:
         return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidMechanism(
             Problem(where, f"{value!r} is not one number", "give one; one profile for each design")
         ) from None

@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.display import ShowsPicture, counted
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, nearest
 from compoundkin.base.poses import FIXED, Pose
@@ -22,6 +23,8 @@ from compoundkin.model.written import Written
 
 # An error names so many links.
 MOST_NAMED = 12
+# What is written of a mechanism beside its items.
+_ABOUT = ("title", "unit", "source", "description", "outputs", "time")
 
 
 class Mechanism(Written, ShowsPicture):
@@ -46,6 +49,7 @@ class Mechanism(Written, ShowsPicture):
     ('crank', 'coupler')
     """
 
+    @checked
     def __init__(
         self,
         title: str,
@@ -53,7 +57,7 @@ class Mechanism(Written, ShowsPicture):
         unit: str = "",
         source: str = "",
         description: str = "",
-        outputs: Sequence[str] = (),
+        outputs: str | Sequence[str] = (),
         time: Any = None,
     ) -> None:
         self.title = title
@@ -132,7 +136,7 @@ class Mechanism(Written, ShowsPicture):
         """
         keys = {_identity(item): item for item in items}
         kept = [keys.pop(_identity(item), item) for item in self.items]
-        words = {k: getattr(self, k) for k in ("unit", "source", "description", "outputs", "time")}
+        words = {k: getattr(self, k) for k in _ABOUT[1:]}
         title = changes.pop("title", self.title)
         return Mechanism(title, *kept, *keys.values(), **{**words, **changes})
 
@@ -144,6 +148,10 @@ class Mechanism(Written, ShowsPicture):
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Mechanism) and same(_plain(self), _plain(other))
+
+    def __getstate__(self) -> dict[str, Any]:
+        # what is written; what was found of it since is found again
+        return {name: getattr(self, name) for name in (*_ABOUT, "items")}
 
     def __hash__(self) -> int:
         return hash((self.title, tuple(self.links)))
@@ -186,7 +194,7 @@ def _identity(item: Item) -> tuple[Any, ...]:
 
 def _plain(mechanism: Mechanism) -> list[Any]:
     """Return what is written, as nested builtins and arrays, for comparison."""
-    about = [getattr(mechanism, k) for k in ("title", "unit", "source", "description", "outputs", "time")]
+    about = [getattr(mechanism, k) for k in _ABOUT]
     drawing = [["Drawn", mechanism.sketch]] if mechanism.sketch else []
     written = [
         [type(item).__name__, {field.name: getattr(item, field.name) for field in fields(cast("Any", item))}]

@@ -17,6 +17,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
+from compoundkin.base.arguments import checked
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.assur_groups import Binder, all_pairs
 from compoundkin.structure.composites import composites
@@ -29,6 +30,7 @@ from compoundkin.structure.rank import RankTest, Subsystem
 from compoundkin.structure.system import System, system_of
 
 
+@checked
 def decompose(mechanism: Mechanism) -> Structure:
     """Take a mechanism apart into driven links and Assur groups in solving order.
 

@@ -8,6 +8,7 @@ from functools import cache, cached_property
 from itertools import combinations
 from math import comb
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
@@ -46,8 +47,7 @@ class Alternative:
     `groups` are (letters, class, order) in solving order. `class_` is the highest class, 1 where the drivers move
     everything. `configurations` is the number of ways to assemble it at given driver values, those of larger groups
     over the complex numbers; None where no formula knows it. `closed` says that every group is solved in closed form,
-    `faults` why it is not determined. `alike` counts the choices that it stands for, itself included; `present` marks
-    the one that is.
+    `faults` why it is not determined. `alike` counts the choices it stands for; `present` marks the one that is.
     """
 
     frame: str
@@ -72,15 +72,14 @@ class Alternative:
         return f"Alternative({self.title!r}: frame {self.frame}, drivers {drivers}, {found})"
 
 
+@checked
 def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None = None) -> tuple[Alternative, ...]:
     """Return every choice of frame and drivers, alike ones once.
 
-    A frame is any link or one of `frames`, drivers are as many as there are freedoms. Alike ones once.
-    Alike are choices that a symmetry of the kinematic graph carries into each other. Where several drivers give more
-    than `MOST_CHOICES` choices, one of the present ones at a time is put elsewhere. Nothing is solved; what is found
-    holds for generic dimensions. None where the count leaves no freedom.
-
-    Raises InvalidInput where there are still too many choices, UnknownName for a frame that is no link.
+    A frame is any link or one of `frames`, drivers are as many as there are freedoms. Alike are choices that a symmetry
+    of the kinematic graph carries into each other. Where several drivers give more than `MOST_CHOICES` choices, one of
+    the present ones at a time is put elsewhere. Nothing is solved; it holds for generic dimensions. None without a
+    freedom. Raises InvalidInput where there are still too many choices, UnknownName for a frame that is no link.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> table = alternatives(load_named("stephenson-iii-driven-at-dyad"), frames=["frame"])
@@ -88,11 +87,12 @@ def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None 
     [('AB on frame (A)', 2), ('FG on frame (G)', 3)]
     """
     structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
-    choices = _Choices(structure)
-    wanted = [structure.mechanism.link(name).name for name in frames or structure.mechanism.links]
+    links = structure.mechanism.links
+    wanted = [structure.mechanism.link(name).name for name in (links if frames is None else frames)]
     if structure.mobility.freedoms < 1:
         return ()
-    work = len(wanted) * choices.number * len(structure.mechanism.links)
+    choices = _Choices(structure)
+    work = len(wanted) * choices.number * len(links)
     classes = choices.frames(wanted) if work <= MOST_WORK else [(name, 1) for name in wanted]
     if len(classes) * choices.number > MOST_CHOICES or work > MOST_WORK:
         what = f"{len(classes) * choices.number} choices are too many"

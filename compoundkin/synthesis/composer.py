@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.groups import DYADS
 from compoundkin.model.elements import FRAME, Item, drawn, drive, link
@@ -173,6 +174,7 @@ def pairs_of(group: str | AssurGroup) -> tuple[list[tuple[str, int | None, int]]
     return [(REVOLUTE, *ends) for ends in found.joined], found.outer, found.links
 
 
+@checked
 def random_mechanism(
     groups: int = 1000, seed: int = 0, kinds: Sequence[str | AssurGroup] = DYAD_NAMES, multiple: float = 0.2
 ) -> Mechanism:
@@ -180,19 +182,19 @@ def random_mechanism(
 
     A share `multiple` of outer pins are put on pins that there are already. Links of group k are "k-0", "k-1", ...
     It assembles as drawn, where the crank stays; it may not far from there.
-
-    Raises InvalidInput for a number of groups that is negative, UnknownName for a kind that is not known.
+    Raises InvalidInput for a negative number of groups, UnknownName for a kind that is not known.
 
     >>> random_mechanism(groups=3, seed=1)
     Mechanism('3 random groups, seed 1': 8 links, 1 driver)
     """
     if groups < 0:
         raise InvalidInput(Problem("groups", f"{groups} is no number of groups", "give 0 or more"))
+    if not (kinds := [*kinds]):
+        raise InvalidInput(Problem("kinds", "there is no kind to choose from", f"name some of {', '.join(DYAD_NAMES)}"))
     chosen = random.Random(seed)
-    composer = Composer(f"{groups} random groups, seed {seed}").drive("crank", values=0.0)
-    known = [FRAME, "crank"]
+    known, composer = [FRAME, "crank"], Composer(f"{groups} random groups, seed {seed}").drive("crank", values=0.0)
     for k in range(groups):
-        kind = chosen.choice(list(kinds))
+        kind = chosen.choice(kinds)
         pairs, outer, size = pairs_of(kind)
         links = [f"{k}-{n}" for n in range(size)]
         around = chosen.sample(known, outer) if len(known) >= outer else chosen.choices(known, k=outer)
@@ -200,7 +202,6 @@ def random_mechanism(
         to = [_entry(composer, chosen, code, on, multiple) for code, on in zip(codes, around, strict=True)]
         composer.attach(kind, links, to if len(set(to)) == outer else around)
         known += links
-    # random places, in a square that does not grow with their number
     composer.place(**{letter: (chosen.uniform(-3.0, 3.0), chosen.uniform(-3.0, 3.0)) for letter in composer.carriers})
     mechanism = composer.mechanism()
     angle = float(mechanism.geometry.drawn["crank"].angle.c[0])

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, UnassembledPoses, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
@@ -28,6 +29,7 @@ WITHIN = 0.382
 _AXES = {"old origin": 0j, "old x": 1 + 0j}
 
 
+@checked
 def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
     """Return the inversion of a mechanism in which `link` is the frame. The frame moves as the link "old frame".
 
@@ -60,6 +62,7 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
     return _written(mechanism, f"{mechanism.title}, {link} fixed", items, outputs)
 
 
+@checked
 def with_driver(
     mechanism: Mechanism, link: str, on: str = FRAME, *, pair: str = "", instead: str = "", **words: Any
 ) -> Mechanism:

@@ -209,7 +209,7 @@ GOOD = lift(20.0)
         (GOOD, {"base": 30, "offset": 40}, "offset", "does not meet the prime circle"),
         (GOOD, {"base": -3}, "base", "radius -3"),
         (GOOD, {"base": np.nan}, "base", "not a finite number"),
-        (GOOD, {"base": [30, 40]}, "base", "not a finite number"),
+        (GOOD, {"base": [30, 40]}, "base", "is no number"),
         (GOOD, {"base": 30, "follower": "rollr"}, "follower", "no follower 'rollr'"),
         (GOOD, {"base": 30, "follower": "roller"}, "roller", "radius 0"),
         (GOOD, {"base": 30, "roller": 4}, "roller", "a knife follower has no roller"),
@@ -242,7 +242,7 @@ GOOD = lift(20.0)
             "9 below the base circle",
         ),
         (lift(9, "constant-velocity"), {"base": 30, "follower": "flat"}, "program", "velocity jumps at 60, 170"),
-        ("rise", {"base": 30}, "program", "not a motion program"),
+        ("rise", {"base": 30}, "program", "is no program"),
     ],
 )
 def test_what_cannot_be_made_says_why(program: Any, words: dict[str, Any], place: str, what: str) -> None:

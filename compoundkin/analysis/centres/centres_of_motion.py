@@ -11,6 +11,7 @@ from compoundkin.analysis.centres.evaluation import Evaluation
 from compoundkin.analysis.centres.homogeneous import OwnCoordinates, PrimaryCentres, norm
 from compoundkin.analysis.centres.instant_centres import Centres
 from compoundkin.analysis.centres.recomputation import recompute
+from compoundkin.base.arguments import checked
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
@@ -21,6 +22,7 @@ from compoundkin.model.pairs.contract import Line
 BLOCK = 4096
 
 
+@checked
 def instant_centres(motion: Motion) -> Centres:
     """Return all instant centres of a motion at every pose, by geometry alone.
 

@@ -7,11 +7,13 @@ import numpy as np
 from compoundkin.analysis.checks.difference_check import continuity_findings, difference_findings
 from compoundkin.analysis.checks.finding import Check, Finding
 from compoundkin.analysis.checks.residuals import centre_findings, residuals
+from compoundkin.base.arguments import checked
 from compoundkin.kinematics import Motion
 
 __all__ = ["Check", "Finding", "verify"]
 
 
+@checked
 def verify(motion: Motion) -> Check:
     """Check a motion in ways that do not use the formulas that solved it.
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from compoundkin.analysis.coupler.centrodes import pole_moves
 from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, Relative, direction, relative
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.base.display import PrintsShort
 from compoundkin.kinematics import Motion
@@ -89,6 +90,7 @@ class BresseCircle(PrintsShort):
         return np.where(self.is_line, INFINITE, self.through + self.direction * np.where(self.is_line, 0.0, distance))
 
 
+@checked
 @np.errstate(all="ignore")
 def canonical_frame(motion: Motion, link: str, on: str = FRAME) -> CanonicalFrame:
     """Return the canonical frame of `link` seen from `on`: pole, tangent, normal, diameter.
@@ -107,6 +109,7 @@ def canonical_frame(motion: Motion, link: str, on: str = FRAME) -> CanonicalFram
     return canonical(relative(motion, link, on, 2, "the canonical frame"))
 
 
+@checked
 @np.errstate(all="ignore")
 def inflection_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircle:
     """Return the circle of points of `link` whose paths have no curvature.
@@ -129,6 +132,7 @@ def inflection_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircl
     return _circle(seen, frame.normal, frame.diameter, beside, direction(velocity))
 
 
+@checked
 @np.errstate(all="ignore")
 def tangential_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircle:
     """Return the circle of points of `link` that keep their speed.
@@ -155,6 +159,7 @@ def tangential_circle(motion: Motion, link: str, on: str = FRAME) -> BresseCircl
     return _circle(seen, towards, diameter, beside, direction(1j * velocity))
 
 
+@checked
 @np.errstate(all="ignore")
 def acceleration_pole(motion: Motion, link: str, on: str = FRAME) -> Number:
     """Return the point of `link` without acceleration as seen from `on`.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, UNKNOWN, Relative, direction, rate, relative
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import cross
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number, Series
@@ -64,6 +65,7 @@ class Centrodes(PrintsShort):
         return self.pole.moving
 
 
+@checked
 @np.errstate(all="ignore")
 def pole(motion: Motion, link: str, on: str = FRAME) -> Pole:
     """Return the point of `link` without velocity as seen from `on`.
@@ -85,6 +87,7 @@ def pole(motion: Motion, link: str, on: str = FRAME) -> Pole:
     return _pole(relative(motion, link, on, 1, "the pole"))
 
 
+@checked
 @np.errstate(all="ignore")
 def pole_velocity(motion: Motion, link: str, on: str = FRAME) -> Number:
     """Return the velocity at which the pole changes its place (pole change velocity).
@@ -104,6 +107,7 @@ def pole_velocity(motion: Motion, link: str, on: str = FRAME) -> Number:
     return _change(seen, seen.pole)
 
 
+@checked
 @np.errstate(all="ignore")
 def centrodes(motion: Motion, link: str, on: str = FRAME) -> Centrodes:
     """Return the fixed and the moving centrode of `link` seen from `on`.
@@ -122,6 +126,7 @@ def centrodes(motion: Motion, link: str, on: str = FRAME) -> Centrodes:
     return Centrodes(_pole(seen), _change(seen, seen.pole), _change(seen, _moving(seen)))
 
 
+@checked
 @np.errstate(all="ignore")
 def centrode_curvature(motion: Motion, link: str, on: str = FRAME) -> tuple[Number, Number]:
     """Return the curvatures (1/length) of both centrodes at the pole.

@@ -19,6 +19,7 @@ from compoundkin.analysis.coupler.relative_motion import (
     relative,
     relative_point,
 )
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.base.display import PrintsShort
 from compoundkin.kinematics import Motion
@@ -51,6 +52,7 @@ class PathCurvature(PrintsShort):
     defined: Number
 
 
+@checked
 @np.errstate(all="ignore")
 def path_curvature(motion: Motion, link: str, point: Any, on: str = FRAME) -> PathCurvature:
     """Return the curvature of the path of a point seen from `on`.
@@ -61,9 +63,8 @@ def path_curvature(motion: Motion, link: str, point: Any, on: str = FRAME) -> Pa
     Source: ``curvature = (v x a) / |v|^3``; J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and
     Mechanisms, chapter 4.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("elliptic-trammel"), {"rod": [1.0, 2.0]})
+    >>> import compoundkin as ck
+    >>> motion = ck.solve(ck.catalog.load_named("elliptic-trammel"), {"rod": [1.0, 2.0]})
     >>> path_curvature(motion, "rod", "M").radius.round(9).tolist()
     [1.5, 1.5]
     >>> path_curvature(motion, "rod", "A").inflection.tolist()
@@ -79,6 +80,7 @@ def path_curvature(motion: Motion, link: str, point: Any, on: str = FRAME) -> Pa
     return _path(seen, x, 1j * v / speed, curvature, _resting(seen, speed, p))
 
 
+@checked
 @np.errstate(all="ignore")
 def euler_savary(motion: Motion, link: str, point: Any, on: str = FRAME) -> PathCurvature:
     """Return what `path_curvature` does, from pole and inflection circle instead of derivatives.
@@ -88,9 +90,8 @@ def euler_savary(motion: Motion, link: str, point: Any, on: str = FRAME) -> Path
     turn relative to each other, for then there is no finite pole. Raises as `path_curvature`. Source: R. S.
     Hartenberg and J. Denavit, Kinematic Synthesis of Linkages (1964), section 7-1: ``(1/r - 1/r0) sin psi = 1/d``.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("elliptic-trammel"), {"rod": [1.0, 2.0]})
+    >>> import compoundkin as ck
+    >>> motion = ck.solve(ck.catalog.load_named("elliptic-trammel"), {"rod": [1.0, 2.0]})
     >>> euler_savary(motion, "rod", "M").radius.round(9).tolist()
     [1.5, 1.5]
     """
@@ -106,6 +107,7 @@ def euler_savary(motion: Motion, link: str, point: Any, on: str = FRAME) -> Path
     return _path(seen, x, -sense * ray / r, curvature, _resting(seen, r * np.abs(seen.omega.c[0]), p))
 
 
+@checked
 @np.errstate(all="ignore")
 def curvature_rate(motion: Motion, link: str, point: Any, on: str = FRAME) -> Number:
     """Return the rate of a path's curvature along the path, 1/length^2.
@@ -114,9 +116,8 @@ def curvature_rate(motion: Motion, link: str, point: Any, on: str = FRAME) -> Nu
     It is zero on the cubic of stationary curvature. Raises as `path_curvature`, and InvalidInput below order 3.
     Source: the derivative of ``(v x a) / |v|^3`` by the arc length.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("crank-rocker"), {"crank": [1.0]}, order=3)
+    >>> import compoundkin as ck
+    >>> motion = ck.solve(ck.catalog.load_named("crank-rocker"), {"crank": [1.0]}, order=3)
     >>> (curvature_rate(motion, "coupler", "B") + 0.0).round(9).tolist()
     [0.0]
     """
@@ -186,6 +187,7 @@ class StationaryCurvature(PrintsShort):
         return self.frame.outer(r * (cosine + 1j * sine))
 
 
+@checked
 @np.errstate(all="ignore")
 def stationary_curvature(motion: Motion, link: str, on: str = FRAME) -> StationaryCurvature:
     """Return the cubic of stationary curvature (circling-point curve) and Ball's point.
@@ -195,16 +197,14 @@ def stationary_curvature(motion: Motion, link: str, on: str = FRAME) -> Stationa
     Mechanisms; R. S. Hartenberg and J. Denavit, Kinematic Synthesis of Linkages (1964), chapter 7:
     ``1 / (M sin psi) + 1 / (N cos psi) = 1 / r``.
 
-    >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> from compoundkin.kinematics import solve
-    >>> motion = solve(load_named("crank-rocker"), {"crank": [1.0, 2.0]}, order=3)
+    >>> import compoundkin as ck
+    >>> motion = ck.solve(ck.catalog.load_named("crank-rocker"), {"crank": [1.0, 2.0]}, order=3)
     >>> cubic = stationary_curvature(motion, "coupler")
     >>> abs(cubic.residual(motion.points["B"].position)).round(9).tolist()      # it moves on a circle
     [0.0, 0.0]
     """
     seen = relative(motion, link, on, 3, "the cubic of stationary curvature")
-    frame = canonical(seen)
-    d, defined = frame.diameter, frame.diameter > 0
+    d, defined = (frame := canonical(seen)).diameter, frame.diameter > 0
     second = np.conj(frame.tangent) * (rate(seen.pole_by_angle).c[0] / seen.omega.c[0])
     toward = second - 1j * d
     every = defined & (np.abs(toward) <= COINCIDENT * (np.abs(second) + d))

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
@@ -25,6 +26,7 @@ UNKNOWN = complex(np.nan, np.nan)
 INFINITE = complex(np.inf, np.inf)
 
 
+@checked
 def relative_link(motion: Motion, link: str, on: str = FRAME) -> LinkMotion:
     """Return the motion of one link as seen from another.
 
@@ -42,6 +44,7 @@ def relative_link(motion: Motion, link: str, on: str = FRAME) -> LinkMotion:
     return LinkMotion(motion.grid, _pose(motion, link, on))
 
 
+@checked
 def relative_point(motion: Motion, link: str, point: Any, on: str = FRAME) -> PointMotion:
     """Return the motion of a point of one link as seen from another.
 

@@ -12,6 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from compoundkin.analysis.equations.pair_terms import pair_terms, shortest_way
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import wrapped
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
@@ -96,6 +97,7 @@ class LoopEquations:
         return f"LoopEquations({title!r}: {loops} loops, {self.equations} equations, {len(self.unknowns)} unknowns)"
 
 
+@checked
 def loop_equations(mechanism: Mechanism | Structure) -> LoopEquations:
     """Return the vector-loop equations of a mechanism.
 

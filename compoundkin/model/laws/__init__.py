@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.model.laws.constant_laws import ConstantAcceleration, ConstantSpeed
 from compoundkin.model.laws.function_law import FunctionLaw
@@ -35,6 +36,7 @@ Law: TypeAlias = ConstantSpeed | ConstantAcceleration | Program | TimeTable | Fu
 WRITTEN: dict[str, type[Any]] = {kind.kind: kind for kind in (ConstantSpeed, ConstantAcceleration, Program, TimeTable)}
 
 
+@checked
 def constant_speed(speed: Any, start: Any = 0.0) -> ConstantSpeed:
     """Return the law of a constant speed (rad/s or length/s).
 
@@ -46,6 +48,7 @@ def constant_speed(speed: Any, start: Any = 0.0) -> ConstantSpeed:
     return ConstantSpeed(speed, start)
 
 
+@checked
 def constant_acceleration(acceleration: Any, speed: Any = 0.0, start: Any = 0.0) -> ConstantAcceleration:
     """Return the law of a constant acceleration, from `start` at `speed` at time 0.
 
@@ -55,6 +58,7 @@ def constant_acceleration(acceleration: Any, speed: Any = 0.0, start: Any = 0.0)
     return ConstantAcceleration(acceleration, speed, start)
 
 
+@checked
 def time_table(times: Any, values: Any, *, degree: int = 5, repeat: bool = False) -> TimeTable:
     """Return the law of a table of values at times (seconds). A spline through them.
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidMechanism, Problem
+from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
 
@@ -63,11 +64,7 @@ def hold_numbers(law: Any, *names: str) -> None:
     """Make the numbers of a law floats or arrays that cannot be written to. Raises InvalidMechanism."""
     for name in names or [f.name for f in fields(law)]:
         given = getattr(law, name)
-        try:
-            held = np.array(given, dtype=float)
-        except (TypeError, ValueError):
-            what = f"{given!r} is not a number or an array of numbers"
-            raise InvalidMechanism(Problem(f"law.{name}", what)) from None
+        held = np.array(real_numbers(f"law.{name}", given, InvalidMechanism))
         if held.size == 0 or not np.isfinite(held).all():
             raise InvalidMechanism(Problem(f"law.{name}", "the value is empty or not finite"))
         if not names and held.ndim and held.shape[-1] > 1:  # not a table, but what holds all along the motion

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.copies import HoldsFunction
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number, Series
 from compoundkin.model.laws.constant_laws import Compared, as_number, from_derivatives
@@ -28,7 +29,7 @@ SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class FunctionLaw(Compared):
+class FunctionLaw(HoldsFunction, Compared):
     """A Python function of times that returns the coordinate, or (value, speed, ...).
 
     The latter is a tuple.
@@ -42,6 +43,7 @@ class FunctionLaw(Compared):
 
     f: Callable[[Any], Any]
 
+    held: ClassVar[str] = "f"
     kind: ClassVar[str] = "function"
     span: ClassVar[None] = None
 

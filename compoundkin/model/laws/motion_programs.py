@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.argument_forms import is_finite_real
+from compoundkin.base.arguments import checked
 from compoundkin.base.composition import composed
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.base.series import Number, Series
@@ -47,13 +48,13 @@ class ProgramSegment:
             raise InvalidMechanism(problems)
 
     def _problems(self) -> Iterator[Problem]:
-        if self.law not in LAWS:
+        if not isinstance(self.law, str) or self.law not in LAWS:
             yield Problem("segment.law", f"there is no law {self.law!r}", nearest(str(self.law), list(LAWS)))
-        if not _is_real(self.over) or self.over <= 0.0:
+        if not is_finite_real(self.over) or self.over <= 0.0:
             yield Problem("segment.over", f"{self.over!r} is not a span", "give a positive number")
-        if not _is_real(self.rise):
+        if not is_finite_real(self.rise):
             yield Problem("segment.rise", f"{self.rise!r} is not a finite number")
-        elif self.law == "dwell" and self.rise != 0.0:
+        elif isinstance(self.law, str) and self.law == "dwell" and self.rise != 0.0:
             yield Problem("segment.rise", "a dwell rises by 0", "choose another law, or leave the rise out")
 
 
@@ -96,7 +97,7 @@ class Program:
                 yield Problem(f"program.segments[{index}]", f"{segment!r} is not a segment", _WORDS)
         if not isinstance(self.repeat, bool):
             yield Problem("program.repeat", f"{self.repeat!r} is not True or False")
-        if not _is_real(self.start):
+        if not is_finite_real(self.start):
             yield Problem("program.start", f"{self.start!r} is not a finite number")
 
     @cached_property
@@ -177,6 +178,7 @@ class Program:
         return jumps(self.pieces, self.period, natural, goes_on)
 
 
+@checked
 def program(*segments: ProgramSegment, start: float = 0.0, repeat: bool = False) -> Program:
     """Return a program of dwells, rises and falls.
 
@@ -186,6 +188,7 @@ def program(*segments: ProgramSegment, start: float = 0.0, repeat: bool = False)
     return Program(segments, start, repeat)
 
 
+@checked
 def rise(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
     """Return a rise by an amount over a span.
 
@@ -195,17 +198,17 @@ def rise(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
     return ProgramSegment(law, over, amount)
 
 
+@checked
 def fall(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
     """Return a fall by an amount over a span: a rise by its opposite.
 
     >>> fall(10.0, over=2.0).rise
     -10.0
     """
-    if not _is_real(amount):
-        raise InvalidMechanism(Problem("segment.rise", f"{amount!r} is not a finite number"))
     return ProgramSegment(law, over, -amount)
 
 
+@checked
 def dwell(over: float) -> ProgramSegment:
     """Return a dwell over a span.
 
@@ -213,8 +216,3 @@ def dwell(over: float) -> ProgramSegment:
     'dwell'
     """
     return ProgramSegment("dwell", over)
-
-
-def _is_real(value: Any) -> bool:
-    """Return whether it is one finite number."""
-    return isinstance(value, int | float | np.number) and not isinstance(value, bool) and isfinite(value)

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.argument_forms import is_whole
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
 from compoundkin.base.series import Number, Series
@@ -59,8 +60,10 @@ class TimeTable(PrintsShort, Compared):
             return Problem("law", what, "give two lists of one length")
         if len(t) < 2 or np.any(np.diff(t) <= 0.0):
             return Problem("law.times", "they do not increase", "give two or more increasing times")
-        if self.degree not in DEGREES:
+        if not is_whole(self.degree) or self.degree not in DEGREES:
             return Problem("law.degree", f"{self.degree!r} is not a degree", "choose 5 (quintic) or 3 (cubic)")
+        if not isinstance(self.repeat, bool | np.bool_):
+            return Problem("law.repeat", f"{self.repeat!r} is neither True nor False")
         if self.repeat and len(t) < self.degree + 2:
             what = f"a periodic spline of degree {self.degree} needs {self.degree + 2} times or more, not {len(t)}"
             return Problem("law.times", what, "give more of them")

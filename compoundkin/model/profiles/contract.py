@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
+from compoundkin.base.copies import CopiesFields
 from compoundkin.base.curves import Curve
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.model.fields import Key
@@ -16,7 +17,7 @@ from compoundkin.model.fields import Key
 NO_AREA = 1e-9
 
 
-class Profile(ABC):
+class Profile(CopiesFields, ABC):
     """A profile. Kinds are frozen dataclasses with the keys that a file holds for them."""
 
     kind: ClassVar[str]  # what it is called in a file

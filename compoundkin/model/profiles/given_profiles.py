@@ -8,6 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
+from compoundkin.base.copies import HoldsFunction
 from compoundkin.base.curves import Analytic, Curve, Function, Spline
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidMechanism, Problem
@@ -45,6 +47,7 @@ class DiscProfile(Profile):
             yield Problem(f"{where}.middle", f"{self.middle!r} is not a finite point")
 
 
+@checked
 def disc(radius: float, middle: Any = 0j) -> DiscProfile:
     """Return the profile of a round disc about a point of its link.
 
@@ -73,6 +76,7 @@ class PointsProfile(PrintsShort, Profile):
         return Spline(self.points, self.closed)
 
 
+@checked
 def profile(points: Any, *, closed: bool = True) -> PointsProfile:
     """Return the profile through points, complex or (x, y). Closed as of a cam, or open as of a slot.
 
@@ -87,8 +91,10 @@ def profile(points: Any, *, closed: bool = True) -> PointsProfile:
 
 
 @dataclass(frozen=True)
-class FormulaProfile(Profile):
+class FormulaProfile(HoldsFunction, Profile):
     """A curve by a Python function of a parameter from `low` to `high`. Complex points for an array of parameters."""
+
+    held: ClassVar[str] = "function"
 
     function: Callable[[Any], Any]
     low: float
@@ -102,6 +108,7 @@ class FormulaProfile(Profile):
         return Function(self.function, self.low, self.high, self.closed)
 
 
+@checked
 def formula(function: Callable[[Any], Any], low: float, high: float, *, closed: bool = True) -> FormulaProfile:
     """Return the profile that a Python function traces. Complex points for an array of parameters.
 

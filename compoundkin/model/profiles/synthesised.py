@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.curves import Analytic, Curve
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Series, as_series
@@ -115,6 +116,7 @@ class Synthesised(Profile):
         return "take a greater base circle or a smaller roller"
 
 
+@checked
 def synthesise(
     program: Program,
     *,

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.display import Shows, counted
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
+from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.decomposition import decompose
 from compoundkin.structure.kinematic_structure import Structure
@@ -130,6 +133,7 @@ class MobilityAnalysis(Shows):
         return [f"{what}: {', '.join(self.freed)} could be freed" if self.freed else what]
 
 
+@checked
 def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose] | None = None) -> MobilityAnalysis:
     """Find the mobility by count, for general dimensions and at the assembled pose.
 
@@ -150,6 +154,9 @@ def mobility_analysis(mechanism: Mechanism | Structure, poses: Mapping[str, Pose
     'overconstrained but mobile'
     """
     structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
+    missing = [] if poses is None else [name for name in structure.mechanism.links if name not in (FRAME, *poses)]
+    if missing:
+        raise InvalidInput(Problem("poses", f"there is no pose of {missing[0]!r}", "give one for every moving link"))
     with np.errstate(all="ignore"):
         return _analysed(structure, poses)
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from compoundkin.base.arguments import checked
 from compoundkin.synthesis.chains.coloured_graphs import (
     Canonical,
     Cells,
@@ -25,6 +26,7 @@ from compoundkin.synthesis.chains.coloured_graphs import (
 )
 
 
+@checked
 def canonical(graph: Coloured) -> Canonical:
     """Return the canonical form of a graph.
 

@@ -11,6 +11,7 @@ from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from compoundkin.base.arguments import checked
 from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.coloured_graphs import (
     Canonical,
@@ -43,11 +44,13 @@ class Chain:
         return f"Chain({self.links} links, {len(self.pairs)} pairs, mobility {self.mobility}, {self.graph6!r})"
 
     @classmethod
+    @checked
     def of(cls, links: int, pairs: Iterable[tuple[int, int]]) -> Chain:
         """Return the chain of these pairs, named in any order."""
         return cls(links, tuple(sorted((min(pair), max(pair)) for pair in pairs)))
 
     @classmethod
+    @checked
     def from_code(cls, code: str) -> Chain:
         """Return the chain that a graph6 text stands for, at most 62 links.
 

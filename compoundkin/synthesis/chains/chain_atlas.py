@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.chain import Chain
@@ -91,6 +92,7 @@ class Inversion:
     frame: int
 
 
+@checked
 def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
     """Return all chains with so many links, in the order that numbers them.
 
@@ -104,6 +106,7 @@ def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
     return _listed().get((links, mobility)) or _made(links, mobility)
 
 
+@checked
 def trusses(links: int) -> tuple[Chain, ...]:
     """Return all Baranov trusses with so many links. No mobility, but every part of them has.
 
@@ -113,6 +116,7 @@ def trusses(links: int) -> tuple[Chain, ...]:
     return chains(links, mobility=0)
 
 
+@checked
 def inversions(links: int, mobility: int = 1) -> tuple[Inversion, ...]:
     """Return all mechanisms that fixing one link of a chain gives, equivalent links once.
 
@@ -122,6 +126,7 @@ def inversions(links: int, mobility: int = 1) -> tuple[Inversion, ...]:
     return tuple(Inversion(chain, alike[0]) for chain in chains(links, mobility) for alike in chain.inversions)
 
 
+@checked
 def assur_groups(links: int) -> tuple[AssurGroup, ...]:
     """Return all Assur groups of revolute pairs with so many links. Every truss without one link, equivalent ones once.
 
@@ -134,6 +139,7 @@ def assur_groups(links: int) -> tuple[AssurGroup, ...]:
     return tuple(AssurGroup(truss, alike[0]) for truss in trusses(links + 1) for alike in truss.inversions)
 
 
+@checked
 def assur_group(name: str, also: Iterable[str] = ()) -> AssurGroup:
     """Return a group of revolute pairs by its name.
 
@@ -146,17 +152,12 @@ def assur_group(name: str, also: Iterable[str] = ()) -> AssurGroup:
     found = _GROUP.fullmatch(_OWN_GROUPS.get(name.strip().lower(), name.strip()))
     if found and int(found[1]) in _GROUP_LINKS and 1 <= int(found[2]) <= len(assur_groups(int(found[1]))):
         return assur_groups(int(found[1]))[int(found[2]) - 1]
-    known = [
-        *also,
-        *_OWN_GROUPS,
-        "2-link group 1",
-        "4-link group 1 or 2",
-        "6-link group 1 to 10",
-        "8-link group 1 to 173",
-    ]
+    listed = ("2-link group 1", "4-link group 1 or 2", "6-link group 1 to 10", "8-link group 1 to 173")
+    known = [*also, *_OWN_GROUPS, *listed]
     raise UnknownName(Problem(name, "there is no such Assur group", nearest(name, known)))
 
 
+@checked
 def group_name(group: AssurGroup) -> str:
     """Return the name of a group by its place in its list.
 
@@ -174,6 +175,7 @@ def _group_codes(links: int) -> tuple[str, ...]:
     return tuple(group.code for group in assur_groups(links))
 
 
+@checked
 def number_of(chain: Chain) -> int | None:
     """Return the place of a chain in its list, from 1. None if its list is not shipped or does not hold it.
 

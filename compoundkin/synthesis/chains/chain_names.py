@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import product
 
+from compoundkin.base.arguments import checked
 from compoundkin.synthesis.chains.chain import Chain
 from compoundkin.synthesis.chains.chain_atlas import MOST_LINKS, number_of
 from compoundkin.synthesis.chains.joints import Joints
@@ -22,6 +23,7 @@ _SIX, _TERNARY = 6, 3
 MOST_CHAINS = 2000
 
 
+@checked
 def chain_name(chain: Chain, frame: int | None = None) -> str:
     """Return the name of a chain, or of its inversion with a frame.
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.structure.cycles import find
 
 # Cells of vertices, each cell the bits of an integer; an ordering of the vertices where all cells are single.
@@ -130,6 +131,8 @@ def read_graph6(code: str) -> tuple[int, list[tuple[int, int]]]:
     >>> read_graph6("Bw")
     (3, [(0, 1), (0, 2), (1, 2)])
     """
+    if not code or not all(_PRINTABLE <= ord(letter) < _PRINTABLE + 2**_SIX for letter in code):
+        raise InvalidInput(Problem("code", f"{code!r} is no graph6 text", "chain.graph6 gives one, such as 'Bw'"))
     size = ord(code[0]) - _PRINTABLE
     bits = "".join(f"{ord(letter) - _PRINTABLE:06b}" for letter in code[1:])
     places = ((row, column) for column in range(size) for row in range(column))

@@ -23,6 +23,7 @@ from itertools import combinations, combinations_with_replacement, pairwise
 import numpy as np
 import numpy.typing as npt
 
+from compoundkin.base.arguments import checked
 from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.chain import Chain
 from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, Permutation, is_connected
@@ -30,6 +31,7 @@ from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, Pe
 Integers = npt.NDArray[np.int64]
 
 
+@checked
 def chains_of(links: int, mobility: int = 1, bridged: bool = False) -> tuple[Chain, ...]:
     """Return all connected chains of a mobility without loose links or rigid parts.
 

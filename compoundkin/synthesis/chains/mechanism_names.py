@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.synthesis.chains.chain_names import derived_names, has_rigid_part, variety_of
 from compoundkin.synthesis.chains.coloured_graphs import assorted, ordinal
@@ -59,6 +60,7 @@ class ChainName:
         return f"ChainName({self.title!r}: {self.assortment}, mobility {self.mobility})"
 
 
+@checked
 def named(joints: Joints, frame: str | None = None, driver: str | Iterable[str] | None = None) -> ChainName:
     """Return the name of a mechanism given by its links and joints.
 
@@ -66,7 +68,8 @@ def named(joints: Joints, frame: str | None = None, driver: str | Iterable[str] 
     '3-link truss 1'
     """
     fixed = None if frame is None else _number(joints, frame)
-    drivers = [_number(joints, link) for link in ((driver,) if isinstance(driver, str) else driver or ())]
+    given = (driver,) if isinstance(driver, str) else () if driver is None else driver
+    drivers = [_number(joints, link) for link in given]
     kinds = ", ".join(_driven(joints, fixed, link) for link in drivers)
     name = replace(_titled(joints, fixed, drivers[0] if drivers else None), driven=kinds)
     return _compared(name, joints, fixed, drivers) if len(joints.links) <= MOST_COMPARED else name

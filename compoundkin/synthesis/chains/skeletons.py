@@ -15,6 +15,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import wrapped
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.base.series import Number
@@ -39,6 +40,7 @@ SHAKEN = 0.23
 NEAREST = 0.15
 
 
+@checked
 def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = "") -> Mechanism:
     """Return a mechanism with the structure of a chain and generic dimensions, as drawn. Pins A, B, C, ...
 
@@ -110,6 +112,7 @@ def _drive(items: Sequence[Item], names: Sequence[str], on: int, driven: int) ->
     return drive(names[driven], on=names[on], values=middle)
 
 
+@checked
 def symmetric_drivers(chain: Chain, frame: int) -> Iterator[tuple[int, int]]:
     """Yield the essentially different places for one driver, each once. On which link, and which is driven.
 

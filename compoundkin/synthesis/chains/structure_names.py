@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import prod
 from typing import TYPE_CHECKING, Any
 
+from compoundkin.base.arguments import checked
 from compoundkin.kinematics.assembly.group_geometry import GroupGraph
 from compoundkin.kinematics.assembly.mode_count import exact_count
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 MOST_COUNTED = 8
 
 
+@checked
 def structure_name(structure: Structure) -> ChainName:
     """Return what a mechanism is called, with its frame and its drivers. A roller is a part of its follower.
 
@@ -45,6 +47,7 @@ def structure_joints(structure: Structure) -> Joints:
     return joints
 
 
+@checked
 def group_truss(group: Group) -> tuple[str, ...]:
     """Return the Baranov trusses that a group is made of. What it is attached to taken for one link more.
 
@@ -78,6 +81,7 @@ def group_joints(group: Group) -> Joints:
     return Joints((*(body.links[0] for body in group.bodies), "known links"), (*pinned, *joints))
 
 
+@checked
 def name_of(graph: nx.MultiGraph, frame: str | None = None, driver: str | Iterable[str] | None = None) -> ChainName:
     """Return the name of a mechanism from its kinematic graph.
 

@@ -8,10 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
 from compoundkin.base.series import Number
 from compoundkin.base.suffixes import Kind, form_of
@@ -147,12 +148,13 @@ def _untold(done: int, total: int) -> None:
     """Tell nobody of progress."""
 
 
+@checked
 def animate(
     what: Motion | Mechanism | Structure,
     *,
     design: int = 0,
     paths: str | Sequence[str] | bool = (),
-    vectors: str | Sequence[str] = (),
+    vectors: Any = (),
     centres: bool = False,
     labels: bool | str | Sequence[str] = True,
     seconds: float | None = None,
@@ -192,8 +194,6 @@ def animate(
 def _motion(what: Motion | Mechanism | Structure) -> Motion:
     if isinstance(what, Motion):
         return what
-    if not isinstance(what, Mechanism | Structure):
-        raise InvalidInput(Problem("animate", f"{what!r} is no motion and no mechanism", "load() one from a file"))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnassembledPoses)
         motion = solve(what)

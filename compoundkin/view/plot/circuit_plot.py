@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.configurations.circuit import Branch, Circuit
 from compoundkin.configurations.circuit_search import Circuits
@@ -31,6 +32,7 @@ WIDEST = 50
 WIDTH, FIRST, EACH = 8.4, 1.4, 2.8
 
 
+@checked
 def circuits(
     what: Mechanism | Structure | Circuits,
     *names: str,
@@ -88,8 +90,6 @@ def _found(
 ) -> Circuits:
     """The circuits given, or those of a mechanism."""
     if not isinstance(what, Circuits):
-        if not isinstance(what, Mechanism | Structure):
-            raise InvalidInput(Problem("circuits", f"{what!r} is no mechanism", "load() one from a file"))
         return all_circuits(what, driver, values, between=between, design=design)
     given = {"driver": driver is not None, "values": bool(values), "between": between is not None, "design": design}
     for option in (option for option, is_given in given.items() if is_given):

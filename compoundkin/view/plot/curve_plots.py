@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import LENGTH, PARTS, readable
@@ -24,6 +25,7 @@ FREE_ANGLES = np.arange(15.0, 375.0, 30.0)
 MARGIN = 0.08
 
 
+@checked
 def phase(
     motion: Motion,
     name: str,
@@ -65,6 +67,7 @@ def phase(
         return canvas.finished(figure, shared.labels)
 
 
+@checked
 def hodograph(
     motion: Motion,
     *names: str,
@@ -102,6 +105,7 @@ def hodograph(
         return canvas.finished(figure, shared.labels)
 
 
+@checked
 def polar(
     motion: Motion,
     *names: str,

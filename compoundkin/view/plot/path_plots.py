@@ -8,7 +8,10 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from compoundkin.analysis.coupler.centrodes import pole
+from compoundkin.analysis.coupler.relative_motion import place as place_on
 from compoundkin.analysis.coupler.relative_motion import relative_link, relative_point
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
@@ -25,6 +28,7 @@ Point: TypeAlias = str | tuple[str, Any]
 FAR = 2.5
 
 
+@checked
 def paths(
     motion: Motion,
     *points: Point,
@@ -46,7 +50,8 @@ def paths(
     >>> picture.figure.axes[0].get_aspect()
     1.0
     """
-    names = [point if isinstance(point, str) else _called(*point) for point in points] or _moving(motion, on)
+    motion.mechanism.link(on)
+    names = [point if isinstance(point, str) else _called(motion, *point) for point in points] or _moving(motion, on)
     curves = [_path(motion, point, on) for point in (points or names)]
     shared = planar.drawing(motion, designs, every)
     with plot_style.styled():
@@ -72,8 +77,9 @@ def _moving(motion: Motion, on: str) -> list[str]:
     return [name for name in motion.points if name not in motion.mechanism.geometry.points[on]]
 
 
-def _called(link: str, place: Any) -> str:
-    z = complex(*place) if np.ndim(place) else complex(place)
+def _called(motion: Motion, link: str, point: Any) -> str:
+    motion.mechanism.link(link)
+    z = complex(first_entry(place_on(motion, link, point)))
     return f"{link} ({number(z.real)}, {number(z.imag)})"
 
 
@@ -87,6 +93,7 @@ def _path(motion: Motion, point: Point, on: str) -> Number:
     return np.asarray(relative_link(motion, FRAME, on).at(world).position).reshape(shape)
 
 
+@checked
 def centrodes(
     motion: Motion,
     link: str,

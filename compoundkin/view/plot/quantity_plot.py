@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
@@ -39,6 +40,7 @@ class Panel:
     curves: tuple[Plotted, ...]
 
 
+@checked
 def plot(
     motion: Motion,
     *names: str,

@@ -59,7 +59,7 @@ def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ..
 
     The motion must have been solved for the latter.
     """
-    return tuple(outputs or (name for name in default_outputs(motion.mechanism) if order_of(name) <= motion.order))
+    return tuple(outputs) or tuple(n for n in default_outputs(motion.mechanism) if order_of(n) <= motion.order)
 
 
 def outputs_section(sample: Sample, outputs: Sequence[str]) -> Section:

@@ -6,7 +6,8 @@ import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidInput, UnassembledPoses
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from compoundkin.view.page import Page
 
 
+@checked
 def report(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), design: int = 0) -> Report:
     """Report a motion, a structure before it is solved, or a mechanism.
 
@@ -45,14 +47,13 @@ def report(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), de
     subject = _solved(what) if isinstance(what, Mechanism) else what
     if isinstance(subject, Structure):
         return _of_structure(subject)
-    if not isinstance(subject, Motion):
-        raise InvalidInput(Problem("report", f"{what!r} is no motion and no mechanism", "load() one from a file"))
     # what a motion takes is not loaded for the report of a structure
     from compoundkin.view.report.motion_report import report_of_motion
 
     return report_of_motion(subject, outputs, design)
 
 
+@checked
 def page(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), design: int = 0) -> Page:
     """Return the report as a page with the moving sketch. The arguments are those of `report`.
 

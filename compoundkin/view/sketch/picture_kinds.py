@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem, nearest
 from compoundkin.kinematics import Motion
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.view.sketch.centre_pictures import circle_diagram
 from compoundkin.view.sketch.graph_picture import graph
+from compoundkin.view.sketch.groups_in_graph import groups_in_graph
 from compoundkin.view.sketch.picture import Picture
 from compoundkin.view.sketch.scene import groups_of, numbers_of
 from compoundkin.view.sketch.shown_pose import Drawable, Wishes, scene_of
@@ -19,6 +21,7 @@ from compoundkin.view.sketch.structure_pictures import groups_picture, loops, lo
 from compoundkin.view.sketch.vectors import vector_polygon
 
 
+@checked
 def draw(
     what: Motion | Mechanism | Structure,
     at: Any = None,
@@ -29,7 +32,7 @@ def draw(
     ghosts: int = 0,
     paths: str | Sequence[str] | bool = (),
     centres: bool = False,
-    vectors: str | Sequence[str] = (),
+    vectors: Any = (),
     labels: bool | str | Sequence[str] = True,
     size: float | None = None,
 ) -> Picture:
@@ -61,10 +64,8 @@ def draw(
     >>> draw(crank, at=0.5, kind="polygon").title
     'Crank: velocity polygon'
     """
-    if not isinstance(what, Motion | Mechanism | Structure):
-        raise InvalidInput(Problem("draw", f"{what!r} is no motion and no mechanism", "load() one from a file"))
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", nearest(str(kind), list(KINDS))))
+    if kind not in KINDS:
+        raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", nearest(kind, list(KINDS))))
     wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size)
     drawn, known = KINDS[kind]
     if unfit := wishes.others(known):
@@ -75,7 +76,14 @@ def draw(
 def _groups(what: Drawable, wishes: Wishes) -> Picture:
     structure = _taken_apart(what)
     known = what if isinstance(what, Motion) else structure.mechanism
-    return groups_picture(scene_of(known, wishes.at, wishes.pose, wishes.design), wishes.size)
+    try:
+        scene = scene_of(known, wishes.at, wishes.pose, wishes.design)
+    except (InvalidInput, NotAssembled):
+        # how it is taken apart is a matter of its letters: it needs no pose unless one is asked for
+        if wishes.others(("size",)):
+            raise
+        return groups_in_graph(structure, wishes.size)
+    return groups_picture(scene, wishes.size)
 
 
 def _circle(what: Drawable, wishes: Wishes) -> Picture:

@@ -182,7 +182,7 @@ def asked_paths(scene: Scene, paths: Any) -> tuple[str, ...]:
     carriers = scene.mechanism.carriers
     if paths is True:
         return tuple(letter for letter, links in carriers.items() if len(links) == 1 and "frame" not in links)
-    names = (paths,) if isinstance(paths, str) else tuple(paths or ())
+    names = (paths,) if isinstance(paths, str) else () if paths is False else tuple(paths)
     for name in names:
         if name not in carriers:
             raise UnknownName(Problem(str(name), "there is no such point", nearest(str(name), list(carriers))))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,17 +45,17 @@ class VectorScale:
     text: str
 
 
-def wanted(vectors: str | Sequence[str] | None) -> tuple[str, ...]:
+def wanted(vectors: Any) -> tuple[str, ...]:
     """Return the kinds of vectors asked for; raises InvalidInput for others.
 
     >>> wanted("velocity")
     ('velocity',)
     """
-    names: tuple[Any, ...] = () if not vectors else (vectors,)
-    if vectors and isinstance(vectors, Iterable) and not isinstance(vectors, str):
-        names = tuple(vectors)
+    if vectors is None or (isinstance(vectors, str) and not vectors):
+        return ()
+    names = tuple(vectors) if isinstance(vectors, Iterable) and not isinstance(vectors, str) else (vectors,)
     for name in names:
-        if name not in KINDS_OF_VECTOR:
+        if not isinstance(name, str) or name not in KINDS_OF_VECTOR:
             what = f"there are no vectors {name!r}"
             raise InvalidInput(Problem("vectors", what, nearest(str(name), list(KINDS_OF_VECTOR))))
     return names

@@ -405,7 +405,7 @@ def test_a_profile_that_crosses_itself_is_refused_with_the_place() -> None:
         ({"at": "Q"}, "cams[0].at", "no point 'Q'"),
         ({"radius": -1.0}, "cams[0].radius", "is not a length"),
         ({"radius": np.nan}, "cams[0].radius", "not finite"),
-        ({"profile": "oval"}, "cams[0].profile", "is not a profile"),
+        ({"profile": "oval"}, "cams[0].profile", "is no profile"),
         ({"profile": ck.profiles.disc(-3)}, "cams[0].profile.radius", "not a positive length"),
         ({"profile": ck.profiles.profile([0, 1, 1j])}, "cams[0].profile.points", "3 points are too few"),
     ],

@@ -1,0 +1,235 @@
+"""Wrong objects given to every public function: only the package's own errors answer, each with its place."""
+
+from __future__ import annotations
+
+import datetime
+import inspect
+import math
+import os
+from collections.abc import Callable, Iterator
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from tests.catalog import mechanism as loaded
+
+GIVEN = dict[str, Any]
+
+
+@cache
+def at_hand() -> dict[str, Any]:
+    """What the calls below are given, made once."""
+    bar, cam = loaded("crank-rocker"), loaded("disc-cam-offset-roller")
+    rocker = ck.solve(bar, {"crank": ck.deg([10, 20, 30])}, order=3)
+    return {
+        "bar": bar,
+        "structure": ck.decompose(bar),
+        "motion": rocker,
+        "cam": ck.solve(cam),
+        "chain": ck.chains.chains(6)[0],
+        "group": ck.chains.assur_groups(2)[0],
+        "joints": ck.chains.Joints(("a", "b", "c"), (ck.chains.Joint((0, 1)), ck.chains.Joint((1, 2)))),
+        "program": ck.laws.program(ck.laws.rise(1, over=2)),
+    }
+
+
+class Hidden:
+    """An object of nobody's."""
+
+
+# What is given in the place of each argument.
+WRONG: tuple[Any, ...] = (
+    None, 3, -1, 10**400, 2.5, math.nan, math.inf, True, 1j, "x", "", "\ud800", b"x", [], [3], ["x"], [None], {},
+    {1: 1}, {"x": "y"}, {"crank": "x"}, {"crank": None}, set(), (1, 2, 3), (1, "x"), object(), Hidden, Hidden(), abs,
+    ck,
+    np.array(["x"]), np.array(["x", "y"]), np.array([]), np.zeros((2, 0, 3)), np.array([object()]), np.array([1j]),
+    np.ma.array([1.0, 2.0], mask=[True, False]), np.datetime64("2026-01-01"), datetime.date(2026, 1, 1),
+    np.timedelta64(3, "s"),     [[1.0], [1.0, 2.0]], range(0), iter(()),
+)  # fmt: skip
+
+
+def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
+    """Every public function, with arguments that are right."""
+    h = at_hand()
+    m, motion, chain = h["bar"], h["motion"], h["chain"]
+    on = {"motion": motion, "link": "coupler"}
+    at = {**on, "point": "C"}
+    found: dict[str, GIVEN] = {
+        "Mechanism": {"title": "m", "unit": "", "source": "", "description": "", "outputs": (), "time": None},
+        "alternatives": {"mechanism": m, "frames": ("crank",)},
+        "animate": {"what": motion, "design": 0, "paths": (), "vectors": (), "centres": False, "labels": True,
+                    "seconds": 1.0, "fps": 10.0, "back": None, "size": None},
+        "arc": {"link": "a", "on": "b", "at": "A", "centre_at": "B", "radius": 1.0, "name": "n"},
+        "belt": {"first": "a", "second": "b", "radii": (1.0, 2.0), "name": "n", "carrier": "frame", "teeth": None,
+                 "phase": None, "first_at": "A", "second_at": "B", "crossed": False},
+        "cam": {"link": "a", "on": "b", "at": "A", "profile": ck.profiles.disc(1), "radius": 0.0, "inside": False},
+        "circuits": {"mechanism": m, "driver": "crank", "values": None, "between": None, "design": 0},
+        "configurations": {"mechanism": m, "values": {"crank": 1.0}},
+        "decompose": {"mechanism": m},
+        "deg": {"angle": 3.0},
+        "draw": {"what": motion, "at": None, "kind": "sketch", "pose": 0, "design": 0, "ghosts": 0, "paths": (),
+                 "centres": False, "vectors": (), "labels": True, "size": None},
+        "drawn": {"A": 0},
+        "drive": {"link": "a", "on": "frame", "pair": "", "values": 0.0, "speed": 1.0, "acceleration": 0.0,
+                  "jerk": 0.0, "law": None, "name": "n"},
+        "expect": {"quantity": "a.angle", "value": 0.5, "tolerance": 1e-3, "crank": 1.0},
+        "face": {"link": "a", "on": "b", "at": "A", "profile": ck.profiles.disc(1), "angle": 0.0, "side": 1},
+        "gaps": {"motion": motion},
+        "gear": {"first": "a", "second": "b", "radii": (1.0, 2.0), "name": "n", "carrier": "frame", "teeth": None,
+                 "phase": None, "first_at": "A", "second_at": "B", "internal": False, "module": None},
+        "instant_centres": {"motion": motion},
+        "link": {"name": "a", "A": 0},
+        "load": {"path": str(ck.catalog.path("six-bar"))},
+        "loop_equations": {"mechanism": m},
+        "mobility_analysis": {"mechanism": m, "poses": None},
+        "mode": {"sign": 1},
+        "page": {"what": motion, "outputs": (), "design": 0},
+        "plot": {"motion": motion, "against": None, "stacked": True, "extremes": None, "designs": (), "title": None,
+                 "size": None},
+        "polar": {"radius": 1.0, "angle": 1.0},
+        "quantity": {"motion": motion, "name": "C.x"},
+        "rack": {"rack": "a", "pinion": "b", "name": "n", "through": "A", "at": "B", "angle": 0.0, "toward": None,
+                 "radius": 1.0, "teeth": None, "module": None, "side": 1, "phase": None},
+        "report": {"what": motion, "outputs": (), "design": 0},
+        "roll": {"link": "a", "on": "b", "through": "A", "at": "B", "angle": 0.0, "toward": None, "radius": 1.0,
+                 "side": 1, "phase": None, "name": "n"},
+        "roll_around": {"link": "a", "on": "b", "centre_at": "A", "at": "B", "circle": 3.0, "radius": 1.0,
+                        "inside": False, "phase": None, "name": "n"},
+        "save": {"what": motion, "path": os.devnull + "/x.csv"},
+        "slide": {"link": "a", "on": "b", "at": "A", "through": "B", "angle": 0.0, "toward": None, "offset": None,
+                  "turn": None, "name": "n"},
+        "slot": {"link": "a", "on": "b", "at": "A", "through": "B", "angle": 0.0, "toward": None, "offset": 0.0,
+                 "name": "n"},
+        "solve": {"mechanism": m, "values": {"crank": 1.0}, "time": None, "speed": 1.0, "acceleration": 0.0,
+                  "jerk": 0.0, "order": 2, "modes": None, "hint": None},
+        "verify": {"motion": motion},
+        "with_driver": {"mechanism": m, "link": "rocker", "on": "frame", "pair": "", "instead": "crank", "speed": 1.0,
+                        "values": None},
+        "with_frame": {"mechanism": m, "link": "crank"},
+        "advantage.ForcePort": {"link": "a", "point": "C", "angle": 0.0, "on": "frame"},
+        "advantage.TorquePort": {"link": "a", "on": "frame"},
+        "advantage.mechanical_advantage": {"motion": motion, "output": "rocker", "input": "crank"},
+        "cams.cam_analysis": {"motion": h["cam"], "name": "roller/cam"},
+        "cams.cam_pairs": {"motion": h["cam"]},
+        "catalog.load_named": {"name": "six-bar"},
+        "catalog.path": {"name": "six-bar"},
+        "catalog.resolve": {"name_or_path": "six-bar"},
+        "chains.Chain": {"links": 4, "pairs": ((0, 1), (1, 2), (2, 3), (0, 3))},
+        "chains.Chain.of": {"links": 4, "pairs": ((0, 1), (1, 2), (2, 3), (0, 3))},
+        "chains.Chain.from_code": {"code": "Bw"},
+        "chains.Coloured": {"colours": ("a",), "masks": (0,)},
+        "chains.Joint": {"links": (0, 1), "code": "R", "held": 2, "guide": None, "kind": ""},
+        "chains.Joints": {"links": ("a", "b"), "joints": (ck.chains.Joint((0, 1)),)},
+        "chains.Inversion": {"chain": chain, "frame": 0},
+        "chains.AssurGroup": {"truss": chain, "removed": 0},
+        "chains.assur_group": {"name": "RRR", "also": ()},
+        "chains.assur_groups": {"links": 2},
+        "chains.canonical": {"graph": ck.chains.Coloured(("a",), (0,))},
+        "chains.chain_name": {"chain": chain, "frame": 0},
+        "chains.chains": {"links": 6, "mobility": 1},
+        "chains.chains_of": {"links": 6, "mobility": 1, "bridged": False},
+        "chains.group_name": {"group": h["group"]},
+        "chains.group_truss": {"group": h["structure"].groups[0]},
+        "chains.inversions": {"links": 6, "mobility": 1},
+        "chains.mechanism_from": {"chain": chain, "frame": 0, "title": ""},
+        "chains.name_of": {"graph": h["structure"].graph, "frame": "frame", "driver": "crank"},
+        "chains.named": {"joints": h["joints"], "frame": "a", "driver": "b"},
+        "chains.number_of": {"chain": chain},
+        "chains.structure_name": {"structure": h["structure"]},
+        "chains.symmetric_drivers": {"chain": chain, "frame": 0},
+        "chains.trusses": {"links": 5},
+        "composing.Composer": {"title": "m"},
+        "composing.random_mechanism": {"groups": 2, "seed": 1, "kinds": ("RRR",), "multiple": 0.1},
+        **{f"coupler.{name}": on for name in ("acceleration_pole", "canonical_frame", "centrode_curvature", "centrodes",
+           "inflection_circle", "pole", "pole_velocity", "relative_link", "stationary_curvature", "tangential_circle")},
+        **{f"coupler.{name}": at for name in ("curvature_rate", "euler_savary", "path_curvature", "relative_point")},
+        "equivalents.equivalent_linkage": {"motion": h["cam"], "at": 0},
+        "laws.ConstantAcceleration": {"acceleration": 1.0, "speed": 1.0, "start": 0.0},
+        "laws.ConstantSpeed": {"speed": 1.0, "start": 0.0},
+        "laws.FunctionLaw": {"f": np.sin},
+        "laws.Program": {"segments": h["program"].segments, "start": 0.0, "repeat": False},
+        "laws.ProgramSegment": {"law": "cycloidal", "over": 1.0, "rise": 1.0},
+        "laws.TimeTable": {"times": np.arange(9.0), "values": np.arange(9.0), "degree": 5, "repeat": False},
+        "laws.constant_acceleration": {"acceleration": 1.0, "speed": 1.0, "start": 0.0},
+        "laws.constant_speed": {"speed": 1.0, "start": 0.0},
+        "laws.dwell": {"over": 1.0},
+        "laws.fall": {"amount": 1.0, "over": 1.0, "law": "cycloidal"},
+        "laws.program": {"start": 0.0, "repeat": False},
+        "laws.rise": {"amount": 1.0, "over": 1.0, "law": "cycloidal"},
+        "laws.time_table": {"times": range(9), "values": range(9), "degree": 5, "repeat": False},
+        "plots.centrodes": {**on, "pose": 0, "design": 0, "every": None, "title": None, "size": None, "on": "frame"},
+        "plots.circuits": {"what": m, "driver": "crank", "values": None, "between": None, "design": 0, "title": None,
+                           "size": None},
+        "plots.hodograph": {"motion": motion, "every": None, "designs": (), "title": None, "size": None},
+        "plots.paths": {"motion": motion, "on": "frame", "every": None, "designs": (), "title": None, "size": None},
+        "plots.phase": {"motion": motion, "name": "rocker.angle", "rate": None, "every": None, "designs": (),
+                        "title": None, "size": None},
+        "plots.polar": {"motion": motion, "around": None, "designs": (), "title": None, "size": None},
+        "profiles.DiscProfile": {"radius": 1.0, "middle": 0j},
+        "profiles.FormulaProfile": {"function": np.exp, "low": 0.0, "high": 1.0, "closed": False},
+        "profiles.PointsProfile": {"points": (0j, 1 + 0j, 1j, 1 + 2j), "closed": True},
+        "profiles.Synthesised": {"program": h["program"], "base": 20.0, "follower": "knife", "roller": 0.0,
+                                 "offset": 0.0, "angle": 0.0, "pivot": None, "arm": 0.0, "face": 0.0, "side": 1,
+                                 "clockwise": False, "start": 0.0},
+        "profiles.disc": {"radius": 1.0, "middle": 0j},
+        "profiles.formula": {"function": lambda t: np.exp(1j * t), "low": 0.0, "high": 6.0, "closed": True},
+        "profiles.profile": {"points": [(0, 1), (1, 0), (0, -1), (-1, 0)], "closed": True},
+        "profiles.synthesise": {"program": h["program"], "base": 20.0, "follower": "knife", "roller": 0.0,
+                                "offset": 0.0, "angle": 0.0, "pivot": None, "arm": 0.0, "face": 0.0, "side": 1,
+                                "clockwise": False, "start": 0.0},
+    }  # fmt: skip
+    return {name: (reached(name), given) for name, given in found.items()}
+
+
+# Arguments without a name: what is given for one of them.
+MORE = {
+    "Mechanism": "items", "link": "letters", "mode": "links", "plot": "names", "chains.mechanism_from": "drivers",
+    "laws.program": "segments", "plots.circuits": "names", "plots.hodograph": "names", "plots.paths": "points",
+    "plots.polar": "names",
+}  # fmt: skip
+
+
+def reached(name: str) -> Any:
+    found: Any = ck
+    for part in name.split("."):
+        found = getattr(found, part)
+    return found
+
+
+def tried(name: str) -> Iterator[tuple[str, Any, Callable[[], Any]]]:
+    """Every wrong object in the place of every argument."""
+    call, given = calls()[name]
+    for key in given:
+        for wrong in WRONG:
+            yield key, wrong, lambda key=key, wrong=wrong: call(**{**given, key: wrong})
+    if name in MORE:
+        first = [p.name for p in inspect.signature(call).parameters.values()
+                 if p.kind is p.POSITIONAL_OR_KEYWORD]  # fmt: skip
+        placed, rest = [given[key] for key in first if key in given], {k: v for k, v in given.items() if k not in first}
+        for wrong in WRONG:
+            yield MORE[name], wrong, lambda wrong=wrong: call(*placed, wrong, **rest)
+
+
+def test_every_public_function_is_tried() -> None:
+    known = set(calls())
+    public = {*ck.__all__, *(f"{part}.{name}" for part in ck._MODULES for name in reached(part).__all__)}
+    takes_nothing = {"catalog.folder", "catalog.names"}
+    untried = {n for n in public - known - takes_nothing if not inspect.isclass(reached(n)) and callable(reached(n))}
+    assert untried == {"advantage.Port"} & untried
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", sorted(calls()))
+def test_wrong_objects_are_refused_by_errors_of_the_package(name: str) -> None:
+    offenders = []
+    for key, wrong, call in tried(name):
+        try:
+            call()
+        except ck.errors.CompoundkinError:
+            pass
+        except Exception as error:
+            offenders.append(f"{key}={wrong!r:.40}: {type(error).__name__}: {str(error)[:80]}")
+    assert not offenders, "\n".join(offenders)
