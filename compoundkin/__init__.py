@@ -19,6 +19,7 @@ from compoundkin.model.elements import drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
+from compoundkin.model.pairs.cylinder import cylinder
 
 if TYPE_CHECKING:
     from compoundkin import advantage as advantage
@@ -62,6 +63,7 @@ __all__ = [
     "cam",
     "circuits",
     "configurations",
+    "cylinder",
     "decompose",
     "deg",
     "draw",

@@ -18,7 +18,9 @@ from compoundkin.model.laws.cam_laws import LAWS
 from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import KINDS, WRITTEN
+from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.profiles import Profile
+from compoundkin.model.written import CYLINDERS
 
 FORMATS = (1,)
 
@@ -72,6 +74,7 @@ EXPECTED = (
 TABLES = (
     TableForm("links", "named", LINK, "The links by name; the one called frame is fixed.", required=True),
     *(TableForm(name, "array", kind.keys, f"Each is a {kind.title}.") for name, kind in WRITTEN.items()),
+    TableForm(CYLINDERS, "array", Cylinder.keys, "Each is a cylinder: a barrel and a rod between two pins."),
     TableForm("drives", "array", Drive.keys, "The drivers."),
     TableForm("modes", "array", MODE, "Assembly modes chosen by sign instead of by a drawing."),
     TableForm("expected", "array", EXPECTED, "Published numbers to hold the solution against."),

@@ -15,6 +15,8 @@ from compoundkin.model.attributes import TIME
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN, Pair
+from compoundkin.model.pairs.cylinder import Cylinder
+from compoundkin.model.written import CYLINDERS
 
 
 def read(document: Mapping[str, Any], where: str = "") -> Mechanism:
@@ -47,7 +49,7 @@ def failed(problems: list[Problem], where: str) -> InvalidMechanism:
     return InvalidMechanism(problems, heading=f"{where or 'mechanism file'}: {count}")
 
 
-def default_name(pair: Pair) -> str:
+def default_name(pair: Pair | Cylinder) -> str:
     """Say what a pair is called that is given no name.
 
     >>> from compoundkin.model.pairs import slide
@@ -89,15 +91,17 @@ def _items(parts: Mapping[str, Any], log: Recovery) -> Iterator[Item]:
     """Yield the words of the mechanism. What a driver's numbers mean depends on the pairs read before."""
     links = [_link(name, table, log) for name, table in parts.get("links", {}).items()]
     pairs = [_pair(kind, *at, log) for name, kind in WRITTEN.items() for at in _array(parts, name, log)]
+    cylinders = [Cylinder(**log.table(raw, Cylinder.keys, where)) for raw, where in _array(parts, CYLINDERS, log)]
     shown = {key: value for key, value in parts.items() if key == doc.DRAWN.name}
     drawn = [Drawn(points) for points in log.table(shown, (doc.DRAWN,), "").values()]
-    base = _valid(links, pairs, drawn)
+    base = _valid(links, pairs, cylinders, drawn)
     drives = [_drive(base, *at, log) for at in _array(parts, "drives", log)]
     if any(problem.where.startswith("drives") for problem in log.problems):
         log.doubts.append(r"expected\[\d+\]\.at\.")
     angles = {item.name: doc.is_angle(base, item) for item in drives} if base else {}
     yield from links
     yield from pairs
+    yield from cylinders
     yield from drives
     yield from drawn
     yield from (Mode(**log.table(raw, doc.MODE, where)) for raw, where in _array(parts, "modes", log))

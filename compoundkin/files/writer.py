@@ -12,12 +12,13 @@ from compoundkin.files import exact_numbers
 from compoundkin.files.document import DWELL, KIND, PROGRAM, SEGMENT
 from compoundkin.files.reader import default_name
 from compoundkin.model.attributes import OF_POINTS
-from compoundkin.model.elements import Expectation, Link
+from compoundkin.model.elements import Drive, Expectation, Link
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.mechanism import Mechanism, same
 from compoundkin.model.pairs import WRITTEN
+from compoundkin.model.written import CYLINDERS
 
 
 def document(mechanism: Mechanism) -> dict[str, Any]:
@@ -30,10 +31,11 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
     {'frame': {'points': {'A': [0, 0]}}}
     """
     out: dict[str, Any] = {"format": doc.FORMATS[-1], **_table(mechanism, doc.HEAD)}
-    out["links"] = {name: _link(item) for name, item in mechanism.links.items()}
+    out["links"] = {name: _link(item) for name, item in mechanism.rigid_links.items()}
     for name in WRITTEN:
         out[name] = [_pair(item) for item in mechanism.items if getattr(item, "table", "") == name]
-    out["drives"] = [_drive(mechanism, i) for i in range(len(mechanism.drives))]
+    out[CYLINDERS] = [_pair(item) for item in mechanism.cylinders.values()]
+    out["drives"] = [_drive(mechanism, item) for item in mechanism.items if isinstance(item, Drive)]
     out[doc.DRAWN.name] = _points(mechanism.sketch)
     out["modes"] = [_table(item, doc.MODE) for item in mechanism.modes]
     out["expected"] = [_expected(mechanism, item) for item in mechanism.expectations]
@@ -74,8 +76,7 @@ def _pair(item: Any) -> dict[str, Any]:
     return {key: value for key, value in out.items() if key != "name" or value != default_name(item)}
 
 
-def _drive(mechanism: Mechanism, index: int) -> dict[str, Any]:
-    item = mechanism.drives[index]
+def _drive(mechanism: Mechanism, item: Drive) -> dict[str, Any]:
     if isinstance(item.law, FunctionLaw):
         what, remedy = "a Python function cannot be written to a file", "write a time_table of its values instead"
         raise InvalidInput(Problem(f"drives.{item.name}.law", what, remedy))

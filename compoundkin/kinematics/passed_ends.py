@@ -83,8 +83,7 @@ class GuideEnds(PrintsShort):
         assert pair.reach is not None
         letter = pair.reach[is_end]
         told = f"{letter} at {there}" if isinstance(letter, str) else there
-        word = "beyond the end" if is_end else "before the beginning"
-        return PassedEnd(pair, f"{pair.letters[0]} at {here} is {word} of {pair.name}, {told}")
+        return PassedEnd(pair, pair.passed(here, told, is_end))
 
     def _margins(self, block: Block) -> list[Number]:
         return [self._margin(block, pair) for pair in self.pairs]

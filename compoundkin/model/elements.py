@@ -17,6 +17,7 @@ from compoundkin.model.geometry import FRAME as FRAME
 from compoundkin.model.geometry import real, vector
 from compoundkin.model.laws import Law, as_law
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.cylinder import Cylinder
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -101,7 +102,7 @@ class Expectation:
     at: tuple[tuple[str, float], ...] = ()
 
 
-Item: TypeAlias = Link | Pair | Drive | Mode | Drawn | Expectation
+Item: TypeAlias = Link | Pair | Cylinder | Drive | Mode | Drawn | Expectation
 
 
 @checked

@@ -156,9 +156,14 @@ class Mechanism(Written, ShowsPicture):
     def __hash__(self) -> int:
         return hash((self.title, tuple(self.links)))
 
+    @property
+    def in_numbers(self) -> str:
+        """How many links and cylinders it is written with, in words."""
+        cylinders = f" and {counted(len(self.cylinders), 'cylinder')}" if self.cylinders else ""
+        return f"{counted(len(self.rigid_links), 'link')}{cylinders}"
+
     def __repr__(self) -> str:
-        links, drivers = counted(len(self.links), "link"), counted(len(self.drives), "driver")
-        return f"Mechanism({self.title!r}: {links}, {drivers})"
+        return f"Mechanism({self.title!r}: {self.in_numbers}, {counted(len(self.drives), 'driver')})"
 
 
 def _places_wanted(unplaced: Mapping[str, tuple[str, ...]]) -> Iterator[Problem]:
@@ -197,7 +202,10 @@ def _plain(mechanism: Mechanism) -> list[Any]:
     about = [getattr(mechanism, k) for k in _ABOUT]
     drawing = [["Drawn", mechanism.sketch]] if mechanism.sketch else []
     written = [
-        [type(item).__name__, {field.name: getattr(item, field.name) for field in fields(cast("Any", item))}]
+        [
+            getattr(item, "table", "") or type(item).__name__,
+            {field.name: getattr(item, field.name) for field in fields(cast("Any", item))},
+        ]
         for item in mechanism.items
         if not isinstance(item, Drawn)
     ]

@@ -14,7 +14,8 @@ from compoundkin.model.number_problems import (
     point_problems,
     shape_problems,
 )
-from compoundkin.model.written import Written
+from compoundkin.model.pairs.cylinder import Cylinder
+from compoundkin.model.written import CYLINDERS, Written
 
 _PRINTABLE = "use printable text without dots, commas or outer blanks"
 
@@ -24,6 +25,7 @@ def problems_of(mechanism: Written) -> Iterator[Problem]:
     yield from _words(mechanism)
     yield from _names(mechanism)
     yield from point_problems(mechanism)
+    yield from _cylinders(mechanism)
     yield from _pairs(mechanism)
     yield from _joined(mechanism)
     yield from _drives(mechanism)
@@ -40,7 +42,7 @@ def _words(mechanism: Written) -> Iterator[Problem]:
             yield Problem(
                 f"items[{index}]",
                 f"{item!r} is not a word",
-                "known: link, the pairs such as slide, drive, drawn, mode, expect",
+                "known: link, the pairs such as slide, cylinder, drive, drawn, mode, expect",
             )
 
 
@@ -72,7 +74,7 @@ def _names(mechanism: Written) -> Iterator[Problem]:
 
 def _named(mechanism: Written) -> Iterator[tuple[str, str, str]]:
     """Yield the place, sort and name of everything that has one. Pairs of all kinds share their names."""
-    for item in mechanism.items:
+    for item in mechanism.parts:
         if isinstance(item, Link):
             yield f"links.{item.name}", "link", item.name
     for where, pair in mechanism.placed_pairs:
@@ -83,6 +85,20 @@ def _named(mechanism: Written) -> Iterator[tuple[str, str, str]]:
 
 def _is_name(name: str) -> bool:
     return bool(name) and name == name.strip() and name.isprintable() and not set(name) & set(".,")
+
+
+def _cylinders(mechanism: Written) -> Iterator[Problem]:
+    letters = {name: link.letters for name, link in mechanism.rigid_links.items()}
+    items = [item for item in mechanism.items if isinstance(item, Cylinder)]
+    for index, item in enumerate(items):
+        yield from item.problems(letters, f"{CYLINDERS}[{index}]")
+        if item.name in (other.name for other in items[:index]):
+            remedy = "names are unique: give one of them a name"
+            yield Problem(f"{CYLINDERS}[{index}].name", f"the name {item.name!r} is used twice", remedy)
+    for index, drive in enumerate(item for item in mechanism.items if isinstance(item, Drive)):
+        if drive.link in mechanism.cylinders and (drive.on, drive.pair) != (FRAME, ""):
+            what = f"the cylinder {drive.link!r} is driven by its length, against no other link"
+            yield Problem(f"drives[{index}].on", what, "leave `on` and `pair` out")
 
 
 def _pairs(mechanism: Written) -> Iterator[Problem]:
@@ -117,7 +133,8 @@ def _drives(mechanism: Written) -> Iterator[Problem]:
         where = f"drives[{index}]"
         unknown = [(k, n) for k, n in (("link", drive.link), ("on", drive.on)) if n not in mechanism.links]
         for key, name in unknown:
-            yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, list(mechanism.links)))
+            known = [*mechanism.links, *mechanism.cylinders]
+            yield Problem(f"{where}.{key}", f"there is no link {name!r}", nearest(name, known))
         if not unknown:
             choices = mechanism.drivable(drive)
             yield from _driven_pair(drive, choices, where)

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 from compoundkin.base.series import Number
 from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
 from compoundkin.model.pairs import Pair, pairs_among
+from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.pairs.optional_answers import as_drivable
+
+# The table of cylinders in a mechanism file.
+CYLINDERS = "cylinders"
 
 
 class Written:
@@ -22,20 +27,54 @@ class Written:
     items: tuple[Item, ...]
 
     @cached_property
-    def links(self) -> dict[str, Link]:
-        """The links by name, as written; the frame among them."""
+    def cylinders(self) -> dict[str, Cylinder]:
+        """The cylinders by name, as written."""
+        return {item.name: item for item in self.items if isinstance(item, Cylinder)}
+
+    @cached_property
+    def rigid_links(self) -> dict[str, Link]:
+        """The links that are written out, by name. Those are all but barrels and rods of cylinders."""
         return {item.name: item for item in self.items if isinstance(item, Link)}
+
+    @cached_property
+    def parts(self) -> tuple[Item, ...]:
+        """The words, with what stands for cylinders.
+
+        Those are two links, a slide, and a driver of that. One that is badly written is left out.
+        """
+        letters = {name: item.letters for name, item in self.rigid_links.items()}
+        names = [item.name for item in self.items if isinstance(item, Cylinder)]
+        bad = {k for k, item in self.cylinders.items() if names.count(k) > 1 or any(item.problems(letters, ""))}
+        found: list[Item] = []
+        for item in self.items:
+            if isinstance(item, Cylinder) and item.name not in bad:
+                found += [Link(item.barrel, {item.at: 0j}), Link(item.rod, {item.point: 0j}), item.slide]
+            elif isinstance(item, Drive) and item.link not in bad:
+                found.append(self.resolved(item))
+            elif not isinstance(item, Cylinder | Drive):
+                found.append(item)
+        return tuple(found) if self.cylinders else self.items
+
+    def resolved(self, drive: Drive) -> Drive:
+        """Return the driver of a cylinder as that of its slide. Any other is left as it is."""
+        one = self.cylinders.get(drive.link)
+        return drive if one is None else replace(drive, link=one.rod, on=one.barrel, pair=one.name)
+
+    @cached_property
+    def links(self) -> dict[str, Link]:
+        """The links by name. The frame, and the barrels and rods of cylinders, are among them."""
+        return {item.name: item for item in self.parts if isinstance(item, Link)}
 
     @cached_property
     def written_pairs(self) -> tuple[Pair, ...]:
         """The pairs that are written out: all but the pins."""
         letters = {name: item.letters for name, item in self.links.items()}
-        return tuple(pair.completed(letters) for pair in pairs_among(self.items))
+        return tuple(pair.completed(letters) for pair in pairs_among(self.parts))
 
     @cached_property
     def drives(self) -> tuple[Drive, ...]:
-        """The drivers, as written."""
-        return tuple(item for item in self.items if isinstance(item, Drive))
+        """The drivers, as written; those of cylinders as drivers of their slides."""
+        return tuple(item for item in self.parts if isinstance(item, Drive))
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
@@ -103,13 +142,15 @@ class Written:
         count: dict[str, int] = {}
         found = []
         for pair in self.written_pairs:
-            index = count.get(pair.table, 0)
-            count[pair.table] = index + 1
-            found.append((f"{pair.table}[{index}]", pair))
+            table = CYLINDERS if pair.name in self.cylinders else pair.table
+            index = count.get(table, 0)
+            count[table] = index + 1
+            found.append((f"{table}[{index}]", pair))
         return tuple(found)
 
     def drivable(self, drive: Drive) -> list[str]:
         """Return the names of the pairs that a drive can mean."""
+        drive = self.resolved(drive)
         pins = self.pins_between(drive.link, drive.on)
         between = self.pairs_between.get(frozenset((drive.link, drive.on)), ())
         others = [pair.name for pair in between if as_drivable(pair)]

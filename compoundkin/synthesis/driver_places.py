@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,11 +13,14 @@ from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.pairs.optional_answers import as_drivable
 from compoundkin.synthesis.chains.joints import Joints
 
 # What the old frame is called while another link is the frame.
 OTHER = "other frame"
+
+Joint = TypeVar("Joint", bound=Pair | Cylinder)
 
 
 @dataclass(frozen=True)
@@ -79,6 +83,11 @@ def means(item: Drive, place: DriverPlace) -> bool:
     return {item.link, item.on} == {place.link, place.on} and item.pair in ("", place.pair)
 
 
+def is_driver(item: Item, drive: Drive | None) -> bool:
+    """Return whether a word is that driver, as written."""
+    return isinstance(item, Drive) and drive is not None and item.name == drive.name
+
+
 def driver_at(names: Mapping[str, str], place: DriverPlace) -> Drive:
     """Return the driver at a place, its links renamed for another frame."""
     link, on = (names.get(name, name) for name in (place.link, place.on))
@@ -113,8 +122,8 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
     return item if isinstance(item, Mode | Drawn | Expectation) else renamed_pair(item, names)
 
 
-def renamed_pair(pair: Pair, names: Mapping[str, str]) -> Pair:
-    """Return a written pair between renamed links, under its own name.
+def renamed_pair(pair: Joint, names: Mapping[str, str]) -> Joint:
+    """Return a written pair or cylinder between renamed links, under its own name.
 
     >>> from compoundkin.model.pairs import slide
     >>> renamed_pair(slide("block", on="frame", at="C", through="F"), {"frame": "bar"}).members
@@ -123,5 +132,5 @@ def renamed_pair(pair: Pair, names: Mapping[str, str]) -> Pair:
     fields = [key.name for key in pair.keys if key.kind == "name" and key.name != "name"]
     told = {field: getattr(pair, field) for field in fields}
     changed = {field: names[name] for field, name in told.items() if name in pair.members and name in names}
-    renamed: Pair = replace(pair, **changed)
+    renamed: Joint = replace(pair, **changed)  # type: ignore[arg-type]
     return renamed

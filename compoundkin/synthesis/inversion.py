@@ -20,7 +20,7 @@ from compoundkin.kinematics.approach import column
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
-from compoundkin.synthesis.driver_places import renamed
+from compoundkin.synthesis.driver_places import is_driver, renamed
 
 OLD_FRAME = "old frame"
 # Which of the poses is drawn, as a part of them: links are often in line, and modes meet, at the ends or half way.
@@ -49,7 +49,9 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
         return mechanism
     names = _renamed(mechanism, link)
     points = _seen_from(mechanism, link)
-    items = [renamed(item, names) for item in mechanism.items if not isinstance(item, Mode | Drawn | Expectation)]
+    words = mechanism.items if link in mechanism.rigid_links else mechanism.parts
+    items = [item if isinstance(item, Drive) and item.link in mechanism.cylinders else renamed(item, names)
+             for item in words if not isinstance(item, Mode | Drawn | Expectation)]  # fmt: skip
     items = [_with_axes(mechanism, item) if isinstance(item, Link) and item.name == names[FRAME] else item
              for item in items]  # fmt: skip
     if points:
@@ -81,10 +83,11 @@ def with_driver(
     ['rocker']
     """
     for name in (link, on):
-        mechanism.link(name)
+        if name not in mechanism.cylinders:
+            mechanism.link(name)
     old = _replaced(mechanism, instead)
     new = drive(link, on=on, pair=pair, **words)
-    kept = [item for item in mechanism.items if not isinstance(item, Mode | Expectation) and item is not old]
+    kept = [item for item in mechanism.items if not (isinstance(item, Mode | Expectation) or is_driver(item, old))]
     if not any(item.is_drawn for item in mechanism.links.values()):
         kept = [item for item in kept if not isinstance(item, Drawn)]
         if points := _assembled(mechanism):

@@ -104,7 +104,7 @@ def _parts(what: object) -> Iterator[str]:
 def _(what: Mechanism) -> Iterator[str]:
     structure = decompose(what)
     pairs = " + ".join(f"{count.number} {count.code}" for count in structure.mobility.pairs)
-    facts = [counted(len(what.links), "link"), f"pairs {pairs}" if pairs else "no pairs"]
+    facts = [what.in_numbers, f"pairs {pairs}" if pairs else "no pairs"]
     facts.append(f"driven: {listed(drive.name for drive in what.drives)}" if what.drives else "no driver")
     facts += [f"lengths in {what.unit}"] if what.unit else []
     caption = f"<strong>{safe(what.title)}</strong>: {safe('; '.join(facts))}"

@@ -50,6 +50,11 @@ class Ended(Pair):
         value = self.coordinate(ends, poses).c[0]
         return value - bounds[0], bounds[1] - value
 
+    def passed(self, here: str, there: str, is_end: bool) -> str:
+        """Say that a pose is beyond an end, both coordinates being told."""
+        word = "beyond the end" if is_end else "before the beginning"
+        return f"{self.letters[0]} at {here} is {word} of {self.name}, {there}"
+
     def way_shown(self, bounds: tuple[Number, Number], values: Number) -> tuple[float, float, tuple[bool, bool]]:
         """Return from where to where the guide is drawn, and which ends it has.
 

@@ -34,7 +34,7 @@ class Sliding(NamedTuple):
 
     It is used from `low` to `high` as seen from `at`; `stops` tell at which of both it ends.
 
-    `turn` is the direction of the guide as the sliding member carries it.
+    Of a cylinder it is drawn as barrel and rod. `turn` is the direction of the guide as the sliding member carries it.
     """
 
     at: Number
@@ -44,6 +44,7 @@ class Sliding(NamedTuple):
     block: Number
     turn: Number
     stops: tuple[bool, bool] = (False, False)
+    is_cylinder: bool = False
 
 
 class Groove(NamedTuple):

@@ -73,7 +73,7 @@ class Caption(PrintsShort):
     def description(self) -> str:
         """What is shown, in a sentence for those who do not see it."""
         mechanism = self.sketch.scene.mechanism
-        return f"Motion of {mechanism.title}: {len(mechanism.links)} links"
+        return f"Motion of {mechanism.title}: {mechanism.in_numbers}"
 
     def notes(self, k: int) -> list[str]:
         """Return the time and the drivers' values at the k-th assembled pose."""

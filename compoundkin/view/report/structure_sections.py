@@ -46,7 +46,15 @@ def _without_places(structure: Structure) -> str:
 
 def _by_kind(structure: Structure) -> str:
     kinds = [f"{len(names)} {kind_of_link(count)}" for count, names in links_by_pairs(structure).items()]
-    return f"{counted(len(structure.mechanism.links), 'link')}, the frame among them: {listed(kinds)}."
+    text = f"{counted(len(structure.mechanism.links), 'link')}, the frame among them: {listed(kinds)}."
+    names = list(structure.mechanism.cylinders)
+    if not names:
+        return text
+    which = f"The barrel and the rod of {'the cylinder' if len(names) == 1 else 'each cylinder'} ({listed(names)})"
+    return (
+        f"{text} {which} are two of them; with its slide and its two pins they leave the mobility as it is: "
+        "3 * 2 - 2 * 3 = 0."
+    )
 
 
 def _letters(structure: Structure) -> dict[str, str]:
@@ -134,11 +142,11 @@ def about_section(structure: Structure, in_short: str, more: str = "") -> Sectio
 
 def structure_in_short(structure: Structure) -> str:
     """Return the one line that says what it is made of."""
-    links, freedoms = len(structure.mechanism.links), structure.mobility.freedoms
-    text = f"In short: {counted(links, 'link')}, mobility {freedoms}"
+    mechanism, freedoms = structure.mechanism, structure.mobility.freedoms
+    text = f"In short: {mechanism.in_numbers}, mobility {freedoms}"
     if structure.relaxation and not structure.faults:
         drivers = structure.mobility.drivers
-        text = f"In short: {counted(links, 'link')}, mobility {drivers} ({freedoms} by the count)"
+        text = f"In short: {mechanism.in_numbers}, mobility {drivers} ({freedoms} by the count)"
     if structure.groups:
         text += f", {counted(len(structure.groups), 'group')}, class {roman(max(g.class_ for g in structure.groups))}"
     return f"{text}; it cannot be solved." if structure.faults else f"{text}."

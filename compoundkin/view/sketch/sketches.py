@@ -172,7 +172,7 @@ def _finished(
         height += LINE
     paper = sheet(window.width, height)
     title = scene.mechanism.title
-    described = f"Kinematic sketch of {title}: {len(scene.mechanism.links)} links"
+    described = f"Kinematic sketch of {title}: {scene.mechanism.in_numbers}"
     said = "; ".join([described, *pose_notes(scene)])
     return Picture((paper, *shapes, *texts), window.width, height, title, said, size, window)
 

@@ -87,7 +87,9 @@ class Painter:
         return frozenset(step.pair.name for step in self.scene.driven)
 
     def is_cylinder(self, seen: Seen) -> bool:
-        """Tell whether a slide is drawn as a cylinder: driven between two moving links."""
+        """Tell whether a slide is drawn as a cylinder. It is one, or driven between two moving links."""
+        if isinstance(seen.mark, Sliding) and seen.mark.is_cylinder:
+            return True
         return FRAME not in seen.members and seen.pair.name in self.driven
 
     def is_rod(self, seen: Seen) -> bool:
