@@ -109,7 +109,7 @@ _PLAIN: Mapping[str, Form] = MappingProxyType(
     }
 )
 # What is read as numbers or points by the function itself, which says what is wrong with them.
-_ANYTHING = frozenset({"Any", "Number", "Sizes", "Item", "object"})
+_ANYTHING = frozenset({"Any", "Number", "Sizes", "Reach", "Item", "object"})
 _LISTS = ("Sequence", "Iterable", "tuple")
 
 
