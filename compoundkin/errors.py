@@ -10,6 +10,7 @@ from __future__ import annotations
 from compoundkin.base.errors import (
     CompoundkinError,
     DrawnBeyondEnd,
+    FewDigits,
     InvalidInput,
     InvalidMechanism,
     LikelySlip,
@@ -21,6 +22,6 @@ from compoundkin.base.errors import (
 )
 
 __all__ = [
-    "CompoundkinError", "DrawnBeyondEnd", "InvalidInput", "InvalidMechanism", "LikelySlip", "NotAssembled",
-    "NotDetermined", "Problem", "UnassembledPoses", "UnknownName",
+    "CompoundkinError", "DrawnBeyondEnd", "FewDigits", "InvalidInput", "InvalidMechanism", "LikelySlip",
+    "NotAssembled", "NotDetermined", "Problem", "UnassembledPoses", "UnknownName",
 ]  # fmt: skip

@@ -30,6 +30,7 @@ SLOW = {
     "test_style.py": 18,
     "view/page/test_viewer.py": 12,
     "view/page/test_attack.py": 12,
+    "kinematics/test_error_estimate.py": 12,
     "configurations/test_random.py": 10,
     "view/animation/test_svg.py": 10,
     "kinematics/groups/test_contract.py": 9,

@@ -91,6 +91,6 @@ def test_names_are_in_what_is_said() -> None:
     assert repr(motion.links["bar"]) == "LinkMotion(bar: (73,) poses to order 2)"
     assert repr(motion.drives["crank"]) == "PairMotion(angle: (73,) poses to order 2)"
     assert repr(motion.links) == "Named(link: frame, crank, plate, rocker, bar, block)"
-    assert repr(ck.verify(motion)) == "Check(14 findings at 73 poses, passed)"
+    assert repr(ck.verify(motion)) == "Check(15 findings at 73 poses, passed)"
     equations = ck.loop_equations(motion.mechanism)
     assert repr(equations) == "LoopEquations('Six-bar of Example 3-4': 2 loops, 6 equations, 6 unknowns)"

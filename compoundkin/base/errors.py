@@ -84,6 +84,10 @@ class DrawnBeyondEnd(UserWarning):
     """The pose drawn is beyond an end of a guide."""
 
 
+class FewDigits(UserWarning):
+    """Some rates have fewer than three digits, next to a limit position."""
+
+
 class LikelySlip(UserWarning):
     """A value that can be meant as it is, but is most often a slip."""
 

@@ -63,11 +63,18 @@ def newton(
     return NewtonResult(x, matrix, last, longest)
 
 
+# What a step with the matrix of an earlier one leaves is rounding below this: pure numbers of about one.
+EXACT = 1e-16
+# Steps that fall more slowly than this need a matrix of their own: near a singularity it changes quickly.
+SLOW = 0.1
+
+
 class ChordStop(NamedTuple):
     """The rule by which chord steps are taken and stop. Steps are weighted, so that they are pure numbers.
 
     A start has `converged` where no unknown's last step was larger and no residual is above `closed`. After a step
-    below `chord` the matrix has hardly changed and is used once more. No single step is longer than `longest`.
+    below `chord` the matrix has hardly changed and is used once more, as long as each step is a fraction of the one
+    before. No single step is longer than `longest`.
     """
 
     converged: float
@@ -95,19 +102,22 @@ def chord_newton(
     >>> found[0].round(9).tolist(), closed.tolist()
     ([1.414213562, 1.414213562], [True, True])
     """
-    found, inverse, last = start, None, np.inf
+    found, inverse, last, before, rested, closed = start, None, np.inf, np.inf, np.array(False), np.array(False)
     residual, invert = system(found)
     for _ in range(stop.steps):
-        if inverse is None or np.any(last > stop.chord):
+        if inverse is None or np.any(last > stop.chord) or np.any(~rested & (last > SLOW * before)):
             inverse = invert()
         step = inverse.times(residual)
-        last = largest_of([c * w for c, w in zip(step, weights, strict=True)])
+        before, last = last, largest_of([c * w for c, w in zip(step, weights, strict=True)])
         if stop.longest < np.inf:
             share = np.minimum(1.0, stop.longest / last)
             step = [c * share for c in step]
         found = [v - c for v, c in zip(found, step, strict=True)]
         residual, invert = system(found)
-        closed = (last <= stop.converged) & (largest_of(residual) <= stop.closed)
+        # with the matrix of an earlier step the next one is this one's part of the one before: it must be rounding too
+        exact = (last**2 <= EXACT * before) | (last >= before)
+        rested = rested | ((last <= stop.converged) & exact)
+        closed = rested & (largest_of(residual) <= stop.closed)
         if not np.any(~closed & np.isfinite(last)):
             break
     return found, closed

@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import (
     DrawnBeyondEnd,
+    FewDigits,
     InvalidInput,
     NotAssembled,
     NotDetermined,
@@ -24,6 +25,7 @@ from compoundkin.kinematics.block import places
 from compoundkin.kinematics.chosen_modes import shown_by, signs_of
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
 from compoundkin.kinematics.driver_values import by_name, inputs, times_of
+from compoundkin.kinematics.lost_digits import without_lost
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
 from compoundkin.kinematics.solved_blocks import settled, with_branch
@@ -69,7 +71,8 @@ def solve(
 
     Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
     NotAssembled where a group has no pose at all or a redundant pair opens; warns UnassembledPoses where some poses do
-    not close, DrawnBeyondEnd where the drawing is beyond an end of a guide.
+    not close, DrawnBeyondEnd where the drawing is beyond an end of a guide, FewDigits where rates next to a limit
+    position have fewer than three digits; those without any are NaN.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
@@ -85,21 +88,25 @@ def solve(
         signs, shown = signs_of(solving_order, modes), shown_by(solving_order, modes, hint)
         with diagnosing(solving_order.structure):
             tracker = Tracker(solving_order, given, signs, shown)
-        motion = replace(settled(solving_order, tracker.given, tracker, order), time=times)
+        told = without_lost(*settled(solving_order, tracker.given, tracker, order))
+        motion = replace(told.motion, time=times)
         if solving_order.structure.relaxation:
             check_redundant(motion)
-    _warn(motion)
+    _warn(motion, told.poor)
     return motion
 
 
-def _warn(motion: Motion) -> None:
-    """Warn of poses that cannot be assembled, and of a drawing beyond an end."""
+def _warn(motion: Motion, poor: int) -> None:
+    """Warn of poses not assembled, of rates with few digits, of a drawing beyond an end."""
     if motion.solving_order.guide_ends.pairs:
         _warn_of_drawing(motion.tracker)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         how_many = f"{missing} of {motion.failed.size} poses cannot be assembled"
         warn(f"{how_many}: Motion.assembled masks them, gaps() explains", UnassembledPoses)
+    if poor:
+        how_many = f"rates at {poor} of {motion.failed.size} poses have fewer than three digits"
+        warn(f"{how_many}, next to limit positions: Motion.error(order) tells where", FewDigits)
 
 
 def _warn_of_drawing(tracker: Tracker) -> None:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.branch import Begin, TrackedBranch, course_of, leads_on
 from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
 from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.lost_digits import doubtful
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.tracking import Tracker
@@ -19,15 +21,22 @@ WHOLE = 65536
 BLOCK = 16384
 
 
-def settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> Motion:
-    """Solve until no further change point is found, and nothing more is reached."""
+def settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, Number]:
+    """Solve until no further change point is found, and nothing more is reached.
+
+    Return also the poses whose rates may have lost their digits.
+    """
     while True:
-        motion, near = _run(solving_order, given, tracker, order)
+        motion, near, where = _run(solving_order, given, tracker, order)
         near |= near_groups(tracker)
         if near and pass_through(tracker, near):
             continue
         if not tracker.lost or not with_branch(tracker):
-            return motion.mended(*rates_at(given, tracker, order)) if tracker.flips and order else motion
+            if not tracker.flips or not order:
+                return motion, where
+            designs, index, poses = rates_at(given, tracker, order)
+            where[designs, index] = False
+            return motion.mended(designs, index, poses), where
 
 
 def with_branch(tracker: Tracker) -> bool:
@@ -47,21 +56,27 @@ def with_branch(tracker: Tracker) -> bool:
     return True
 
 
-def _run(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int]]:
-    """Solve block by block and gather; also the groups that come near a limit position."""
+def _run(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int], Number]:
+    """Solve block by block and gather; also the groups near a limit position, and where rates are doubtful."""
     designs, poses = given.designs, given.poses
     near: set[int] = set()
+    where = np.zeros((designs, poses), dtype=bool)
     parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
     if len(parts) == 1:
         block = tracker.run(given, order, *places(slice(0, designs), slice(0, poses)))
         failed = np.broadcast_to(block.failed, (designs, poses))
-        return Motion(solving_order.structure, order, given, dict(block.world), failed, tracker), _near(block)
+        near = _near(block)
+        where |= doubtful(solving_order, given, block, near)
+        return Motion(solving_order.structure, order, given, dict(block.world), failed, tracker), near, where
     store = JoinedBlocks(designs, poses)
     for d, m in parts:
-        block = tracker.run(given.cut(d, m), order, *places(d, m))
+        part = given.cut(d, m)
+        block = tracker.run(part, order, *places(d, m))
         store.take(block, d, m)
-        near |= _near(block)
-    return Motion(solving_order.structure, order, given, store.poses(), store.failed, tracker), near
+        here = _near(block)
+        near |= here
+        where[d, m] |= doubtful(solving_order, part, block, here)
+    return Motion(solving_order.structure, order, given, store.poses(), store.failed, tracker), near, where
 
 
 def _near(block: Block) -> set[int]:

@@ -68,7 +68,7 @@ def test_a_wrong_driver_is_found():
 
 
 def test_a_leap_to_the_other_branch_is_found():
-    motion, other = ck.solve(FOUR_BAR), ck.solve(FOUR_BAR, modes={"rocker": -1})
+    motion, other = ck.solve(FOUR_BAR, modes={"rocker": 1}), ck.solve(FOUR_BAR, modes={"rocker": -1})
     poses = {}
     for link, pose in motion.poses.items():
         parts = []

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from compoundkin.analysis.checks.difference_check import continuity_findings, difference_findings
+from compoundkin.analysis.checks.choice_check import choice_findings
+from compoundkin.analysis.checks.continuation_check import continuation_findings
+from compoundkin.analysis.checks.difference_check import difference_findings
 from compoundkin.analysis.checks.finding import Check, Finding
 from compoundkin.analysis.checks.residuals import centre_findings, residuals
 from compoundkin.base.arguments import checked
@@ -17,9 +19,11 @@ __all__ = ["Check", "Finding", "verify"]
 def verify(motion: Motion) -> Check:
     """Check a motion in ways that do not use the formulas that solved it.
 
-    Closure, velocities, accelerations and jerks in the pairs' own equations; velocities from centres, and
-    the collinearity of every three; derivatives against differences of positions; continuity. Poses that
-    cannot be assembled are left out; at limit positions, where rates are infinite, only the position is checked.
+    Closure, velocities, accelerations and jerks in the pairs' own equations; velocities from centres, and the
+    collinearity of every three; derivatives against differences of positions; each pose as the continuation of the one
+    before it, and gaps as places to which nothing leads; the configuration that is drawn, and the modes that are
+    written. Where rounding leaves fewer digits, next to limit positions, `Motion.error` tells how many are held to. At
+    limit positions themselves, which have no rates, only the position is checked.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, link
@@ -28,12 +32,15 @@ def verify(motion: Motion) -> Check:
     >>> verify(solve(crank)).passed
     True
     """
+    closed = int(np.count_nonzero(motion.failed == 0))
+    if not closed:
+        return Check((), 0, 0)
     with np.errstate(all="ignore"):
         found = [
             *residuals(motion),
             *centre_findings(motion),
             *difference_findings(motion),
-            *continuity_findings(motion),
+            *continuation_findings(motion),
+            *choice_findings(motion),
         ]
-    closed = int(np.count_nonzero(motion.failed == 0))
     return Check(tuple(found), closed, closed - int(np.count_nonzero(motion.regular)))

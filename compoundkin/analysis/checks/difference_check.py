@@ -1,4 +1,4 @@
-"""Derivatives and steps of a motion against its positions. Differences at neighbouring values, and continuity."""
+"""Derivatives of a motion against differences of its positions at neighbouring driver values."""
 
 from __future__ import annotations
 
@@ -8,12 +8,11 @@ from math import factorial
 
 import numpy as np
 
-from compoundkin.analysis.checks.finding import Finding, worst
+from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import places
-from compoundkin.kinematics.inputs import Inputs
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs.contact import as_profiled
 
@@ -24,9 +23,6 @@ OFFSETS = np.arange(-4, 5)
 STEP = 0.008
 NAMES = ("", *OF_POINTS[1:])
 LIMITS = (0.0, 1e-9, 1e-7, 1e-5)
-# A step may differ by this much (radians, or parts of the size) from the mean of the slopes at its ends: other
-# branches lie farther away, but for those that are about to meet.
-LEAP = 0.5
 
 
 def difference_findings(motion: Motion) -> Iterator[Finding]:
@@ -50,7 +46,13 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
                 own = series.derivative(k) * step**k
                 # relative to the largest derivative the series' own time allows
                 parts[link] = np.maximum(parts.get(link, 0.0), np.abs(found - own) / (STEP**k * size))
-        yield worst(motion, f"{NAMES[k]}, differences", LIMITS[k], parts, counted)
+        yield worst(motion, f"{NAMES[k]}, differences", LIMITS[k], _rounded(motion, k, step, parts), counted)
+
+
+def _rounded(motion: Motion, k: int, step: Number, parts: dict[str, Number]) -> dict[str, Number]:
+    """Return what differs without what rounding leaves: of the positions, and of the derivative itself."""
+    parts = rounded_by(motion, 0, parts, LIMITS[k], motion.size * STEP**k)
+    return rounded_by(motion, k, parts, LIMITS[k], motion.size * (STEP / step) ** k)
 
 
 def _weights(k: int) -> Number:
@@ -140,36 +142,3 @@ def _before_change_points(motion: Motion, reach: Number) -> Number:
             away = np.fmax(away, np.abs((there.drives[name][0] - here) / rate))
         np.logical_and.at(good, designs, away > reach[designs])
     return good
-
-
-def continuity_findings(motion: Motion) -> Iterator[Finding]:
-    """Yield the finding on steps from pose to pose against slopes."""
-    if motion.inputs.poses < 2:
-        return
-    s = np.arange(motion.inputs.poses, dtype=float)
-    after, before = _slopes(motion, motion.inputs.at(s), s), _slopes(motion, motion.inputs.before(s), s)
-    good = motion.regular[:, 1:] & motion.regular[:, :-1]
-    parts = {}
-    for link in motion.poses:
-        step, first, last = (_turn(motion, link), after[link], before[link])
-        leap = np.abs(step - (first[:, :-1] + last[:, 1:]) / 2.0)
-        # infinite slopes at a limit position say nothing about a leap
-        bounded = good & np.isfinite(leap) & (np.abs(first[:, :-1]) + np.abs(last[:, 1:]) < 2.0)
-        parts[link] = np.pad(np.where(bounded, leap, 0.0), ((0, 0), (1, 0)))
-    yield worst(motion, "continuity", LEAP, parts, motion.failed == 0)
-
-
-def _slopes(motion: Motion, part: Inputs, s: Number) -> dict[str, Number]:
-    block = motion.block(part, 1, s[None], np.arange(motion.inputs.designs)[:, None])
-    shape = motion.failed.shape
-    found = {}
-    for link, pose in block.world.items():
-        rate = np.conj(pose.u.c[0]) * pose.u.c[1] if pose.u.order else np.zeros(shape)
-        found[link] = np.broadcast_to(np.imag(rate), shape)
-    return found
-
-
-def _turn(motion: Motion, link: str) -> Number:
-    """Return the angle a link turns from each pose to the next."""
-    u = np.broadcast_to(motion.poses[link].u.c[0], motion.failed.shape)
-    return np.angle(u[:, 1:] * u[:, :-1].conj())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,9 @@ import numpy as np
 from compoundkin.base.display import Shows
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
+
+# So many times the estimate of its error a residual may be: it adds the errors of several links.
+LEFT = 10.0
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,21 @@ class Check(Shows):
         failed = [finding.name for finding in self.findings if not finding.passed]
         outcome = "passed" if self.passed else f"failed: {', '.join(failed) or 'nothing to check'}"
         return f"Check({len(self.findings)} findings at {self.poses} poses, {outcome})"
+
+
+def rounded_by(
+    motion: Motion, k: int, parts: Mapping[str, Number], limit: float, scale: Number | None = None
+) -> dict[str, Number]:
+    """Return values by the share of their limit that rounding leaves at each pose.
+
+    Next to a limit position what rounding leaves in the k-th derivative, relative to a `scale` (the size), is more than
+    the limit: it is the limit there, and values are made less accordingly.
+    """
+    with np.errstate(all="ignore"):
+        error = motion.error(k).reshape(motion.failed.shape) / (motion.size if scale is None else scale)
+    allowed = np.nan_to_num(LEFT * error, nan=0.0, posinf=np.inf)
+    share = limit / np.maximum(limit, allowed)
+    return {name: part * share for name, part in parts.items()}
 
 
 def worst(motion: Motion, name: str, limit: float, parts: dict[str, Number], counted: Number) -> Finding:

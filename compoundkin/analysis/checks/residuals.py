@@ -14,14 +14,14 @@ import numpy as np
 
 from compoundkin.analysis.centres import instant_centres
 from compoundkin.analysis.centres.centre_velocities import SLOWEST
-from compoundkin.analysis.checks.finding import Finding, worst
+from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
 from compoundkin.base.arrays import wrapped
 from compoundkin.base.errors import NotDetermined
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import as_turn_counting
+from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales
 
 # Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
 # over the groups of the solving order, and near a limit position by the inverse of the distance from it.
@@ -41,6 +41,7 @@ def residuals(motion: Motion) -> Iterator[Finding]:
         scale = _scale(motion, k, counted)
         for name, parts in _parts(motion, k):
             relative = {label: residual / scale for label, residual in parts.items()}
+            relative = rounded_by(motion, k, relative, TOLERANCE, scale)
             yield worst(motion, name, TOLERANCE, relative, counted)
         if motion.structure.redundant:
             relative = {pair.name: _pair(motion, pair, k) / scale for pair in motion.structure.redundant}
@@ -48,7 +49,8 @@ def residuals(motion: Motion) -> Iterator[Finding]:
     fits = dict(_distance_errors(motion))
     if fits:
         scale = _scale(motion, 0, motion.failed == 0)
-        relative = {_off(name, gap, FITS * scale): gap / scale for name, gap in fits.items()}
+        closed = motion.failed == 0
+        relative = {_off(name, np.where(closed, gap, 0.0), FITS * scale): gap / scale for name, gap in fits.items()}
         yield worst(motion, "fit of racks and wheels", FITS, relative, motion.failed == 0)
 
 
@@ -63,7 +65,7 @@ def _distance_errors(motion: Motion) -> Iterator[tuple[str, Number]]:
 
 def _off(name: str, gap: Number, limit: Number) -> str:
     """Return a pair's name, with the length by which it is off."""
-    return f"{name}, off by {float(np.nanmax(gap)):.6g}" if np.any(gap > limit) else name
+    return f"{name}, off by {float(np.max(gap)):.6g}" if np.any(gap > limit) else name
 
 
 def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
@@ -79,11 +81,15 @@ def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
 def _pair(motion: Motion, pair: Pair, k: int) -> Number:
     ends = motion.inputs.ends[pair.name]
     poses = tuple(motion.poses[member] for member in pair.members)
+    # an angle that ought to be zero counts as the length by which it moves a point at the mechanism's size
+    lengths = [motion.size / scale for scale in held_scales(pair, motion.size)]
     if k == 1:
         rates = [v for pose in poses for v in _twist(pose.z.derivative(1), pose.u)]
         rows = pair.jacobian(ends, poses)[..., : pair.held, :]
-        return _largest([sum(rows[..., j, i] * rates[i] for i in range(len(rates))) for j in range(pair.held)])
-    return _largest([series.derivative(k) for series in pair.closure(ends, poses)])
+        held = [sum(rows[..., j, i] * rates[i] for i in range(len(rates))) for j in range(pair.held)]
+    else:
+        held = [series.derivative(k) for series in pair.closure(ends, poses)]
+    return _largest([one * length for one, length in zip(held, lengths, strict=True)])
 
 
 def _twist(velocity: Number, u: Series) -> tuple[Number, Number, Number]:
@@ -116,7 +122,8 @@ def _scale(motion: Motion, k: int, counted: Number) -> Number:
     """Return the size, or the fastest link's k-th derivative, at each pose."""
     size = motion.size
     if k == 0:
-        return size + max((float(np.nanmax(np.abs(p.z.c[0]), initial=0.0)) for p in motion.poses.values()), default=0.0)
+        places = (np.abs(np.broadcast_to(pose.z.c[0], counted.shape)) for pose in motion.poses.values())
+        return size + max((float(np.max(place, where=counted, initial=0.0)) for place in places), default=0.0)
     largest: Number = np.zeros(counted.shape)
     for pose in motion.poses.values():
         for j in range(1, k + 1):
@@ -150,4 +157,5 @@ def _finding(motion: Motion, name: str, parts: dict[str, Number]) -> Finding:
     # NaN is where a centre is not determined or too poorly conditioned to prove anything
     shape = motion.shape or (1,)
     flat = {k: np.nan_to_num(np.broadcast_to(v, shape).reshape(motion.failed.shape), nan=0.0) for k, v in parts.items()}
-    return worst(motion, name, TOLERANCE, flat, motion.regular)
+    relative = rounded_by(motion, 1, flat, TOLERANCE, _scale(motion, 1, motion.regular))
+    return worst(motion, name, TOLERANCE, relative, motion.regular)

@@ -1,0 +1,118 @@
+"""Continuity of a motion: each pose as the continuation of the one before, gaps as places to which nothing leads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
+from compoundkin.analysis.checks.group_walk import SINGULAR, GroupWalk
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.kinematics import Motion
+
+# Where continuation arrives and where the pose is may differ by this (of the size, or radians) and what rounding
+# leaves: the same configuration is found to rounding, another is farther away, but next to where the two meet.
+SAME = 1e-7
+# So many ways are gone at once.
+WAYS = 2048
+
+
+class Ways(NamedTuple):
+    """Ways between poses of a motion: designs, and indices of their ends."""
+
+    designs: Number
+    begin: Number
+    end: Number
+
+
+def continuation_findings(motion: Motion) -> Iterator[Finding]:
+    """Yield what continuation finds between poses, and at the ends of gaps."""
+    if motion.inputs.poses < 2 or not motion.structure.groups:
+        return
+    usable = (motion.failed == 0) & (_sharpness(motion) < SINGULAR)
+    parts = {link: np.zeros(motion.failed.shape) for link in motion.poses if link not in motion.structure.ground.links}
+    for ways in _between(motion, usable):
+        walk = _walk(motion, ways)
+        arrived = walk.follow()
+        gaps = _apart(motion, walk.poses(), poses_at(motion, ways.designs, ways.end))
+        for link, part in parts.items():
+            np.maximum.at(part, (ways.designs, ways.end), np.where(arrived, gaps[link], 0.0))
+    yield worst(motion, "continuity", SAME, rounded_by(motion, 0, parts, SAME), motion.failed == 0)
+    if np.any(motion.failed):
+        beyond = np.zeros(motion.failed.shape)
+        for ways in _into_gaps(motion, usable):
+            np.maximum.at(beyond, (ways.designs, ways.end), _walk(motion, ways).follow().astype(float))
+        yield worst(motion, "gaps that can be closed", 0.0, _by_group(motion, beyond), motion.failed != 0)
+
+
+def _sharpness(motion: Motion) -> Number:
+    """Return how near to singular every pose is."""
+    found = np.full(motion.failed.shape, np.inf)
+    designs, index = np.nonzero(motion.failed == 0)
+    for part in _parts(Ways(designs, index, index)):
+        found[part.designs, part.begin] = _walk(motion, part).sharpest()
+    return found
+
+
+def _between(motion: Motion, usable: Number) -> Iterator[Ways]:
+    """Yield the ways from each pose to the next from which anything follows, where no gap lies between."""
+    broken = np.cumsum(motion.failed != 0, axis=1)
+    designs, index = np.nonzero(usable)
+    goes_on = (designs[1:] == designs[:-1]) & (broken[designs[1:], index[1:]] == broken[designs[:-1], index[:-1]])
+    yield from _parts(Ways(designs[:-1][goes_on], index[:-1][goes_on], index[1:][goes_on]))
+
+
+def _into_gaps(motion: Motion, usable: Number) -> Iterator[Ways]:
+    """Yield the ways from poses to neighbours that are said not to close."""
+    for step in (1, -1):
+        designs, index = np.nonzero(usable)
+        other = index + step
+        inside = (other >= 0) & (other < motion.inputs.poses)
+        designs, index, other = designs[inside], index[inside], other[inside]
+        open_ = motion.failed[designs, other] != 0
+        yield from _parts(Ways(designs[open_], index[open_], other[open_]))
+
+
+def _parts(ways: Ways) -> Iterator[Ways]:
+    for first in range(0, len(ways.designs), WAYS):
+        part = slice(first, first + WAYS)
+        yield Ways(ways.designs[part], ways.begin[part], ways.end[part])
+
+
+def _walk(motion: Motion, ways: Ways) -> GroupWalk:
+    begin, end = (motion.inputs.pick(ways.designs, at.astype(float)) for at in (ways.begin, ways.end))
+    return GroupWalk(motion, begin, end, poses_at(motion, ways.designs, ways.begin), len(ways.designs))
+
+
+def poses_at(motion: Motion, designs: Number, index: Number) -> dict[str, Pose]:
+    """Return the links' poses at some places, as columns without derivatives."""
+
+    def part(series: Series) -> Series:
+        return Series((np.broadcast_to(series.c[0], motion.failed.shape)[designs, index][:, None],))
+
+    return {
+        name: pose
+        if pose is FIXED
+        else Pose(part(pose.z), part(pose.u), None if pose.theta is None else part(pose.theta))
+        for name, pose in motion.poses.items()
+    }
+
+
+def _apart(motion: Motion, found: Mapping[str, Pose], poses: Mapping[str, Pose]) -> dict[str, Number]:
+    """Return by how much links are apart, in parts of the size or radians, whichever is larger."""
+    apart = {}
+    for link, pose in poses.items():
+        away = np.abs(found[link].z.c[0] - pose.z.c[0]) / motion.size
+        turned = np.abs(found[link].u.c[0] - pose.u.c[0])
+        apart[link] = np.ravel(np.maximum(away, turned))
+    return apart
+
+
+def _by_group(motion: Motion, beyond: Number) -> dict[str, Number]:
+    """Return values at poses that fail, by a link of the group that does not close or the pair whose end is passed."""
+    names = [group.links[0] for group in motion.structure.groups]
+    names += [pair.name for pair in motion.solving_order.guide_ends.pairs]
+    return {name: np.where(motion.failed == k, beyond, 0.0) for k, name in enumerate(names, start=1)}

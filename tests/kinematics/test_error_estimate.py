@@ -1,0 +1,58 @@
+"""The estimate of the error by rounding, against forty digits next to limit positions and change points."""
+
+import warnings
+from functools import cache
+
+import numpy as np
+import pytest
+from mpmath import mpf
+
+import compoundkin as ck
+from tests.kinematics.exact_motions import CASES, ORDER, special, true_errors
+
+RATES = (1.3, 0.4, -0.7)
+DECADES = range(1, 10)
+SAMPLES = 4
+
+
+def near(title: str, distances: np.ndarray) -> ck.results.Motion:
+    """A motion at some distances from the limit or change point of a case."""
+    case = CASES[title]
+    values = np.sort([float(special(title) + case.sense * mpf(float(d))) for d in distances])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ck.errors.FewDigits)
+        speed, acceleration, jerk = RATES
+        given = {"speed": speed, "acceleration": acceleration, "jerk": jerk}
+        return ck.solve(case.mechanism, {case.driver: values}, **given, order=ORDER, modes=case.modes)
+
+
+@cache
+def compared(title: str) -> np.ndarray:
+    """Pairs of the true error and the estimate, of every order that has digits, at samples of a case."""
+    rng = np.random.default_rng(7)
+    pairs = []
+    for decade in DECADES:
+        motion = near(title, 10.0**-decade * rng.uniform(0.3, 1.0, SAMPLES))
+        assert motion.assembled.all()
+        estimates = [motion.error(k) for k in range(ORDER + 1)]
+        for at, value in enumerate(motion.drives[CASES[title].driver].value):
+            true = true_errors(title, motion, at, float(value), RATES)
+            pairs += [(t, e[at]) for t, e in zip(true, estimates, strict=True) if np.isfinite(e[at])]
+    return np.array(pairs)
+
+
+@pytest.mark.parametrize("title", CASES)
+def test_the_true_error_is_of_the_size_of_the_estimate(title):
+    true, estimate = compared(title).T
+    assert len(true) > 100
+    assert 2.0 < np.median(estimate / true) < 50.0
+
+
+def test_true_errors_exceed_the_estimate_in_fewer_than_one_sample_in_a_hundred():
+    true, estimate = np.concatenate([compared(title) for title in CASES]).T
+    assert np.mean(true > estimate) < 0.01
+
+
+def test_the_estimate_exceeds_a_hundred_true_errors_in_fewer_than_one_sample_in_ten():
+    true, estimate = np.concatenate([compared(title) for title in CASES]).T
+    assert np.mean(estimate > 100.0 * true) < 0.10
