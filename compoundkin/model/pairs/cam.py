@@ -168,7 +168,8 @@ class Cam(Profiled):
 
     def no_contact_reason(self) -> str:
         """Say that the path does not meet the profile."""
-        between = "" if self.curve.closed else " between its ends"
+        ends = () if self.curve.closed else [complex(self.curve.at(s).c[0]) for s in (self.curve.low, self.curve.high)]
+        between = " between its ends " + " and ".join(f"({p.real:.6g}, {p.imag:.6g})" for p in ends) if ends else ""
         return f"on its way {self.at} does not meet the profile of {self.on}{between}"
 
     @cached_property

@@ -144,7 +144,7 @@ def events_legend(figure: Any, gaps: bool, limits: bool, changes: bool, marks: s
     if marks:
         handles.append(Line2D([], [], linestyle="none", marker="o", markersize=3.5, color=GREY, label=marks))
     if limits:
-        handles.append(ring_handle("next to a limit position"))
+        handles.append(ring_handle("next to a gap"))
     if changes:
         handles.append(Line2D([], [], color=GREY, linestyle="--", linewidth=1.0, label="change point"))
     if handles:
@@ -152,14 +152,14 @@ def events_legend(figure: Any, gaps: bool, limits: bool, changes: bool, marks: s
 
 
 def ring_handle(label: str) -> Any:
-    """Return the legend's ring for a pose next to a limit position."""
+    """Return the legend's ring for a pose next to a limit position or an end of a guide."""
     from matplotlib.lines import Line2D
 
     return Line2D([], [], **RING, color=INK, label=label)
 
 
 def ring(axes: Any, x: Number, y: Number, colour: Any) -> None:
-    """Draw rings around poses next to limit positions."""
+    """Draw rings around poses next to limit positions and ends of guides."""
     if len(x):
         axes.plot(x, y, **RING, color=colour, zorder=4)
 

@@ -23,7 +23,8 @@ MOST_ADDED = {False: 0.25, True: 0.5}
 class Blank:
     """A part of one design's motion without assembled poses. Its places are along the motion (pose 0, 1, 2 ...).
 
-    `limits` tells for its begin and its end whether it is a limit position; otherwise the motion ends there.
+    `limits` tells for its begin and its end whether it is a limit position or the end of a guide; otherwise
+    the motion ends there.
     """
 
     design: int

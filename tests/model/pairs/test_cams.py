@@ -237,7 +237,7 @@ def test_where_a_slot_ends_the_pin_is_lost() -> None:
         warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
         (gap,) = ck.gaps(ck.solve(mechanism))
     assert abs(gap.begin["plate"] - 50.0) < 1e-7
-    assert gap.reason == "on its way P does not meet the profile of plate between its ends"
+    assert gap.reason == "on its way P does not meet the profile of plate between its ends (-40, 40) and (40, 40)"
 
 
 def test_a_follower_whose_path_misses_the_profile() -> None:

@@ -152,7 +152,7 @@ def test_gaps_are_shaded_between_the_limits(rocker: ck.results.Motion) -> None:
     edges = shade.get_x(), shade.get_x() + shade.get_width()
     assert edges == (pytest.approx(LIMIT, abs=1e-6), pytest.approx(360 - LIMIT, abs=1e-6))
     names = [text.get_text() for legend in axes.figure.legends for text in legend.get_texts()]
-    assert names == ["cannot be assembled", "next to a limit position"]
+    assert names == ["cannot be assembled", "next to a gap"]
 
 
 def test_gaps_of_a_motion_in_time_are_shaded_at_their_times() -> None:
