@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,13 @@ class Member:
             return block.world[self.link].trimmed(k)
         local = block.local.get(self.link)
         return bodies[self.body] if local is None else bodies[self.body].compose(local.trimmed(k))
+
+
+class Column(NamedTuple):
+    """Where the x, y, theta of a body begin in a state, and the place about which it turns."""
+
+    start: int
+    spot: Number
 
 
 @dataclass(frozen=True)
@@ -68,14 +76,14 @@ class Bar:
         gap = (two - one).abs2() - Series(length2.c[: k + 1])
         return gap.c[k] * (0.5 / np.sqrt(length2.c[0])) if len(gap.c) > k else 0.0
 
-    def row(self, first: Mapping[int, int], bodies: Mapping[int, Pose], block: Block) -> Row:
+    def row(self, first: Mapping[int, Column], bodies: Mapping[int, Pose], block: Block) -> Row:
         """Return the derivatives by the state; `first` are the columns of the bodies."""
         (_, one), (_, two) = ends = tuple(pin.at_other(bodies, block, 0) for pin in self.pins)
         along = (two - one).c[0] / np.sqrt(self._length2(block).c[0])
         row: Row = {}
         for (body, place), sign in zip(ends, (-1.0, 1.0), strict=True):
             if body is not None:
-                add_point(row, first[body], along * sign, place.c[0] - bodies[body].z.c[0])
+                add_point(row, first[body].start, along * sign, place.c[0] - first[body].spot)
         return row
 
     def pose(self, bodies: Mapping[int, Pose], block: Block, order: int) -> Pose:
@@ -124,7 +132,7 @@ def _neighbours(bar: Bar) -> list[int]:
 
 
 def add_point(row: Row, column: int, along: Number, arm: Number) -> None:
-    """Add what a body's x, y, theta move its point in a direction. The point is at an arm from the body's origin."""
+    """Add what a body's x, y, theta move its point in a direction. The point is at an arm from where the body turns."""
     add(row, column, (along.real, along.imag, along.imag * arm.real - along.real * arm.imag))
 
 

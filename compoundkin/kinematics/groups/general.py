@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, constant
+from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.assembly import all_configurations, from_group
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations, state_distance
@@ -18,7 +18,7 @@ from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.model.pairs.contact import as_profiled
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.structure.parts import Group
+from compoundkin.structure.parts import Body, Group
 
 # Where no theory counts a group's configurations, Newton searches them from so many random states.
 STARTS = 60
@@ -38,17 +38,17 @@ class GeneralSolver(GroupSolver):
     modes: ClassVar[int] = 0
     equations: GroupEquations
 
-    def __init__(self, index: int, group: Group, size: float) -> None:
+    def __init__(self, index: int, group: Group, size: float, middles: tuple[complex, ...]) -> None:
         super().__init__(index, group)
         where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
         self.pairs = (*group.inner, *group.outer)
         members = tuple(tuple(Member(name, where.get(name)) for name in pair.members) for pair in self.pairs)
-        self.equations = GroupEquations(len(group.bodies), self.pairs, members, size)
+        self.equations = GroupEquations(len(group.bodies), self.pairs, members, size, middles)
 
     @classmethod
     def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self:
         """Return the solver of any group."""
-        return cls(index, group, size)
+        return cls(index, group, size, tuple(_middle(body, group, ends) for body in group.bodies))
 
     def close(self, block: Block, mode: Number) -> None:
         """Correct a state, add the derivatives, and the group's links to what is known."""
@@ -93,6 +93,20 @@ class GeneralSolver(GroupSolver):
         numbers = [v for b in bodies for v in (b.z.c[0].real, b.z.c[0].imag, np.angle(b.u.c[0]))]
         states = np.where(found.closed[..., None], np.stack(np.broadcast_arrays(*numbers), axis=-1), np.nan)
         return Configurations.of_states(_once(np.moveaxis(states, 0, -2), size))
+
+
+def _middle(body: Body, group: Group, ends: Mapping[str, Ends]) -> complex:
+    """Return the point of a body in the midst of the pairs on its base. It is in the base's frame."""
+    base = body.links[0]
+    own = [
+        ends[pair.name][side].point
+        for pair in (*group.inner, *group.outer)
+        for side, name in enumerate(pair.members)
+        if name == base
+    ]
+    return (
+        complex(np.mean([np.mean(point.c[0] if isinstance(point, Series) else point) for point in own])) if own else 0j
+    )
 
 
 def known_configurations(group: Group, block: Block, size: float, most: int = MOST_BODIES) -> Configurations | None:

@@ -23,7 +23,7 @@ from compoundkin.base.newton import ChordStop, chord_newton, largest_of
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups.bars import Member, add, bars_of
+from compoundkin.kinematics.groups.bars import Column, Member, add, bars_of
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Poses
 from compoundkin.model.pairs.optional_answers import held_scales
@@ -50,16 +50,21 @@ class Solution(NamedTuple):
 class GroupEquations:
     """A group of `n` bodies joined and attached by `pairs`. `members` tells each pair's sides.
 
-    Its state (..., width) is x, y, theta of each body in `kept`: all that are no bars, or with ``bars=False`` all.
+    Its state (..., width) is x, y, theta of each body in `kept`, all that are no bars, or with ``bars=False`` all: its
+    angle, and where its point in `middles` is, or else its origin. An origin far away makes every turn a long way.
     """
 
     def __init__(
-        self, n: int, pairs: tuple[Pair, ...], members: tuple[tuple[Member, ...], ...], size: float, bars: bool = True
+        self,
+        n: int,
+        pairs: tuple[Pair, ...],
+        members: tuple[tuple[Member, ...], ...],
+        size: float,
+        middles: tuple[complex, ...] = (),
+        bars: bool = True,
     ) -> None:
-        self.n = n
-        self.pairs = pairs
-        self.members = members
-        self.size = size
+        self.n, self.pairs, self.members, self.size = n, pairs, members, size
+        self.middles = middles or (0j,) * n
         self.bars = bars_of(n, pairs, members) if bars else ()
         left_out = {bar.body for bar in self.bars}
         self.kept = tuple(k for k in range(n) if k not in left_out)
@@ -78,8 +83,8 @@ class GroupEquations:
 
     def state(self, bodies: list[Pose]) -> Number:
         """Return the state of all bodies' poses, at their leading coefficients."""
-        kept = [bodies[k] for k in self.kept]
-        parts = [v for b in kept for v in (b.z.c[0].real, b.z.c[0].imag, b.angle.c[0])]
+        spots = {k: bodies[k].at(self.middles[k]).c[0] for k in self.kept}
+        parts = [v for k in self.kept for v in (spots[k].real, spots[k].imag, bodies[k].angle.c[0])]
         return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
     def newton(self, state: Number, block: Block, steps: int = STEPS, longest: float = np.inf) -> Solution:
@@ -135,23 +140,27 @@ class GroupEquations:
 
     def _next(self, kept: Mapping[int, Pose], inverse: Inverse, block: Block, k: int) -> list[Number]:
         """Return the k-th coefficients of the state, from poses known to the one before."""
-        trial = {j: _turned((*b.z.c, 0j), (*b.angle.c, np.zeros_like(b.angle.c[0]))) for j, b in kept.items()}
+        trial = {j: self._turned(j, b, (0j, 0.0)) for j, b in kept.items()}
         return inverse.times([-r for r in self._residual(trial, block, k)])
 
     def _grown(self, kept: Mapping[int, Pose], step: list[Number]) -> dict[int, Pose]:
         """Return the poses with one more coefficient."""
         return {
-            j: _turned((*b.z.c, step[3 * i] + 1j * step[3 * i + 1]), (*b.angle.c, step[3 * i + 2]))
+            j: self._turned(j, b, (step[3 * i] + 1j * step[3 * i + 1], step[3 * i + 2]))
             for i, (j, b) in enumerate(kept.items())
         }
+
+    def _turned(self, body: int, pose: Pose, more: tuple[Number, Number]) -> Pose:
+        """Return the pose of a body with one more coefficient of its middle and its angle."""
+        angle = Series((*pose.angle.c, more[1] + np.zeros_like(pose.angle.c[0])))
+        return _about(Series((*pose.at(self.middles[body]).c, more[0])), angle, self.middles[body])
 
     def _kept_poses(self, values: list[Number]) -> dict[int, Pose]:
         """Return the poses of the kept bodies, of order 0, from the numbers of a state."""
         found = {}
         for i, body in enumerate(self.kept):
             x, y, theta = values[3 * i : 3 * i + 3]
-            angle = constant(theta)
-            found[body] = Pose(constant(joined(x, y)), angle.turn(), angle)
+            found[body] = _about(constant(joined(x, y)), constant(theta), self.middles[body])
         return found
 
     def _residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> list[Number]:
@@ -165,14 +174,14 @@ class GroupEquations:
 
     def _rows(self, bodies: Mapping[int, Pose], block: Block) -> list[Row]:
         """Return the Jacobian of all equations by the state."""
-        first = {body: 3 * i for i, body in enumerate(self.kept)}
+        first = {body: Column(3 * i, bodies[body].at(self.middles[body]).c[0]) for i, body in enumerate(self.kept)}
         rows = [bar.row(first, bodies, block) for bar in self.bars]
         for number in self.others:
             rows += self._pair_rows(number, first, bodies, block)
         return rows
 
     def _pair_rows(
-        self, number: int, first: Mapping[int, int], bodies: Mapping[int, Pose], block: Block
+        self, number: int, first: Mapping[int, Column], bodies: Mapping[int, Pose], block: Block
     ) -> Iterator[Row]:
         pair = self.pairs[number]
         poses = self._links(number, bodies, block, 0)
@@ -182,10 +191,10 @@ class GroupEquations:
             for side, member in enumerate(self.members[number]):
                 if member.body is not None:
                     x, y, theta = (table[..., r, 3 * side + j] * length for j in range(3))
-                    arm = poses[side].z.c[0] - bodies[member.body].z.c[0]
+                    start, spot = first[member.body]
+                    arm = poses[side].z.c[0] - spot
                     # derivatives by a link's x, y, theta as derivatives by those of the body it is fixed in
-                    turn = theta if poses[side] is bodies[member.body] else theta + y * arm.real - x * arm.imag
-                    add(row, first[member.body], (x, y, turn))
+                    add(row, start, (x, y, theta + y * arm.real - x * arm.imag))
             yield row
 
     def _lengths(self, pair: Pair) -> Iterator[float]:
@@ -205,7 +214,7 @@ class GroupEquations:
         return good
 
 
-def _turned(z: tuple[Number, ...], theta: tuple[Number, ...]) -> Pose:
-    """Return the pose of an origin and an angle."""
-    angle = Series(theta)
-    return Pose(Series(z), angle.turn(), angle)
+def _about(spot: Series, angle: Series, middle: complex) -> Pose:
+    """Return the pose of a body at an angle with its point `middle` at a spot."""
+    u = angle.turn()
+    return Pose(spot if middle == 0 else spot - u * middle, u, angle)
