@@ -5,7 +5,8 @@ Groups with higher pairs, and those of very many bodies, are searched from rando
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -14,12 +15,12 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import column, first_of
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.default_modes import regularity
 from compoundkin.kinematics.groups import GroupSolver, equations_of
-from compoundkin.kinematics.groups.general import bodies_at, known_configurations
+from compoundkin.kinematics.groups.general import bodies_at, known_configurations, surroundings
 from compoundkin.kinematics.solving_order import SolvingOrder, residual
-from compoundkin.model.elements import FRAME
-from compoundkin.model.geometry import fitted_pose
+from compoundkin.model.drawn_poses import told_poses
 
 # Random starts for a group that is not drawn completely; those after the first closed one only where a
 # drawing can tell the better of two.
@@ -33,45 +34,64 @@ LONGEST = 0.3
 # Up to so many bodies all configurations are found in some milliseconds.
 MOST_BODIES = 6
 
+# What the orientation of a link of one drawn point counts (a radian by so many squared sizes): it decides where points
+# are where they are drawn in either mode, and nothing else.
+TURNED = 1e-6
+# Squared distances that differ by less than this part of them, or of the squared size, are rounding.
+TIED = 1e-9, 1e-24
+
 Letters = list[tuple[str, str]]
 
 
-def shown(solving_order: SolvingOrder, solver: GroupSolver, sketch: Mapping[str, Number]) -> Letters:
-    """Return the letters a sketch shows on a group's links, with their links."""
+def letters_shown(solving_order: SolvingOrder, solver: GroupSolver, shown: Shown) -> Letters:
+    """Return the letters that are shown on a group's links, with their links."""
     links = solving_order.structure.mechanism.links
-    return [(link, letter) for link in solver.group.links for letter in links[link].points if letter in sketch]
+    return [(link, letter) for link in solver.group.links for letter in links[link].points if letter in shown.points]
 
 
-def distance(solving_order: SolvingOrder, letters: Letters, sketch: Mapping[str, Number], block: Block) -> Number:
-    """Return the summed squared distances of a group's points from where they are drawn."""
+def distance(solving_order: SolvingOrder, letters: Letters, shown: Shown, block: Block) -> Number:
+    """Return the summed squared distances of a group's points from where they are shown.
+
+    Where only one point of a link is shown, but its orientation is told, that counts a little too.
+    """
     points = solving_order.structure.mechanism.geometry.points
     total: Number = 0.0
     for link, letter in letters:
-        gap = block.world[link].at(first_of(points[link][letter])).c[0] - first_of(sketch[letter])
+        gap = block.world[link].at(first_of(points[link][letter])).c[0] - first_of(shown.points[letter])
         total = total + np.abs(gap) ** 2
+    for link, count in Counter(link for link, _ in letters).items():
+        if count == 1 and link in shown.poses:
+            gap = block.world[link].u.c[0] - column(shown.poses[link]).u.c[0]
+            total = total + TURNED * (solving_order.size * np.abs(gap)) ** 2
     return total
 
 
 def nearest_sign(
-    solving_order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number]
-) -> Number:
-    """Return the sign of a dyad that is nearest to a sketch. It is a number, or an array (designs, 1).
+    solving_order: SolvingOrder, solver: GroupSolver, block: Block, shown: Shown, default: Callable[[], Number]
+) -> tuple[Number, bool]:
+    """Return the sign of a dyad that is nearest to what is shown, and if that tells.
 
-    Where it closes redundant pairs, these choose.
+    It is a number, or an array (designs, 1); the default one where both are alike. Where the dyad closes redundant
+    pairs, these choose.
     """
-    letters, closing, cost = shown(solving_order, solver, sketch), solving_order.closing(solver), []
+    letters, closing, cost = letters_shown(solving_order, solver, shown), solving_order.closing(solver), []
     for sign in (1, -1):
         trial = block.copy()
         solver.close(trial, sign)
         cost.append(
-            residual(closing, trial, solving_order.size) if closing else distance(solving_order, letters, sketch, trial)
+            residual(closing, trial, solving_order.size) if closing else distance(solving_order, letters, shown, trial)
         )
+    rounding = 0.0 if closing else TIED[1] * solving_order.size**2
+    tied = np.abs(cost[1] - cost[0]) <= TIED[0] * np.maximum(*cost) + rounding
     best = np.where(cost[1] < cost[0], -1.0, 1.0)
-    return float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
+    if np.any(tied) and not closing:
+        best = np.where(tied, default(), best)
+    chosen = float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
+    return chosen, bool(closing) or not np.all(tied)
 
 
 def first_state(
-    solving_order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number], number: int | None
+    solving_order: SolvingOrder, solver: GroupSolver, block: Block, shown: Shown, number: int | None
 ) -> tuple[Number, str]:
     """Find a closed state of a group at a single pose, and its chooser.
 
@@ -82,15 +102,15 @@ def first_state(
     """
     if number is not None:
         return _numbered(solver, block, number), "number"
-    search = _ClosedStates(solving_order, solver, block, sketch)
-    letters, designs, count = shown(solving_order, solver, sketch), block.shape[0], 0
+    letters, designs, count = letters_shown(solving_order, solver, shown), block.shape[0], 0
+    search = _ClosedStates(solving_order, solver, block, shown.points, drawn=bool(letters))
     best, least = np.full((designs, 1, search.equations.width), np.nan), np.full((designs, 1), np.inf)
     for batch in search.batches():
         found = search.equations.newton(batch, block, STEPS, LONGEST)
         trial = block.copy()
         solver.close(trial, found.state)
         count += 1 if designs > 1 else len(batch)
-        cost = distance(solving_order, letters, sketch, trial) if letters else -regularity(solver, found.state, trial)
+        cost = distance(solving_order, letters, shown, trial) if letters else -regularity(solver, found.state, trial)
         state, cost = found.state, np.where(found.closed, cost, np.inf)
         if designs == 1:
             first = int(np.argmin(cost))
@@ -132,10 +152,9 @@ class _ClosedStates:
     """Where a closed state is looked for; `complete` where all bodies are drawn."""
 
     def __init__(
-        self, solving_order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number]
+        self, order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number], drawn: bool
     ) -> None:
-        self.solving_order, self.solver, self.block, self.sketch = solving_order, solver, block, sketch
-        self.drawn = bool(shown(solving_order, solver, sketch))
+        self.solving_order, self.solver, self.block, self.sketch, self.drawn = order, solver, block, sketch, drawn
         self.equations = equations_of(solver)
         self.guesses = self._guesses()
         self.complete = all(self.guesses[k] is not None for k in self.equations.kept)
@@ -164,36 +183,57 @@ class _ClosedStates:
             yield from starts
 
     def _guesses(self) -> list[Pose | None]:
-        """Return the poses of the group's bodies as far as drawn points and points known already show them."""
-        points = self.solving_order.structure.mechanism.geometry.points
-        seen = {
-            k: self.block.world[n].at(first_of(p)).c[0] for n in self.solver.group.uses for k, p in points[n].items()
-        }
+        """Return the poses of the group's bodies as far as the drawing and what is known already show them."""
+        group, block = self.solver.group, self.block
+        told = told_poses(
+            {link: self._points(link) for link in (*group.uses, *group.links)},
+            ((pair, block.ends[pair.name]) for pair in (*group.inner, *group.outer)),
+            {k: first_of(p) for k, p in self.sketch.items()},
+            {link: block.world[link].trimmed(0) for link in group.uses},
+        )
+        return [self._told(body.links, told) for body in group.bodies]
+
+    def _told(self, links: tuple[str, ...], told: Mapping[str, Pose]) -> Pose | None:
+        """Return the pose of a composite link's base, from the first of its links of which the pose is told."""
+        link = next((link for link in links if link in told), None)
+        if link is None:
+            return None
+        local = self.block.local.get(link)
+        pose = told[link] if local is None else told[link].compose(local.trimmed(0).inverse())
+        drawn = self.solving_order.structure.mechanism.drawn_poses.get(links[0])
+        # pairs that count turns take the drawn angle, which at half a turn may have either sign
+        return pose if drawn is None or pose.theta is not None else pose.counted(column(drawn).angle.c[0])
+
+    def _points(self, link: str) -> dict[str, Number]:
+        points = self.solving_order.structure.mechanism.geometry.points[link]
+        return {letter: first_of(point) for letter, point in points.items()}
+
+    def _held(self) -> list[tuple[Number, Number] | None]:
+        """Return for each body a point that is drawn or known, in its own frame and where it is; or None."""
+        uses = self.solver.group.uses
+        seen = {k: self.block.world[n].at(p).c[0] for n in uses for k, p in self._points(n).items()}
         seen.update({k: first_of(p) for k, p in self.sketch.items()})
-        drawn = self.solving_order.structure.mechanism.geometry.drawn
-        found = []
-        for base in (body.links[0] for body in self.solver.group.bodies):
-            pose = fitted_pose({k: first_of(p) for k, p in points[base].items()}, seen)
-            # pairs that count turns take the drawn angle, which at half a turn may have either sign
-            found.append(pose.counted(column(drawn[base]).angle.c[0]) if pose and base in drawn else pose)
-        return found
+        bases = (self._points(body.links[0]) for body in self.solver.group.bodies)
+        return [next(((p, seen[k]) for k, p in points.items() if k in seen), None) for points in bases]
 
     def _starts(self) -> Iterator[Number]:
-        """Yield random states around the frame, the bodies that are shown where they are shown.
+        """Yield random states around where the group is attached, what is shown where it is shown.
 
         Newton may not get from what is shown to any closed state, so that later states are wholly random.
         """
-        held = 1 if self.complete else COMPARED
+        fixed = 1 if self.complete else COMPARED
         rng = np.random.default_rng(self.equations.n)
-        frame = list(self.solving_order.structure.mechanism.geometry.points[FRAME].values())
-        centre = complex(np.mean([np.mean(p) for p in frame]))
+        centre, reach = surroundings(self.equations, self.block)
+        held, middles = self._held(), self.equations.middles
         for number in range(STARTS):
+            # far guides lead beyond the places where the group is attached
+            wide = reach if number % 2 else np.maximum(reach, self.equations.size)
             bodies = []
-            for guess in self.guesses:
-                spot = centre + complex(*rng.standard_normal(2)) * self.solving_order.size / 2.0
-                angle = rng.uniform(-np.pi, np.pi)
-                random = Pose.of(np.full((1, 1), spot), np.full((1, 1), np.exp(1j * angle)))
-                bodies.append(random if guess is None or number >= held else column(guess))
+            for guess, pin, middle in zip(self.guesses, held, middles, strict=True):
+                spot = centre + complex(*rng.standard_normal(2)) * wide / 2.0
+                u = np.full((1, 1), np.exp(1j * rng.uniform(-np.pi, np.pi)))
+                point, place = (middle, spot) if pin is None or number >= fixed else pin
+                bodies.append(Pose.of(place - u * point, u) if guess is None or number >= fixed else column(guess))
             state = self.equations.state(bodies)
             yield state.reshape((1,) * (3 - state.ndim) + state.shape)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.branch import Begin, TrackedBranch
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.default_modes import open_sign
-from compoundkin.kinematics.first_pose import first_state, nearest_sign, shown
+from compoundkin.kinematics.first_pose import first_state, letters_shown, nearest_sign
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
 from compoundkin.kinematics.group_march import GroupPath
 from compoundkin.kinematics.group_paths import track
@@ -172,7 +173,7 @@ class _First:
             tracker.signs[k], tracker.chosen_by[k] = self._sign(block, solver)
             return tracker.signs[k]
         number = tracker.fixed.get(k)
-        state, by = first_state(tracker.solving_order, solver, block, tracker.shown.points, number)
+        state, by = first_state(tracker.solving_order, solver, block, tracker.shown, number)
         tracker.chosen_by[k] = tracker.shown.source if by == "drawing" else by
         tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, state)
         return state
@@ -196,12 +197,14 @@ class _First:
         tracker, solving_order = self.tracker, self.tracker.solving_order
         if solver.index in tracker.fixed or solver.modes == 1:
             return tracker.fixed.get(solver.index, 1), "sign" if solver.index in tracker.fixed else "only one"
-        letters = shown(solving_order, solver, tracker.shown.points)
+        letters = letters_shown(solving_order, solver, tracker.shown)
         closing = solving_order.closing(solver)
         if not letters and not closing:
             return self._default(block, solver), "default"
-        chosen = nearest_sign(solving_order, solver, block, tracker.shown.points)
-        return chosen, "redundant" if closing else tracker.shown.source
+        default = partial(self._default, block, solver)
+        chosen, is_told = nearest_sign(solving_order, solver, block, tracker.shown, default)
+        source = "redundant" if closing else tracker.shown.source
+        return chosen, source if is_told else "default"
 
     def _default(self, block: Block, solver: GroupSolver) -> Number:
         """Return the sign that a dyad has where nothing chooses."""

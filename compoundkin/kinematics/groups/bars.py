@@ -30,7 +30,7 @@ class Member:
         return bodies[self.body] if local is None else bodies[self.body].compose(local.trimmed(k))
 
 
-class Column(NamedTuple):
+class BodyColumns(NamedTuple):
     """Where the x, y, theta of a body begin in a state, and the place about which it turns."""
 
     start: int
@@ -76,7 +76,7 @@ class Bar:
         gap = (two - one).abs2() - Series(length2.c[: k + 1])
         return gap.c[k] * (0.5 / np.sqrt(length2.c[0])) if len(gap.c) > k else 0.0
 
-    def row(self, first: Mapping[int, Column], bodies: Mapping[int, Pose], block: Block) -> Row:
+    def row(self, first: Mapping[int, BodyColumns], bodies: Mapping[int, Pose], block: Block) -> Row:
         """Return the derivatives by the state; `first` are the columns of the bodies."""
         (_, one), (_, two) = ends = tuple(pin.at_other(bodies, block, 0) for pin in self.pins)
         along = (two - one).c[0] / np.sqrt(self._length2(block).c[0])

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import combinations
 from typing import ClassVar, Self
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.series import Number, as_series, constant
 from compoundkin.kinematics.assembly import all_configurations, from_group
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations, state_distance
@@ -77,17 +78,17 @@ class GeneralSolver(GroupSolver):
         return f"{limit}, or where {' or '.join(open_)} at an end" if open_ else limit
 
     def _searched(self, block: Block) -> Configurations:
-        """Return what Newton finds from random states around the origins of what the group is attached to."""
-        n, size = self.equations.n, self.equations.size
-        rng = np.random.default_rng(n)
-        around = np.broadcast_arrays(*(block.world[link].z.c[0] for link in self.group.uses))
+        """Return what Newton finds from random states around the places where the group is attached."""
+        n, size = len(self.equations.kept), self.equations.size
+        rng = np.random.default_rng(self.equations.n)
+        centre, reach = surroundings(self.equations, block)
         shape = block.extent(self.group.uses)
         single = [1] * len(shape)
         spots = rng.standard_normal((STARTS, n)) + 1j * rng.standard_normal((STARTS, n))
-        spots = np.broadcast_to(np.mean(around, axis=0), shape) + size / 2.0 * spots.reshape(STARTS, n, *single)
+        spots = np.broadcast_to(centre, shape) + reach / 2.0 * spots.reshape(STARTS, n, *single)
         turns = rng.uniform(-np.pi, np.pi, (STARTS, n)).reshape(STARTS, n, *single)
         start = [v for k in range(n) for v in np.broadcast_arrays(spots[:, k].real, spots[:, k].imag, turns[:, k])]
-        known = self.equations.state(bodies_at(np.stack(start, axis=-1)))
+        known = np.stack(start, axis=-1)
         found = self.equations.newton(known, block, steps=STEPS)
         bodies = self.equations.series(found.state, block, 0)
         numbers = [v for b in bodies for v in (b.z.c[0].real, b.z.c[0].imag, np.angle(b.u.c[0]))]
@@ -95,18 +96,34 @@ class GeneralSolver(GroupSolver):
         return Configurations.of_states(_once(np.moveaxis(states, 0, -2), size))
 
 
+def surroundings(equations: GroupEquations, block: Block) -> tuple[Number, Number]:
+    """Return the midst of the places where a group is attached; and a length, its reach.
+
+    The reach is how far these places are from it, or the longest distance of two pairs on a link. It does not depend
+    on where the frame has its origin or other links have their points.
+    """
+    attached: list[Number] = []
+    on: dict[str, list[Number]] = {}
+    for pair, members in zip(equations.pairs, equations.members, strict=True):
+        for end, member in zip(block.ends[pair.name], members, strict=True):
+            if member.body is None:
+                attached.append(block.world[member.link].at(end.point).c[0])
+            else:
+                on.setdefault(member.link, []).append(as_series(end.point).c[0])
+    centre = sum(attached) / max(len(attached), 1)
+    spans = [np.abs(one - other) for own in on.values() for one, other in combinations(own, 2)]
+    reach = 0.0
+    for span in (*spans, *(np.abs(place - centre) for place in attached)):
+        reach = np.maximum(reach, span)
+    return centre, np.where(reach > 0.0, reach, equations.size)
+
+
 def _middle(body: Body, group: Group, ends: Mapping[str, Ends]) -> complex:
     """Return the point of a body in the midst of the pairs on its base. It is in the base's frame."""
-    base = body.links[0]
-    own = [
-        ends[pair.name][side].point
-        for pair in (*group.inner, *group.outer)
-        for side, name in enumerate(pair.members)
-        if name == base
-    ]
-    return (
-        complex(np.mean([np.mean(point.c[0] if isinstance(point, Series) else point) for point in own])) if own else 0j
-    )
+    pairs = (*group.inner, *group.outer)
+    sides = [(pair, side) for pair in pairs for side, name in enumerate(pair.members) if name == body.links[0]]
+    own = [np.mean(as_series(ends[pair.name][side].point).c[0]) for pair, side in sides]
+    return complex(np.mean(own)) if own else 0j
 
 
 def known_configurations(group: Group, block: Block, size: float, most: int = MOST_BODIES) -> Configurations | None:

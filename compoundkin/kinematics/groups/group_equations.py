@@ -23,7 +23,7 @@ from compoundkin.base.newton import ChordStop, chord_newton, largest_of
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.groups.bars import Column, Member, add, bars_of
+from compoundkin.kinematics.groups.bars import BodyColumns, Member, add, bars_of
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Poses
 from compoundkin.model.pairs.optional_answers import held_scales
@@ -174,14 +174,14 @@ class GroupEquations:
 
     def _rows(self, bodies: Mapping[int, Pose], block: Block) -> list[Row]:
         """Return the Jacobian of all equations by the state."""
-        first = {body: Column(3 * i, bodies[body].at(self.middles[body]).c[0]) for i, body in enumerate(self.kept)}
+        first = {body: BodyColumns(3 * i, bodies[body].at(self.middles[body]).c[0]) for i, body in enumerate(self.kept)}
         rows = [bar.row(first, bodies, block) for bar in self.bars]
         for number in self.others:
             rows += self._pair_rows(number, first, bodies, block)
         return rows
 
     def _pair_rows(
-        self, number: int, first: Mapping[int, Column], bodies: Mapping[int, Pose], block: Block
+        self, number: int, first: Mapping[int, BodyColumns], bodies: Mapping[int, Pose], block: Block
     ) -> Iterator[Row]:
         pair = self.pairs[number]
         poses = self._links(number, bodies, block, 0)
