@@ -139,3 +139,24 @@ def test_a_coupler_that_whirls_round_is_counted_at_any_grid(near: float, poses: 
     assert abs(turned["bar"] - rounds) < 1e-9
     # by Willis's equation: (1 - c) * 30 = -(w - c) * 20 for a turn of the crank
     assert abs(turned["wheel"] - (rounds - 1.5 * (1.0 - rounds))) < 1e-9
+
+
+@pytest.mark.parametrize("offset", [0.0, 20.0, 25.0, 50.0, 1e3, 1e4])
+def test_a_far_origin_costs_nothing(offset: float) -> None:
+    """A wheel whose only point is far from its link's origin rolls as it does with the origin there."""
+    mechanism = ck.Mechanism(
+        "far origin",
+        ck.link("frame", A=0),
+        ck.link("crank", A=0, B=2),
+        ck.link("rod", B=0, M=6),
+        ck.link("wheel", M=(0, offset)),
+        ck.roll("wheel", on="frame", through="A", at="M", radius=1),
+        ck.drive("crank"),
+    )
+    motion = ck.solve(mechanism, order=0)
+    assert motion.assembled.all()
+    x, angle = motion.points["M"].position.real, motion.drives["crank"].value
+    expected = 2.0 * np.cos(angle) + np.sign(x[0]) * np.sqrt(36.0 - (1.0 - 2.0 * np.sin(angle)) ** 2)
+    assert np.max(np.abs(x - expected)) < 1e-9
+    assert np.max(np.abs(motion.points["M"].position.imag - 1.0)) < 1e-9
+    assert np.max(np.abs(motion.links["wheel"].angle + x)) < 1e-9
