@@ -31,7 +31,7 @@ class Member:
 
 
 class BodyColumns(NamedTuple):
-    """Where the x, y, theta of a body begin in a state, and the place about which it turns."""
+    """Where a body's x, y, theta begin in a state, and the place about which it turns."""
 
     start: int
     spot: Number

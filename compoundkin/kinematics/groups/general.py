@@ -39,7 +39,7 @@ class GeneralSolver(GroupSolver):
     modes: ClassVar[int] = 0
     equations: GroupEquations
 
-    def __init__(self, index: int, group: Group, size: float, middles: tuple[complex, ...]) -> None:
+    def __init__(self, index: int, group: Group, size: float, middles: tuple[complex, ...] = ()) -> None:
         super().__init__(index, group)
         where = {link: k for k, body in enumerate(group.bodies) for link in body.links}
         self.pairs = (*group.inner, *group.outer)
@@ -97,7 +97,7 @@ class GeneralSolver(GroupSolver):
 
 
 def surroundings(equations: GroupEquations, block: Block) -> tuple[Number, Number]:
-    """Return the midst of the places where a group is attached; and a length, its reach.
+    """Return the midst of the places where a group is attached, and its reach.
 
     The reach is how far these places are from it, or the longest distance of two pairs on a link. It does not depend
     on where the frame has its origin or other links have their points.
