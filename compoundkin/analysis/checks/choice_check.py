@@ -13,7 +13,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block, places
-from compoundkin.kinematics.first_pose import distance, shown
+from compoundkin.kinematics.first_pose import distance, letters_shown
 from compoundkin.kinematics.groups import GroupSolver
 
 # A drawing chooses by what it shows: of two configurations whose distances from it (parts of the size) differ by less
@@ -56,13 +56,13 @@ def _farther(motion: Motion, drawn: list[int]) -> dict[str, Number]:
 
 def _excess(motion: Motion, solver: GroupSolver, block: Block) -> Number:
     """Return by how much a group is farther from what is drawn than its nearest configuration, 0 for no clear case."""
-    points = motion.tracker.shown.points
-    letters = shown(motion.solving_order, solver, points)
+    shown = motion.tracker.shown
+    letters = letters_shown(motion.solving_order, solver, shown)
     if not letters:
         return np.zeros(block.shape)
 
     def away(trial: Block) -> Number:
-        return np.sqrt(distance(motion.solving_order, letters, points, trial)) / motion.size
+        return np.sqrt(distance(motion.solving_order, letters, shown, trial)) / motion.size
 
     own, every, nearest = away(block), solver.every(block), np.full(block.shape, np.inf)
     for j in range(every.real.shape[-1]):
