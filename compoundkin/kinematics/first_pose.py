@@ -60,10 +60,10 @@ def distance(solving_order: SolvingOrder, letters: Letters, shown: Shown, block:
 def nearest_sign(
     solving_order: SolvingOrder, solver: GroupSolver, block: Block, shown: Shown, default: Callable[[], Number]
 ) -> tuple[Number, bool]:
-    """Return the sign of a dyad nearest to what is shown, and if that tells.
+    """Return the sign of a dyad nearest to what is shown.
 
-    It is a number, or an array (designs, 1); the default one where both are alike. Where the dyad closes redundant
-    pairs, these choose.
+    It is a number, or an array (designs, 1), and the default one where both are alike; whether they are not is told
+    too. Where the dyad closes redundant pairs, these choose.
     """
     letters, closing, cost = letters_shown(solving_order, solver, shown), solving_order.closing(solver), []
     for sign in (1, -1):

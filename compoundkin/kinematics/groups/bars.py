@@ -31,7 +31,7 @@ class Member:
 
 
 class BodyColumns(NamedTuple):
-    """Where a body's x, y, theta begin in a state, and the place about which it turns."""
+    """Where a body's numbers begin in a state, and about which place it turns."""
 
     start: int
     spot: Number
