@@ -93,7 +93,7 @@ class Written:
 
     @cached_property
     def unplaced(self) -> dict[str, tuple[str, ...]]:
-        """The points that have neither coordinates nor a place in the drawing, by their links."""
+        """The points neither given nor drawn, by their links."""
         without = {
             name: tuple(letter for letter, p in item.points.items() if p is None and letter not in self.sketch)
             for name, item in self.links.items()

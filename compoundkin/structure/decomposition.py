@@ -83,7 +83,7 @@ def _without_collection() -> Iterator[None]:
 
 
 def decomposed(mechanism: Mechanism, relaxation: Relaxation | None = None) -> Structure:
-    """Take a mechanism apart whatever its dimensions, part of some pairs left out if such are named."""
+    """Take a mechanism apart whatever its dimensions, some parts of pairs left out."""
     dropped = relaxation.dropped if relaxation else ()
     bodies = composites(mechanism)
     system = system_of(mechanism, bodies, dropped)
