@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from compoundkin.view.page import Page
     from compoundkin.view.report import Report
 
+# Under this name a command's context tells whether all of a report is to be printed.
+WHOLE = "compoundkin.whole"
 F = TypeVar("F", bound=Callable[..., Any])
 
 FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
@@ -62,13 +64,23 @@ def write_new(path: Path, content: bytes, force: bool) -> None:
 
 
 def report_options(command: F) -> F:
-    """Add the options --format and -o to a command that prints a report."""
+    """Add the options --format, -o and --whole to a command that prints a report."""
     here = "Write the report here instead of printing it."
     file = click.option("-o", "--to-file", "path", metavar="PATH", callback=_checked, help=here)
     told = "Text unless PATH ends in .md, .json or .html."
     # it is read first: a form that is given rules, whatever the suffix
     form = click.option("--format", "form", type=click.Choice(FORMATS), is_eager=True, help=told)
-    return form(file(command))
+    return form(file(whole_option(command)))
+
+
+def whole_option(command: F) -> F:
+    """Add the option --whole, which is kept in the context until a report is put."""
+    text = "Print all links and groups, where there are hundreds of them. Files have them all."
+    return click.option("--whole", is_flag=True, expose_value=False, callback=_kept, help=text)(command)
+
+
+def _kept(context: click.Context, param: click.Parameter, value: bool) -> None:
+    context.meta[WHOLE] = value
 
 
 def _checked(context: click.Context, _: click.Parameter, path: str | None) -> str | None:
@@ -81,7 +93,9 @@ def _checked(context: click.Context, _: click.Parameter, path: str | None) -> st
 def put_report(report: Report, form: str | None, path: str | None) -> None:
     """Print a report, or write it to a file whole or not at all."""
     if path is None:
-        put(report.text(width(), has_colour(sys.stdout)) if form is None or form == "text" else _written(report, form))
+        whole = click.get_current_context().meta.get(WHOLE, False)
+        is_text = form is None or form == "text"
+        put(report.text(width(), has_colour(sys.stdout), whole) if is_text else _written(report, form or ""))
         return
     from compoundkin.files.atomic import write_atomically
 
@@ -101,4 +115,6 @@ def made_page(report: Report) -> Page:
 def _written(report: Report, form: str) -> str:
     if form == "html":
         return made_page(report).html
-    return {"text": report.text, "markdown": report.markdown, "json": report.json}[form]()
+    if form == "text":
+        return report.text(whole=True)
+    return {"markdown": report.markdown, "json": report.json}[form]()

@@ -45,6 +45,10 @@ def _span(points: list[Number]) -> float:
     """Return the diagonal of the box around some points, over all designs."""
     if len(points) < 2:
         return 0.0
+    if all(isinstance(p, complex) for p in points):
+        # without arrays: a mechanism may have tens of thousands of links
+        across, up = [p.real for p in points], [p.imag for p in points]
+        return float(np.hypot(max(across) - min(across), max(up) - min(up)))
     x = [np.real(p) for p in points]
     y = [np.imag(p) for p in points]
     wide = max(float(np.max(v)) for v in x) - min(float(np.min(v)) for v in x)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from compoundkin.base.display import PrintsShort
@@ -90,6 +91,12 @@ class Alert:
     remedy: str = ""
 
 
+# Of more rows of a table or parts of a section than these, so many are shown where a report is read.
+MANY, SHOWN = 300, 100
+# No text of a cell or fact is longer (characters) there.
+LONGEST = 2000
+_MORE = "... and {:,} {} more, in the whole report."
+
 Block: TypeAlias = Paragraph | FormulaBlock | TableBlock | StepBlock | Alert
 
 
@@ -100,6 +107,45 @@ class Section(PrintsShort):
     key: str
     title: str
     blocks: tuple[Block, ...]
+
+
+def summarised(section: Section) -> Section:
+    """Return a section as it is read: of very many rows and steps the first ones, and how many more there are.
+
+    >>> rows = tuple((k,) for k in range(1000))
+    >>> summarised(Section("links", "Links", (TableBlock((Column("link"),), rows),))).blocks[-1].text
+    '... and 900 rows more, in the whole report.'
+    """
+    blocks = section.blocks[:SHOWN] if len(section.blocks) > MANY else section.blocks
+    more = [Paragraph(_MORE.format(len(section.blocks) - SHOWN, "parts"))] if len(blocks) < len(section.blocks) else []
+    return replace(section, blocks=(*(part for block in blocks for part in _shortened(block)), *more))
+
+
+def _shortened(block: Block) -> Iterator[Block]:
+    if isinstance(block, TableBlock):
+        rows = block.shown_rows
+        shown = rows[:SHOWN] if len(rows) > MANY else rows
+        yield replace(block, rows=tuple(tuple(map(_cell, row)) for row in shown), shown=None)
+        if len(shown) < len(rows):
+            yield Paragraph(_MORE.format(len(rows) - len(shown), "rows"))
+    elif isinstance(block, StepBlock):
+        yield StepBlock(_cut(block.title), tuple((term, _cut(fact)) for term, fact in block.facts))
+    elif isinstance(block, Paragraph):
+        yield Paragraph(_cut(block.text))
+    elif isinstance(block, Alert):
+        yield Alert(_cut(block.text), _cut(block.remedy))
+    else:
+        yield block
+
+
+def _cut(text: str) -> str:
+    """Return a text that is not too long to be read."""
+    end = max(text.rfind(",", 0, LONGEST), LONGEST // 2)
+    return text if len(text) <= LONGEST else f"{text[:end]} ..."
+
+
+def _cell(cell: Cell) -> Cell:
+    return _cut(cell) if isinstance(cell, str) else cell
 
 
 @dataclass(frozen=True)

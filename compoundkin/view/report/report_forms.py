@@ -24,6 +24,7 @@ from compoundkin.view.report.report_data import (
     Section,
     StepBlock,
     TableBlock,
+    summarised,
 )
 from compoundkin.view.report.wording import written
 
@@ -177,12 +178,15 @@ class Report(Shows, Savable):
         """Return the section of a key; None where the report has none."""
         return next((section for section in self.sections if section.key == key), None)
 
-    def text(self, width: int = 80, colour: bool = False) -> str:
-        """Write it as text, no line longer than `width`; in colour for a terminal."""
+    def text(self, width: int = 80, colour: bool = False, whole: bool = False) -> str:
+        """Write it as text, no line longer than `width`; in colour for a terminal.
+
+        Of hundreds of links or groups the first ones are written, all if it is to be `whole`.
+        """
         # rich costs as much to load as all of compoundkin, and only the text needs it
         from compoundkin.view.report.terminal_text import text
 
-        return text(self.title, self.sections, width, colour)
+        return text(self.title, self.sections if whole else tuple(map(summarised, self.sections)), width, colour)
 
     def markdown(self) -> str:
         """Write it as Markdown, for GitHub and the like."""
@@ -204,8 +208,9 @@ class Report(Shows, Savable):
 
     def content(self, form: str) -> bytes:
         """Return the bytes of a file in the form "text", "markdown", "json" or "html"."""
-        write = {"text": self.text, "markdown": self.markdown, "json": self.json, "html": self.html}[form]
-        return write().encode("utf-8")
+        if form == "text":
+            return self.text(whole=True).encode("utf-8")
+        return {"markdown": self.markdown, "json": self.json, "html": self.html}[form]().encode("utf-8")
 
     def __repr__(self) -> str:
         return f"Report({self.title!r}: {', '.join(section.key for section in self.sections)})"
