@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 from math import prod
 from typing import Any
@@ -15,6 +15,7 @@ from compoundkin.base.bracketing import bisected
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.configurations.driver_range import reach_of
+from compoundkin.configurations.resting_curve import curve_at
 from compoundkin.configurations.segment_poses import drawn_angle
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
@@ -51,6 +52,7 @@ class AllModes:
     modes: dict[int, tuple[str, ...]] = field(default_factory=dict)
     possible: dict[int, int] = field(default_factory=dict)
     certified: dict[int, Number] = field(default_factory=dict)
+    is_lacking: bool = False  # a group has fewer than are possible: special dimensions, perhaps a curve of them
 
     @classmethod
     def of(cls, solving_order: SolvingOrder, given: Inputs) -> AllModes:
@@ -84,6 +86,7 @@ class AllModes:
             states = np.full((1, *states.shape[1:]), np.nan)
         self._branch(solver.index, tuple(str(n + 1) for n in range(len(states))), found.possible)
         self.certified[solver.index] = found.certified
+        self.is_lacking |= bool(np.any(found.count < found.possible))
         return equations_of(solver).state(bodies_at(states))
 
     def _branch(self, k: int, names: tuple[str, ...], possible: int) -> None:
@@ -156,8 +159,9 @@ def configurations(mechanism: Mechanism | Structure, values: Any = None) -> Conf
     These are radians or lengths; arrays; those of `solve` if left out.
 
     Groups of pins and slides give all their configurations; others those that a search finds, so that `certified` is
-    False. Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
-    NotAssembled where there is no configuration at all, naming the nearest driver value that has any.
+    False. `curve` tells which links move though drivers stand still, where dimensions are special. Raises NotDetermined
+    where the structure cannot be solved, InvalidInput for values that do not fit, NotAssembled where there is no
+    configuration at all, naming the nearest driver value that has any.
 
     >>> from compoundkin.model.elements import drive, link
     >>> four_bar = Mechanism(
@@ -172,9 +176,10 @@ def configurations(mechanism: Mechanism | Structure, values: Any = None) -> Conf
         given = inputs(solving_order, by_name(solving_order.structure.mechanism, values), None, None, None)
         found = AllModes.of(solving_order, given)
         real = found.real
-        if not real.any():
+        curve = curve_at(solving_order.structure, given) if found.is_lacking else None
+        if not real.any() and curve is None:
             raise NotAssembled(_nothing(solving_order, given))
-        return found.kept(real, given.shape)
+        return replace(found.kept(real, given.shape), curve=curve)
 
 
 def _nothing(solving_order: SolvingOrder, given: Inputs) -> Problem:

@@ -58,6 +58,20 @@ class Configuration(Shows):
         return f"Configuration({self.name!r} at {', '.join(f'{k} = {v:.6g}' for k, v in self.values.items())})"
 
 
+@dataclass(frozen=True, eq=False)
+class ConfigurationCurve(Shows):
+    """A curve of configurations: `links` move although all drivers stand still.
+
+    `through` is one of them; its name says nothing, for the groups of those on a curve have no modes.
+    """
+
+    links: tuple[str, ...]
+    through: Configuration
+
+    def __repr__(self) -> str:
+        return f"ConfigurationCurve({', '.join(self.links)})"
+
+
 def label(structure: Structure, k: int) -> str:
     """Return the name of group `k` in a configuration's. It has its kind and its first link."""
     group = structure.groups[k]

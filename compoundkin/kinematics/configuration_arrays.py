@@ -13,7 +13,14 @@ from compoundkin.base.arrays import Number, Vectors, wrapped
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
-from compoundkin.kinematics.configuration import Configuration, dimensions_at, named, numbers_at, placed_at
+from compoundkin.kinematics.configuration import (
+    Configuration,
+    ConfigurationCurve,
+    dimensions_at,
+    named,
+    numbers_at,
+    placed_at,
+)
 from compoundkin.structure.kinematic_structure import Structure
 
 
@@ -26,7 +33,8 @@ class Configurations(Shows):
     complex numbers, of a mechanism the real ones. `possible` is their number over the complex numbers for generic
     dimensions (0 unknown). Where they are `certified` none is missing: closed forms, or as many were found as theory
     knows. Those of a mechanism are kept where they are real somewhere; they have their driver `values`, the `modes` of
-    the groups of each, and the `margins` of the groups with signs.
+    the groups of each, and the `margins` of the groups with signs. Where a group has fewer than are possible, some may
+    be a `curve`, on which links move at the first driver values; those that are listed stand alone.
     """
 
     bodies: Mapping[Any, Pose]
@@ -38,6 +46,7 @@ class Configurations(Shows):
     values: Mapping[str, Number] = field(default_factory=dict)
     modes: tuple[Mapping[int, str], ...] = ()
     margins: Mapping[int, Number] = field(default_factory=dict)
+    curve: ConfigurationCurve | None = None
 
     @classmethod
     def of_closed_form(cls, bodies: Sequence[Pose], real: Number, shape: tuple[int, ...]) -> Configurations:
@@ -149,7 +158,7 @@ class Configurations(Shows):
 
     def __iter__(self) -> Iterator[Configuration]:
         """Return the real ones at the first driver value."""
-        first = self.real.reshape(-1, len(self))[0]
+        first = self.real.reshape(-1, len(self))[0] if len(self) else ()
         return (self.pick(k) for k in range(len(self)) if first[k])
 
     def _index(self, which: int | str) -> int:

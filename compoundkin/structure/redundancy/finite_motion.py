@@ -26,6 +26,10 @@ TRIED = 16
 # Gauss and Newton's steps after each: what is no motion is halved by every one, and need not be undone to the end.
 CORRECTIONS = 12
 SEED = 7
+# Random poses at which a motion with drivers at rest is looked for.
+STARTS = 40
+# Singular values of the drivers' and pairs' rows that are zero, at a pose that iteration leaves uncertain.
+RESTING = 1e-6
 # A motion that turns less than this (radians, while it shifts by the size) is a translation; and the point about which
 # a link turns is one of its own if it is not farther away than this part of the size.
 STRAIGHT = 1e-6
@@ -89,9 +93,37 @@ def _moved(equations: ConstraintEquations, state: Array, direction: Array) -> Ar
     return found.state if stays else None
 
 
-def _persisting(equations: ConstraintEquations, state: Array, free: Array) -> Array:
-    """Return the directions of what is free in which the mechanism really moves."""
-    moved = [corrected(equations, state + STEP * direction, steps=CORRECTIONS) for direction in free.T]
+def resting_motion(equations: ConstraintEquations, goal: Array, passive: int) -> FiniteMotion | None:
+    """Find a motion while the drivers stand still at `goal`. None where none is met; passive freedoms are none.
+
+    The search starts at the drawn pose, where all links are drawn, and at random ones.
+    """
+    for start in _random_states(equations):
+        found = corrected(equations, start, goal)
+        if not (found.is_closed and equations.is_properly_assembled(found.state)):
+            continue
+        rows = np.vstack([equations.jacobian(found.state)[0], equations.driving(found.state)])
+        free = null_space(rows, RESTING)
+        along = _persisting(equations, found.state, free, goal) if free.shape[1] > passive else free
+        if along.shape[1] > passive:
+            return FiniteMotion(found.state, along, free.shape[1])
+    return None
+
+
+def _random_states(equations: ConstraintEquations) -> Iterator[Array]:
+    """List the drawn pose, where all links are drawn, and random ones."""
+    drawn = equations.mechanism.geometry.drawn
+    if all(name in drawn for name in equations.links):
+        yield equations.state({name: drawn[name].entry((0, 0)) for name in equations.links})
+    rng = np.random.default_rng(SEED)
+    for _ in range(STARTS):
+        places = rng.standard_normal((len(equations.links), 2)) / 2.0
+        yield np.column_stack([places, rng.uniform(-np.pi, np.pi, len(places))]).ravel()
+
+
+def _persisting(equations: ConstraintEquations, state: Array, free: Array, goal: Array | None = None) -> Array:
+    """Return the directions of what is free in which the mechanism really moves. Drivers stand at `goal` if given."""
+    moved = [corrected(equations, state + STEP * direction, goal, CORRECTIONS) for direction in free.T]
     steps = [(one.state - state) / STEP for one in moved if one.is_closed]
     if not steps:
         return free[:, :0]

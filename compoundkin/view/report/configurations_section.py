@@ -27,6 +27,7 @@ TRIAD_MODES, TRIAD_BODIES = 6, 4
 # Angles below this (degrees) are rounding.
 FLOOR = 1e-9
 CHANGES = "Where two modes of a group meet and the motion goes on: it may change from one circuit to the other."
+CURVE = "At these dimensions there is a curve of configurations too: {} can move though no driver does."
 MISSING = "The numbers of configurations and of branches do not agree everywhere, so that a circuit may be missing."
 
 
@@ -51,7 +52,8 @@ def configurations_section(found: Configurations) -> Section:
     at = {name: float(first_entry(value)) for name, value in found.values.items()}
     angles = "The angles are those of the links from the frame's x axis."
     text = f"{_drivers(structure, at)}: {_count(found, len(ones))} {angles}"
-    return Section("configurations", "Configurations", (Paragraph(text), _table(columns, rows, keys=2)))
+    curve = [Paragraph(CURVE.format(listed(found.curve.links)))] if found.curve else []
+    return Section("configurations", "Configurations", (Paragraph(text), *curve, _table(columns, rows, keys=2)))
 
 
 def _count(found: Configurations, real: int) -> str:
