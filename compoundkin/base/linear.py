@@ -13,6 +13,11 @@ from compoundkin.base.series import Number
 Row: TypeAlias = dict[int, Number]
 
 
+# Up to so many unknowns each entry is an array over the batch; beyond, whole matrices are multiplied: the number of
+# calls would grow with the square of the unknowns.
+ONE_BY_ONE = 12
+
+
 class Inverse:
     """The inverse of a batch of matrices given by rows. It takes any number of right-hand sides.
 
@@ -28,11 +33,15 @@ class Inverse:
         else:
             matrix = stacked(rows, size)
             self.determinant = np.linalg.slogdet(matrix)[0]
-            inverse = inverted(matrix)
-            self._entries = [[inverse[..., i, j] for j in range(size)] for i in range(size)]
+            self._whole = inverted(matrix)
+            few = size if size <= ONE_BY_ONE else 0
+            self._entries = [[self._whole[..., i, j] for j in range(few)] for i in range(few)]
 
     def times(self, right: Sequence[Number]) -> list[Number]:
         """Return the solutions for one right-hand side, each unknown an array of its own."""
+        if self.size > ONE_BY_ONE:
+            together = np.stack(np.broadcast_arrays(*right), axis=-1)
+            return list(np.moveaxis((self._whole @ together[..., None])[..., 0], -1, 0))
         found = []
         for row in self._entries:
             total = row[0] * right[0]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from compoundkin.view.report import Report
 
 # Under this name a command's context tells whether all of a report is to be printed.
-WHOLE = "compoundkin.whole"
+WHOLE = "whole report"
 F = TypeVar("F", bound=Callable[..., Any])
 
 FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
@@ -74,7 +74,7 @@ def report_options(command: F) -> F:
 
 
 def whole_option(command: F) -> F:
-    """Add the option --whole, which is kept in the context until a report is put."""
+    """Add the option --whole. It is kept in the context until a report is put."""
     text = "Print all links and groups, where there are hundreds of them. Files have them all."
     return click.option("--whole", is_flag=True, expose_value=False, callback=_kept, help=text)(command)
 

@@ -52,7 +52,7 @@ class AllModes:
     modes: dict[int, tuple[str, ...]] = field(default_factory=dict)
     possible: dict[int, int] = field(default_factory=dict)
     certified: dict[int, Number] = field(default_factory=dict)
-    is_lacking: bool = False  # a group has fewer than are possible: special dimensions, perhaps a curve of them
+    is_lacking: bool = False  # of a group: dimensions are special, and there may be a curve
 
     @classmethod
     def of(cls, solving_order: SolvingOrder, given: Inputs) -> AllModes:
@@ -184,18 +184,15 @@ def configurations(mechanism: Mechanism | Structure, values: Any = None) -> Conf
 
 def _nothing(solving_order: SolvingOrder, given: Inputs) -> Problem:
     """Say why there is no configuration: where the nearest one is."""
-    found = [
-        (gap, name, value)
-        for name in given.drives
-        for gap, value in [_nearest(solving_order, given, name)]
-        if gap < np.inf
-    ]
+    nearest = [(*_nearest(solving_order, given, name), name) for name in given.drives]
+    found = [one for one in nearest if one[0] < np.inf]
+    what = "the mechanism cannot be assembled there"
     if not found:
-        return Problem("values", "the mechanism cannot be assembled there, nor at any other value of a single driver")
-    _, name, value = min(found)
+        return Problem("values", f"{what}, nor at any other value of a single driver")
+    _, value, name = min(found)
     is_angle = solving_order.structure.driven[name].pair.free_is_angle
     shown = f"{degrees(value):.6g} degrees" if is_angle else f"{value:.6g}"
-    return Problem("values", "the mechanism cannot be assembled there", f"the nearest value is {name} = {shown}")
+    return Problem("values", what, f"the nearest value is {name} = {shown}")
 
 
 def _nearest(solving_order: SolvingOrder, given: Inputs, name: str) -> tuple[float, float]:

@@ -32,8 +32,7 @@ from compoundkin.synthesis.driver_places import (
 
 # Each takes some milliseconds to decompose.
 MOST_CHOICES = 600
-# Choices by links: beyond this, comparing and decomposing them takes more than some seconds.
-MOST_WORK = 12000
+MOST_WORK = 12000  # choices by links: beyond this, comparing and decomposing them takes more than some seconds
 # A class II mechanism can be solved dyad by dyad.
 DYADIC = 2
 # Links of a loop whose name may depend on the driver: a slider-crank driven at the connecting rod is a hand pump.
@@ -96,7 +95,8 @@ def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None 
     classes = choices.frames(wanted) if work <= MOST_WORK else [(name, 1) for name in wanted]
     if len(classes) * choices.number > MOST_CHOICES or work > MOST_WORK:
         what = f"{len(classes) * choices.number} choices are too many"
-        raise InvalidInput(Problem("frames", what, f"name some frames; each gives {choices.number} choices"))
+        fewer = f"name some frames; each gives {choices.number} choices" if len(wanted) > 1 else "take a part of it"
+        raise InvalidInput(Problem("frames", what, fewer))
     return tuple(found for frame, count in classes for found in choices.of(frame, count))
 
 

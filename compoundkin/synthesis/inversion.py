@@ -153,12 +153,9 @@ def _with_axes(mechanism: Mechanism, link: Link) -> Link:
 
 def _seen_from(mechanism: Mechanism, link: str) -> dict[str, Number]:
     """Return where all points are in one pose, as seen from a link. None where nothing shows it."""
-    if mechanism.unplaced and not mechanism.sketch:
-        return {}
-    if not any(item.is_drawn for item in mechanism.links.values()):
-        points, pose = _assembled(mechanism), None
-        if points:
-            pose = _pose_of(mechanism, link)
+    if not mechanism.sketch or not any(item.is_drawn for item in mechanism.links.values()):
+        points = _assembled(mechanism)
+        pose = _pose_of(mechanism, link) if points else None
     else:
         points = {**_AXES, **mechanism.geometry.sketch}
         pose = mechanism.geometry.drawn.get(link)

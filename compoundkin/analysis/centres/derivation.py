@@ -37,9 +37,12 @@ from compoundkin.analysis.centres.derivation_steps import (
 from compoundkin.analysis.centres.known_centres import KnownCentres
 from compoundkin.analysis.centres.rate_sets import RateSets, driver_rate_sets
 from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import InvalidInput, Problem
 
 # Diagrams kept; each holds a few kilobytes.
 KEPT = 256
+# The derivation of more takes more than ten seconds, for its work grows with the fourth power.
+MOST_LINKS = 50
 # Each value adds one to the trial positions; the search grows by a factor of some ten with each.
 MOST_VALUES = 3
 
@@ -77,8 +80,11 @@ def derive(diagram: Diagram) -> Derivation:
     Rounds of repeated crossing until all is found; where that stalls, one centre by the drivers' rates or by
     trial, then on. Work grows with the fourth power of the number of links.
 
-    Raises NotDetermined where the diagram's motion is not given by its drivers.
+    Raises NotDetermined where the diagram's motion is not given by its drivers, InvalidInput above MOST_LINKS links.
     """
+    if (links := len(diagram.links)) > MOST_LINKS:
+        what = f"{links} links have {links * (links - 1) // 2:,} instant centres, too many to derive"
+        raise InvalidInput(Problem("links", what, f"take a part of the mechanism, of {MOST_LINKS} links at most"))
     centres = KnownCentres(diagram)
     rules: list[Rule] = list(_primary(centres))
     while centres.unknown:

@@ -93,17 +93,17 @@ class Inversion:
 
 
 @checked
-def chains(links: int, mobility: int = 1) -> tuple[Chain, ...]:
+def chains(links: int, mobility: int = 1, patient: bool = False) -> tuple[Chain, ...]:
     """Return all chains with so many links, in the order that numbers them.
 
-    Those of mobility 3 with a bridging pair too.
+    Those of mobility 3 with a bridging pair too. Raises InvalidInput for more than are made in some seconds.
 
     >>> [len(chains(links)) for links in (4, 6, 8, 10)]
     [1, 2, 16, 230]
     >>> len(chains(9, mobility=2)), len(chains(10, mobility=3))
     (40, 98)
     """
-    return _listed().get((links, mobility)) or _made(links, mobility)
+    return _listed().get((links, mobility)) or _made(links, mobility, patient)
 
 
 @checked
@@ -117,13 +117,13 @@ def trusses(links: int) -> tuple[Chain, ...]:
 
 
 @checked
-def inversions(links: int, mobility: int = 1) -> tuple[Inversion, ...]:
+def inversions(links: int, mobility: int = 1, patient: bool = False) -> tuple[Inversion, ...]:
     """Return all mechanisms that fixing one link of a chain gives, equivalent links once.
 
     >>> [len(inversions(links)) for links in (4, 6, 8, 10)]
     [1, 5, 71, 1834]
     """
-    return tuple(Inversion(chain, alike[0]) for chain in chains(links, mobility) for alike in chain.inversions)
+    return tuple(Inversion(chain, alike[0]) for chain in chains(links, mobility, patient) for alike in chain.inversions)
 
 
 @checked
@@ -206,8 +206,8 @@ def _listed() -> dict[tuple[int, int], tuple[Chain, ...]]:
 
 
 @cache
-def _made(links: int, mobility: int) -> tuple[Chain, ...]:
-    return chains_of(links, mobility, bridged=True)
+def _made(links: int, mobility: int, patient: bool) -> tuple[Chain, ...]:
+    return chains_of(links, mobility, bridged=True, patient=patient)
 
 
 @cache

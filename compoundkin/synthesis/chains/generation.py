@@ -24,20 +24,24 @@ import numpy as np
 import numpy.typing as npt
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.synthesis.chains.canonical_code import canonical
 from compoundkin.synthesis.chains.chain import Chain
 from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, Permutation, is_connected
+
+MOST_MADE = {0: 11, 1: 11, 2: 11, 3: 10}  # links, by mobility: what is made within some ten seconds
 
 Integers = npt.NDArray[np.int64]
 
 
 @checked
-def chains_of(links: int, mobility: int = 1, bridged: bool = False) -> tuple[Chain, ...]:
+def chains_of(links: int, mobility: int = 1, bridged: bool = False, patient: bool = False) -> tuple[Chain, ...]:
     """Return all connected chains of a mobility without loose links or rigid parts.
 
     For mobility 0 these are the Baranov trusses: rigid, but no part of them is. Fractionated chains, which
     there are from mobility 2 on, are among them; those with a pair that lies in no loop, which there are from
     mobility 3 on, if `bridged` says so. The order is that of the assortments, then of the codes.
+    Raises InvalidInput for so many links that they take more than some seconds, unless one is `patient`.
 
     >>> [len(chains_of(links)) for links in (4, 6, 8)]
     [1, 2, 16]
@@ -46,6 +50,9 @@ def chains_of(links: int, mobility: int = 1, bridged: bool = False) -> tuple[Cha
     >>> len(chains_of(8, mobility=3)), len(chains_of(8, mobility=3, bridged=True))
     (6, 7)
     """
+    if links > (most := MOST_MADE.get(mobility, min(MOST_MADE.values()))) and not patient:
+        what, remedy = f"all chains of {links} links take half a minute to hours", f"ask for {most}, or be patient=True"
+        raise InvalidInput(Problem("links", what, remedy))
     found: list[Chain] = []
     for degrees in assortments(links, mobility):
         if not degrees:
@@ -183,10 +190,7 @@ def _multigraphs(free: Sequence[int], untouched: Sequence[bool], looped: bool) -
 
 
 def _in_order(used: Sequence[int], free: Sequence[int], untouched: Sequence[bool]) -> bool:
-    """Return whether the first ones of links not yet distinguished are taken.
-
-    The others would be repetitions.
-    """
+    """Return whether the first ones of links not yet distinguished are taken. The others would be repetitions."""
     return all(
         used[k] >= used[k + 1]
         for k in range(len(used) - 1)

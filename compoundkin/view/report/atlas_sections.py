@@ -40,7 +40,7 @@ def atlas_report(
     _checked(links, mobility, with_groups)
     sections = []
     if with_inversions or not (with_trusses or with_groups):
-        sections.append(Section("chains", "", tuple(_chains(chains(links, mobility), links, mobility))))
+        sections.append(Section("chains", "", tuple(_chains(chains(links, mobility, patient=True), links, mobility))))
     if with_inversions:
         sections.append(Section("inversions", "Inversions", tuple(_inversions(links, mobility))))
     if with_trusses:
@@ -100,7 +100,7 @@ def _pairs(chain: Chain) -> str:
 
 
 def _inversions(links: int, mobility: int) -> Iterator[Block]:
-    found = inversions(links, mobility)
+    found = inversions(links, mobility, patient=True)
     yield Paragraph(f"{counted(len(found), 'inversion')}: links that symmetry makes alike are fixed once.")
     columns = Column("name"), Column("graph6"), Column("frame, link", style="each"), Column("its pairs", style="each")
     rows = tuple((chain_name(one.chain, one.frame), one.chain.graph6, one.frame, one.chain.degrees[one.frame])

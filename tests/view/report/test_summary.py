@@ -72,3 +72,8 @@ def test_the_links_are_numbered_once_for_all_loops(monkeypatch: pytest.MonkeyPat
     calls.clear()
     assert sum(1 for _ in graph.simple_loops(structure, limit=20)) == 20
     assert len(calls) == 1
+
+
+def test_the_centres_of_a_hundred_links_are_refused_with_a_reason() -> None:
+    with pytest.raises(ck.errors.InvalidInput, match="100 links have 4,950 instant centres, too many to derive"):
+        ck.draw(fan(49), kind="circle")
