@@ -110,7 +110,7 @@ class Section(PrintsShort):
 
 
 def summarised(section: Section) -> Section:
-    """Return a section with the first of very many rows and parts, the others counted.
+    """Return a section with the first of its very many rows and parts.
 
     >>> rows = tuple((k,) for k in range(1000))
     >>> summarised(Section("links", "Links", (TableBlock((Column("link"),), rows),))).blocks[-1].text
