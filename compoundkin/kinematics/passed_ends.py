@@ -20,6 +20,8 @@ from compoundkin.structure.kinematic_structure import Structure
 # An end is reached, not passed, within this part of the size (or radians): positions are right to a few units of
 # 1e-12, and gaps are found to 1e-9.
 AT_END = 1e-11
+# What is known before any group is solved.
+BEFORE = -1
 
 
 class PassedEnd(NamedTuple):
@@ -40,20 +42,19 @@ class GuideEnds(PrintsShort):
         self.size = size
         self.pairs = tuple(own for pair in structure.mechanism.written_pairs if (own := as_ended(pair)))
         self._groups = len(structure.groups)
-        self._after: dict[int | None, list[tuple[int, Ended]]] = {}
-        known = set(structure.ground.links)
-        for index, group in [(None, None), *enumerate(structure.groups)] if self.pairs else ():
-            known.update(group.links if group else ())
-            found = [(k, pair) for k, pair in enumerate(self.pairs) if known.issuperset(pair.members)]
-            placed = {k for some in self._after.values() for k, _ in some}
-            self._after[index] = [(k, pair) for k, pair in found if k not in placed]
+        # before all groups, or after the one by which the last of its links is known
+        self._after: dict[int, list[tuple[int, Ended]]] = {}
+        known = {link: index for index, group in enumerate(structure.groups) for link in group.links if self.pairs}
+        for k, pair in enumerate(self.pairs):
+            last = max(known.get(name, BEFORE) for name in pair.members)
+            self._after.setdefault(last, []).append((k, pair))
 
     def bounds(self, geometry: Geometry) -> dict[str, Ends]:
         """Return where guides begin and end, as numbers that go with the pairs' sides."""
         return {bounds_name(pair): tuple(End(value) for value in pair.bounds(geometry)) for pair in self.pairs}
 
-    def mask(self, block: Block, index: int | None) -> None:
-        """Note the poses beyond an end that is known after a group. None: before all of them."""
+    def mask(self, block: Block, index: int) -> None:
+        """Note the poses beyond an end that is known after a group, or BEFORE all."""
         for k, pair in self._after.get(index, ()):
             outside = self._margin(block, pair) < 0.0
             if np.any(outside):

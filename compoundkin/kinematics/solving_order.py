@@ -14,7 +14,7 @@ from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.limits import CLIPPED, LimitRule
-from compoundkin.kinematics.passed_ends import GuideEnds
+from compoundkin.kinematics.passed_ends import BEFORE, GuideEnds
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales
@@ -125,7 +125,7 @@ class Choice(Protocol):
 def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None = None) -> Block:
     """Assemble the groups one after another, up to one; return the block. Each is in the mode that is chosen."""
     guide_ends = solving_order.guide_ends
-    guide_ends.mask(block, None)
+    guide_ends.mask(block, BEFORE)
     for solver in solving_order.solvers[:upto]:
         solver.close(block, choose.mode(block, solver))
         guide_ends.mask(block, solver.index)

@@ -25,6 +25,7 @@ from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.passed_ends import BEFORE
 from compoundkin.kinematics.solving_order import SolvingOrder
 
 # A correction times the norm of the inverse Jacobian below this: Newton's limit is the nearest configuration.
@@ -108,7 +109,7 @@ class GroupWalk:
         self._expand(i[self._stale[i]])
         h = np.minimum(h, 1.0 - self.at[i])
         block, good = self._block(i, self.at[i] + h, 0), np.ones((len(i), 1), dtype=bool)
-        self.guide_ends.mask(block, None)
+        self.guide_ends.mask(block, BEFORE)
         powers = h[:, None, None] ** np.arange(ORDER + 1).reshape(-1, 1, 1, 1)
         found = []
         for solver, equations, series in zip(self.order.solvers, self.equations, self._series, strict=True):
