@@ -31,6 +31,7 @@ SLOW = {
     "view/page/test_viewer.py": 12,
     "view/page/test_attack.py": 12,
     "kinematics/test_error_estimate.py": 12,
+    "analysis/test_injected_faults.py": 40,
     "configurations/test_random.py": 10,
     "view/animation/test_svg.py": 10,
     "kinematics/groups/test_contract.py": 9,

@@ -85,6 +85,17 @@ def without_lost(motion: Motion, where: Number) -> Told:
     return Told(motion.mended(designs, index, kept), int(np.count_nonzero(few)))
 
 
+def uncertain(motion: Motion) -> Number:
+    """Return the poses at which some rates have fewer than three digits, (designs, poses)."""
+    found: Number = np.zeros(motion.failed.shape, dtype=bool)
+    with np.errstate(all="ignore"):
+        allowed = _natural(motion.poses, motion.order, motion.size)
+        for k in range(1, motion.order + 1):
+            error = motion.error(k).reshape(motion.failed.shape)
+            found = found | (np.isfinite(error) & ~(error <= UNCERTAIN * allowed[k]))
+    return found
+
+
 def _any(errors: LinkErrors, allowed: list[Number]) -> Number:
     """Return the poses at which any link's rates are more uncertain than is allowed."""
     found: Number = np.zeros((1, 1), dtype=bool)

@@ -158,8 +158,7 @@ def _(what: Check) -> Iterator[str]:
     columns = (Column("check"), Column("worst", style="brief"), Column("limit", style="brief"), Column("at"),
                Column("", style="passed"))  # fmt: skip
     rows = tuple((f.name, f.value, f.limit, _where(f.pair, f.pose), f.passed) for f in what.findings)
-    failed = [finding.name for finding in what.findings if not finding.passed]
-    verdict = f"failed: {listed(failed)}" if failed else "all passed" if what.passed else "nothing to check"
+    verdict = f"failed: {listed(what.failed)}" if what.failed else what.verdict
     singular = f", {what.singular} of them without rates" if what.singular else ""
     yield plain_table(TableBlock(columns, rows), f"Checks of {counted(what.poses, 'pose')}{singular}: {verdict}")
 

@@ -46,11 +46,24 @@ class Check(Shows):
     @property
     def passed(self) -> bool:
         """Whether every finding passed, and there was something to check."""
-        return self.poses > 0 and all(finding.passed for finding in self.findings)
+        return self.poses > 0 and not self.failed
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """The names of the findings that did not pass."""
+        return tuple(finding.name for finding in self.findings if not finding.passed)
+
+    @property
+    def verdict(self) -> str:
+        """What all findings come to in words, as headlines and badges say it."""
+        if not self.poses:
+            return "nothing could be checked"
+        if self.failed:
+            return f"{len(self.failed)} of {len(self.findings)} checks FAILED"
+        return f"all {len(self.findings)} checks passed"
 
     def __repr__(self) -> str:
-        failed = [finding.name for finding in self.findings if not finding.passed]
-        outcome = "passed" if self.passed else f"failed: {', '.join(failed) or 'nothing to check'}"
+        outcome = "passed" if self.passed else f"failed: {', '.join(self.failed) or 'nothing to check'}"
         return f"Check({len(self.findings)} findings at {self.poses} poses, {outcome})"
 
 

@@ -22,6 +22,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales
+from compoundkin.structure.parts import DrivenPair
 
 # Residuals are relative to the mechanism's size and to the fastest link at the same pose. Rounding (1e-16) grows
 # over the groups of the solving order, and near a limit position by the inverse of the distance from it.
@@ -74,8 +75,10 @@ def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
     pairs = {name: pair for name, pair in motion.solving_order.pairs.items() if name not in redundant}
     yield ORDERS[k], {name: _pair(motion, pair, k) for name, pair in pairs.items()}
     yield f"rigid links, {ORDERS[k]}", {name: _rigid(motion, name, k) for name in motion.poses}
-    if motion.inputs.drives:
-        yield f"drivers, {ORDERS[k]}", {name: _driver(motion, name, k) for name in motion.inputs.drives}
+    driven = {name: _driver(motion, name, k) for name in motion.inputs.drives}
+    passive = [one for body in motion.structure.bodies for one in body.driven if one.is_passive]
+    if driven or passive:
+        yield f"drivers, {ORDERS[k]}", {**driven, **{one.link: _still(motion, one, k) for one in passive}}
 
 
 def _pair(motion: Motion, pair: Pair, k: int) -> Number:
@@ -108,6 +111,12 @@ def _driver(motion: Motion, name: str, k: int) -> Number:
     gap = motion.pairs[driven.pair.name].coordinate.derivative(k) - asked
     if not driven.pair.free_is_angle:
         return np.abs(gap)
+    return np.abs(wrapped(gap) if k == 0 else gap) * motion.size
+
+
+def _still(motion: Motion, passive: DrivenPair, k: int) -> Number:
+    """Return by how much a link turns that may turn freely, and is held to what carries it."""
+    gap = motion.pairs[passive.pair.name].coordinate.derivative(k)
     return np.abs(wrapped(gap) if k == 0 else gap) * motion.size
 
 

@@ -167,15 +167,14 @@ def _badges(outcome: Outcome) -> Iterator[str]:
     """What the report comes to: a mark and words each."""
     if not outcome.solvable:
         yield _badge(False, "cannot be solved")
-    for done, total, what in _results(outcome):
-        if total:
-            yield _badge(done == total, f"{done:,} of {total:,} {what}")
-
-
-def _results(outcome: Outcome) -> Iterable[tuple[int, int, str]]:
-    yield outcome.assembled, outcome.poses, "poses assembled" if outcome.poses != 1 else "pose assembled"
-    yield outcome.checks_passed, outcome.checks, "checks passed"
-    yield outcome.published_passed, outcome.published, "published numbers reproduced"
+    if outcome.poses:
+        of = "poses" if outcome.poses != 1 else "pose"
+        yield _badge(outcome.assembled == outcome.poses, f"{outcome.assembled:,} of {outcome.poses:,} {of} assembled")
+    if outcome.verified is not None:
+        yield _badge(outcome.verified, outcome.verdict)
+    if outcome.published:
+        done, total = outcome.published_passed, outcome.published
+        yield _badge(done == total, f"{done:,} of {total:,} published numbers reproduced")
 
 
 def _badge(good: bool, text: str) -> str:

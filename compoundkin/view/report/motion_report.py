@@ -67,10 +67,14 @@ def checks_section(sample: Sample, check: Check) -> Section:
     text = (
         "None of these uses the formulas that solved the motion: residuals of the pairs' own equations, velocities from"
         " instant centres, differences of positions; relative to the mechanism's size and its fastest link. Continuity"
-        " is in radians."
+        " is by how much a pose differs from where the one before it leads (radians, or parts of the size); every value"
+        " is smaller by what rounding leaves next to a limit position."
     )
     if check.singular:
-        text += f" At {counted(check.singular, 'limit pose')} rates are infinite, and only the position is checked."
+        text += f" At {counted(check.singular, 'limit pose')} there are no rates, and only the position is checked."
+    few = sample.few_digits
+    if few:
+        text += f" Rates have fewer than three digits, by rounding next to a limit position, at {few}."
     if not check.poses:
         return Section("checks", "Checks", (Alert("No pose is assembled: there is nothing to check."),))
     return Section("checks", "Checks", (Paragraph(text), TableBlock(columns, rows)))
@@ -133,9 +137,11 @@ def outcome_of(motion: Motion, check: Check, published: tuple[Comparison, ...] =
         poses=int(motion.failed.size),
         assembled=int(np.count_nonzero(motion.failed == 0)),
         checks=len(check.findings),
-        checks_passed=sum(finding.passed for finding in check.findings),
+        checks_passed=len(check.findings) - len(check.failed),
         published=len(published),
         published_passed=sum(one.passed for one in published),
+        verified=check.passed,
+        verdict=check.verdict,
     )
 
 
@@ -155,8 +161,7 @@ def _results(outcome: Outcome) -> Iterator[str]:
         yield f"{outcome.assembled:,} of {counted(outcome.poses, 'pose')} assembled"
     else:
         yield f"All {counted(outcome.poses, 'pose')} assembled" if outcome.poses > 1 else "The pose is assembled"
-    failed = outcome.checks - outcome.checks_passed
-    yield f"{failed} of {outcome.checks} checks FAILED" if failed else f"all {outcome.checks} checks passed"
+    yield outcome.verdict
     wrong = outcome.published - outcome.published_passed
     if wrong:
         yield f"{wrong} of {counted(outcome.published, 'published number')} NOT reproduced"

@@ -10,14 +10,19 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.lost_digits import uncertain
 from compoundkin.kinematics.quantities import Quantity, owner_of, quantity
 from compoundkin.model.attributes import TIME, VALUE, unit_of
 from compoundkin.view.report.report_data import Column
+from compoundkin.view.report.wording import listed, number
 
 # A table over the cycle has at most this many rows besides the last pose.
 ROWS = 25
 # Numbers below this part of what is natural for the mechanism are rounding, and shown as zero.
 ROUNDING = 1e-12
+
+# So many poses are named one by one.
+MOST_PLACES = 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +84,15 @@ class Sample:
         if len(self.varying) == 1:
             return self.driver_column(self.varying[0]), self.varying[0].values
         return Column("pose", style="each"), np.arange(self.poses)
+
+    @cached_property
+    def few_digits(self) -> str:
+        """Where rates have fewer than three digits, in words; "" where all have more."""
+        few = np.flatnonzero(uncertain(self.motion)[self.design])
+        column, values = self.places
+        places = [f"{column.name} {number(float(values[k]))}" for k in few[:MOST_PLACES]]
+        more = [f"{len(few) - MOST_PLACES} more"] if len(few) > MOST_PLACES else []
+        return listed([*places, *more]) if places else ""
 
     @cached_property
     def every(self) -> int:

@@ -1,0 +1,101 @@
+"""`verify` tells right from wrong: every shipped mechanism passes, and every fault put into it is found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.analysis.checks.choice_check import choice_findings
+from compoundkin.analysis.checks.continuation_check import continuation_findings
+from compoundkin.analysis.checks.residuals import residuals
+from tests import catalog
+from tests.analysis.injected_faults import flips, link_faults
+
+# Groups of each mechanism that are put on other configurations: every one would take minutes in all.
+GROUPS = 2
+# Contacts are searched anew in every step of a continuation: these mechanisms take seconds.
+CAMS = ("flat-faced-follower", "oscillating-flat-follower", "oscillating-roller-follower", "disc-cam-roller-program")
+
+
+@pytest.mark.parametrize("name", catalog.NAMES)
+def test_right_motions_pass(name):
+    check = ck.verify(catalog.motion(name))
+    assert check.failed == ()
+    assert check.passed
+    assert check.verdict == f"all {len(check.findings)} checks passed"
+
+
+@pytest.mark.parametrize("name", catalog.NAMES)
+def test_other_configurations_are_found(name):
+    with np.errstate(all="ignore"):
+        for fault, wrong in flips(catalog.motion(name), 1 if name in CAMS else GROUPS):
+            find = choice_findings if fault.endswith("throughout") else continuation_findings
+            assert not all(found.passed for found in find(wrong)), fault
+
+
+@pytest.mark.parametrize("name", catalog.NAMES)
+def test_links_that_are_off_are_found(name):
+    with np.errstate(all="ignore"):
+        for fault, wrong in link_faults(catalog.motion(name)):
+            assert not all(found.passed for found in residuals(wrong)), fault
+
+
+def test_most_mechanisms_have_faults_of_every_kind():
+    """The harness itself: what it makes is no empty list."""
+    kinds = {"at one pose": 0, "from one pose on": 0, "throughout": 0}
+    for name in ("crank-rocker", "six-bar", "watt-i", "class-iii-six-bar", "four-bar-norton-crossed"):
+        for fault, _ in flips(catalog.motion(name), 9):
+            kinds[next(kind for kind in kinds if fault.endswith(kind))] += 1
+    assert min(kinds.values()) >= 4
+
+
+def test_a_whole_motion_on_the_other_side_of_its_drawing_is_found():
+    faults = dict(flips(catalog.motion("crank-rocker"), 1))
+    failed = ck.verify(faults["coupler/rocker throughout"]).failed
+    assert "nearest to the drawing" in failed
+
+
+def test_a_whole_motion_in_the_mode_that_is_not_written_is_found():
+    faults = dict(flips(catalog.motion("four-bar-norton-crossed"), 1))
+    failed = ck.verify(faults["coupler/rocker throughout"]).failed
+    assert "written modes" in failed
+
+
+def test_the_four_bar_just_before_its_limit_passes():
+    """A(0,0) B(8,14) D(20,17) E(37,0): its limit is 0.02 degrees after a pose of 5 degrees' steps."""
+    links = (ck.link("frame", "A", "E"), ck.link("ab", "A", "B"), ck.link("bd", "B", "D"), ck.link("de", "D", "E"))
+    drawn = ck.drawn(A=(0, 0), B=(8, 14), D=(20, 17), E=(37, 0))
+    with pytest.warns(ck.errors.UnassembledPoses):
+        motion = ck.solve(ck.Mechanism("before a limit", *links, ck.drive("ab"), drawn))
+    assert motion.assembled.sum() == 32
+    check = ck.verify(motion)
+    assert check.failed == ()
+    assert {"continuity", "gaps that can be closed", "nearest to the drawing"} <= {f.name for f in check.findings}
+
+
+def test_a_gap_that_can_be_closed_is_found():
+    motion = catalog.motion("crank-rocker")
+    failed = np.array(motion.failed)
+    failed[0, 20:30] = 1
+    check = ck.verify(replace(motion, failed=failed))
+    assert check.failed == ("gaps that can be closed",)
+    finding = next(found for found in check.findings if not found.passed)
+    assert finding.pose in ((20,), (29,))
+
+
+def test_nothing_assembled_is_one_answer_everywhere(recwarn):
+    mechanism = catalog.mechanism("triple-rocker")
+    motion = ck.solve(mechanism, {next(iter(mechanism.drives)).name: np.array([np.pi - 0.1, np.pi])})
+    assert not motion.assembled.any()
+    check = ck.verify(motion)
+    assert (check.passed, check.verdict, check.findings) == (False, "nothing could be checked", ())
+    made = ck.report(motion)
+    assert made.outcome.passed is False
+    said = " ".join(made.text().split())
+    assert "0 of 2 poses assembled; nothing could be checked" in said
+    assert "checks passed" not in said + made.html()
+    assert "nothing could be checked" in made.html()
+    assert not [w for w in recwarn if "All-NaN" in str(w.message)]
