@@ -42,7 +42,7 @@ MADE_BY: Mapping[str, str] = MappingProxyType(
 
 
 class Form(NamedTuple):
-    """The test of what an argument may be, its name, what gives such a thing."""
+    """What an argument may be: a test, a name, and how to get one."""
 
     fits: Test
     called: str

@@ -89,7 +89,7 @@ class FewDigits(UserWarning):
 
 
 class LikelySlip(UserWarning):
-    """A value that can be meant as it is, but is most often a slip."""
+    """A value that can be meant but is most often a slip."""
 
 
 def warn(text: str, category: type[Warning]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
@@ -79,7 +81,19 @@ class Verbs(click.Group):
         """Run, and turn whatever goes wrong into a message and an exit code."""
         if extra.get("standalone_mode") is False:
             return super().main(*args, **extra)
-        return guarded(lambda: super(Verbs, self).main(*args, **{**extra, "standalone_mode": False}))
+        given = _with_units(args[0] if args else extra.pop("args", None) or sys.argv[1:])
+        return guarded(lambda: super(Verbs, self).main(given, *args[1:], **{**extra, "standalone_mode": False}))
+
+
+def _with_units(args: Sequence[str]) -> list[str]:
+    """Join rates and units that a shell took apart: ``--speed 300 rpm``."""
+    joined: list[str] = []
+    for word in args:
+        if word in ("rpm", "deg", "deg/s", "rad/s", "1/min") and joined[-2:-1] in (["--speed"], ["--acceleration"]):
+            joined[-1] += word
+        else:
+            joined.append(word)
+    return joined
 
 
 def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:

@@ -9,7 +9,7 @@ import click
 
 from compoundkin.base.suffixes import alternatives
 from compoundkin.cli.drive_options import ARROWS, DESIGN, LABELS, PATHS, drive_options, solved_at
-from compoundkin.cli.file_options import loaded, mechanism_argument
+from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
 from compoundkin.cli.progress import counting
 from compoundkin.cli.shell import put, say
 from compoundkin.cli.solve import explained
@@ -47,9 +47,7 @@ Examples:
 @click.option("--fps", type=float, metavar="COUNT", help="Frames a second at most; 25 if left out.")
 @click.option("--back/--no-back", default=None, help="Go back the way it came; else where it does not end as it began.")
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
-@click.option(
-    "-o", "--to-file", "path", metavar="PATH", help=f"Write a {alternatives('animation')} file; else SVG to stdout."
-)
+@to_file(f"Write a {alternatives('animation')} file; else SVG to stdout.")
 def command(file: str, path: str | None, **asked: Any) -> int:
     """Animate the motion of a mechanism.
 

@@ -9,7 +9,7 @@ import click
 
 from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import ARROWS, LABELS, PATHS, VECTORS, pose_options, solved_at
-from compoundkin.cli.file_options import loaded, mechanism_argument
+from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
 from compoundkin.cli.shell import put, say
 
 if TYPE_CHECKING:
@@ -56,9 +56,7 @@ Examples:
 @pose_options
 @LABELS
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
-@click.option(
-    "-o", "--to-file", "path", metavar="PATH", help=f"Write an {alternatives('picture')} file; else SVG to stdout."
-)
+@to_file(f"Write an {alternatives('picture')} file; else SVG to stdout.")
 def command(file: str, path: str | None, **asked: Any) -> None:
     """Draw a mechanism in the conventions of textbooks, at one pose.
 

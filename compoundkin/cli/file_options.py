@@ -23,6 +23,31 @@ if TYPE_CHECKING:
 WHOLE = "whole report"
 F = TypeVar("F", bound=Callable[..., Any])
 
+# What people and scripts call standard output where a file is wanted.
+STDOUT = ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
+
+
+class Destination(click.ParamType[Any]):
+    """A file to write, or None for standard output."""
+
+    name = "path"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str | None:
+        """Return the path, or None."""
+        return None if value in STDOUT else str(value)
+
+
+TO_FILE = Destination()
+
+
+def to_file(text: str) -> Callable[[F], F]:
+    """Return the option of where results go.
+
+    Standard output by any of its names is as if it were left out.
+    """
+    return click.option("-o", "--to-file", "path", type=TO_FILE, metavar="PATH", help=text)
+
+
 FORMATS = tuple(dict.fromkeys(SUFFIXES["report"].values()))
 
 
@@ -66,7 +91,7 @@ def write_new(path: Path, content: bytes, force: bool) -> None:
 def report_options(command: F) -> F:
     """Add the options --format, -o and --whole to a command that prints a report."""
     here = "Write the report here instead of printing it."
-    file = click.option("-o", "--to-file", "path", metavar="PATH", callback=_checked, help=here)
+    file = click.option("-o", "--to-file", "path", type=TO_FILE, metavar="PATH", callback=_checked, help=here)
     told = "Text unless PATH ends in .md, .json or .html."
     # it is read first: a form that is given rules, whatever the suffix
     form = click.option("--format", "form", type=click.Choice(FORMATS), is_eager=True, help=told)

@@ -9,7 +9,7 @@ import click
 
 from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import drive_options, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument
+from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
 from compoundkin.cli.shell import put, say
 from compoundkin.cli.solve import explained
 
@@ -62,9 +62,7 @@ Examples:
 @click.option("--driver", metavar="NAME", help="With --circuits: the driver that moves, where there are several.")
 @click.option("--every", type=click.IntRange(1), metavar="POSES", help="Distance of the marks along curves in a plane.")
 @click.option("--title", help="Instead of the mechanism's own.")
-@click.option(
-    "-o", "--to-file", "path", metavar="PATH", help=f"Write a {alternatives('plot')} file; SVG on stdout if left out."
-)
+@to_file(f"Write a {alternatives('plot')} file; SVG on stdout if left out.")
 def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: Any) -> int:
     """Draw quantities of a motion. They go over its driver, over time, against each other, or as curves in the plane.
 

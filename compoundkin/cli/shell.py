@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import sys
+import threading
+import warnings
 from collections.abc import Callable
 from typing import Any, NoReturn
 
 import click
 
 from compoundkin.base.errors import CompoundkinError, Problem
+from compoundkin.base.texts import written_out
 
 BAD_INPUT, NOT_ASSEMBLED, FAILED = 2, 3, 4
 # As if ended by the signal: what shells expect of a filter whose reader has gone, and of Ctrl-C.
@@ -25,8 +29,12 @@ class NotWritten(CompoundkinError):
 
 def guarded(run: Callable[[], Any]) -> NoReturn:
     """Run a command and exit. Exit with its code, or with a message and the code of what went wrong."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, _ended)
     try:
-        code = run()
+        with warnings.catch_warnings():
+            warnings.showwarning = _warned
+            code = run()
     except click.ClickException as error:
         error.show()
         code = BAD_INPUT
@@ -42,8 +50,20 @@ def guarded(run: Callable[[], Any]) -> NoReturn:
     sys.exit(code or 0)
 
 
+def _ended(number: int, _: object) -> NoReturn:
+    """End as when Ctrl-C is pressed, so that what is half done is cleaned up."""
+    sys.exit(128 + number)
+
+
+def _warned(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Say a warning in a line of its own: where it was given is of no use to who typed the command."""
+    say(f"Warning: {message}")
+
+
 def put(text: str | bytes) -> None:
     """Write results to stdout; where nobody reads them any more, end quietly."""
+    if sys.stdout is None:
+        raise NotWritten(Problem("", "standard output is closed", "write to a file with -o"))
     try:
         # a name that the terminal's encoding lacks becomes a question mark, not an accident
         rest = memoryview(text if isinstance(text, bytes) else text.encode(sys.stdout.encoding or "utf-8", "replace"))
@@ -61,8 +81,9 @@ def put(text: str | bytes) -> None:
 
 
 def say(text: str) -> None:
-    """Write a diagnostic line to stderr."""
-    click.echo(text, err=True)
+    """Write a diagnostic line to stderr, if there is one."""
+    if sys.stderr is not None:
+        click.echo(text, err=True)
 
 
 def show(error: CompoundkinError) -> None:
@@ -73,10 +94,10 @@ def show(error: CompoundkinError) -> None:
     for problem in error.problems:
         head = "  - " if several else f"{_red('Error:')} "
         indent = "    " if several else "  "
-        say(f"{head}{problem.what}")
+        say(f"{head}{written_out(problem.what)}")
         for term, text in (("where", problem.where), ("remedy", problem.remedy)):
             if text:
-                say(f"{indent}{term + ':':8}{text}")
+                say(f"{indent}{term + ':':8}{written_out(text)}")
 
 
 def has_colour(stream: Any) -> bool:
@@ -86,12 +107,17 @@ def has_colour(stream: Any) -> bool:
     >>> has_colour(io.StringIO())
     False
     """
-    return bool(stream.isatty()) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+    return (
+        stream is not None
+        and bool(stream.isatty())
+        and not os.environ.get("NO_COLOR")
+        and os.environ.get("TERM") != "dumb"
+    )
 
 
 def width() -> int:
     """Return the width of a report. It is the terminal's within bounds, 80 where there is none."""
-    if not sys.stdout.isatty():
+    if sys.stdout is None or not sys.stdout.isatty():
         return WIDTH
     return max(NARROWEST, min(WIDEST, shutil.get_terminal_size((WIDTH, 24)).columns))
 

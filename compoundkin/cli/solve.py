@@ -8,7 +8,7 @@ import click
 
 from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import drive_options, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument
+from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
 from compoundkin.cli.shell import NOT_ASSEMBLED, put, say
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ Examples:
 )
 @mechanism_argument
 @drive_options
-@click.option("-o", "--to-file", "path", metavar="PATH", help=f"Write a table here: {alternatives('table')}.")
+@to_file(f"Write a table here: {alternatives('table')}.")
 def command(file: str, path: str | None, **asked: Any) -> int:
     """Solve a mechanism and print a table (CSV). It has a row per pose, a column per quantity.
 

@@ -11,7 +11,8 @@ import numpy as np
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
-from compoundkin.files.written_quantities import MOST_VALUES, RPM, spaced
+from compoundkin.files.worded_numbers import warn_of_radians, worded_rate
+from compoundkin.files.written_quantities import MOST_VALUES, rate, spaced
 from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.elements import Drive
@@ -47,6 +48,8 @@ def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Numb
             raise _wrong(f"--drive {name}", "the driver's values are given twice", "leave one of them out")
         shown[name] = _spanned(structure, name, span)
     angles = structure.driven_angles
+    for name, v in ((name, v) for name, v in shown.items() if angles[name]):
+        warn_of_radians(f"--drive {name}", float(span.get("start", v[0])), float(span.get("stop", v[-1])))
     values = {name: np.deg2rad(v) if angles[name] else v for name, v in shown.items()}
     if asked.get("time") is None:
         _of_one_length(structure, values)
@@ -147,12 +150,12 @@ def of_rates(structure: Structure, option: str, given: Sequence[str]) -> dict[st
 
 def _rate(text: str, option: str, name: str, is_angle: bool) -> float:
     where, how = f"{option} {name}", HOW_RATES[option, is_angle]
-    for unit, factor in (("rpm", RPM), ("deg", np.pi / 180.0)):
-        if text.endswith(unit):
-            if not is_angle:
-                raise _wrong(where, f"{text!r} is no rate of a length", "write lengths a second")
-            return number(text.removesuffix(unit), where, how) * float(factor)
-    return number(text, where, how)
+    said = worded_rate(text)
+    if said is text:
+        return number(text, where, how)
+    if not is_angle:
+        raise _wrong(where, f"{text!r} is no rate of a length", "write lengths a second")
+    return float(rate(said, where, True))
 
 
 def _named(structure: Structure, option: str, given: Sequence[str]) -> Iterator[tuple[str, str]]:

@@ -123,6 +123,9 @@ def _ends(value: Any) -> dict[str, Any]:
 
 NUMBER = {"type": "number"}
 NAME = {"type": "string", "minLength": 1}
+# Such as "0:360:5" and "60 rpm".
+RANGE = {"type": "string", "pattern": "^[^:]+:[^:]+:[^:]+$"}
+RATE = {"type": "string", "pattern": r"^\s*[-+.\dEe]+\s*(rpm|1/min|deg|deg/s|rad/s)\s*$"}
 
 DEFINITIONS: dict[str, Any] = {
     "numbers": {
@@ -135,15 +138,15 @@ DEFINITIONS: dict[str, Any] = {
     },
     "values": {
         "description": "Degrees for a pin, lengths for a slide; {from, to, step}; {rad = ...}.",
-        "anyOf": [_ref("angle"), _closed(**{"from": NUMBER, "to": NUMBER, "step": NUMBER})],
+        "anyOf": [_ref("angle"), _closed(**{"from": NUMBER, "to": NUMBER, "step": NUMBER}), RANGE],
     },
     "times": {
         "description": "Seconds: a list or {from, to, step}.",
-        "anyOf": [_ref("numbers"), _closed(**{"from": NUMBER, "to": NUMBER, "step": NUMBER})],
+        "anyOf": [_ref("numbers"), _closed(**{"from": NUMBER, "to": NUMBER, "step": NUMBER}), RANGE],
     },
     "rate": {
         "description": "rad/s for a pin, length/s for a slide; {rpm = ...}; {deg = ...} (a second).",
-        "anyOf": [_ref("numbers"), _closed(rpm=_ref("numbers")), _closed(deg=_ref("numbers"))],
+        "anyOf": [_ref("numbers"), _closed(rpm=_ref("numbers")), _closed(deg=_ref("numbers")), RATE],
     },
     "point": {
         "description": "[x, y] or {polar = [radius, degrees]}.",
@@ -158,7 +161,7 @@ DEFINITIONS: dict[str, Any] = {
     },
     "single_rate": {
         "description": "A number, {rpm = ...} or {deg = ...}.",
-        "anyOf": [NUMBER, _closed(rpm=NUMBER), _closed(deg=NUMBER)],
+        "anyOf": [NUMBER, _closed(rpm=NUMBER), _closed(deg=NUMBER), RATE],
     },
 }
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, nearest
 from compoundkin.base.suffixes import SUFFIXES, suffix_of
 from compoundkin.files import toml_text
 from compoundkin.files.reader import failed, read
@@ -18,6 +18,8 @@ from compoundkin.files.writer import document
 from compoundkin.model.mechanism import Mechanism
 
 Syntax: TypeAlias = Literal["toml", "json"]
+# A key that leads through so many tables: a mechanism's has five.
+_LONG_KEY = re.compile(r"(?<![\w.-])(?:[\w-]+\s*\.\s*){64}")
 SYNTAXES: tuple[Syntax, ...] = ("toml", "json")
 
 
@@ -52,7 +54,10 @@ def loads(text: str, syntax: Syntax = "toml", where: str = "") -> Mechanism:
     >>> loads('format = 1\\ntitle = "Pin"\\n[links.frame]\\npoints = { A = [0, 0] }').links["frame"].letters
     ('A',)
     """
-    return read(_parsed(text, _known(syntax), where), where)
+    try:
+        return read(_parsed(text, _known(syntax), where), where)
+    except RecursionError:
+        raise _too_deep(where) from None
 
 
 def dumps(mechanism: Mechanism, syntax: Syntax = "toml") -> str:
@@ -120,6 +125,9 @@ class _Repeats(dict[str, Any]):
 
 
 def _parsed(text: str, syntax: Syntax, where: str) -> dict[str, Any]:
+    if syntax == "toml" and _LONG_KEY.search(text):
+        # the reader takes minutes for such a key
+        raise _too_deep(where)
     try:
         parsed = tomllib.loads(text) if syntax == "toml" else json.loads(text, object_pairs_hook=_Repeats)
     except tomllib.TOMLDecodeError as error:
@@ -127,8 +135,6 @@ def _parsed(text: str, syntax: Syntax, where: str) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         problem = Problem(_place(error.lineno, error.colno), f"this is not JSON: {error.msg}")
         raise failed([problem], where) from None
-    except RecursionError:
-        raise failed([Problem("", "lists or tables are nested too deeply")], where) from None
     except ValueError as error:
         raise failed([Problem("", f"a value cannot be read: {error}")], where) from None
     if not isinstance(parsed, dict):
@@ -137,6 +143,10 @@ def _parsed(text: str, syntax: Syntax, where: str) -> dict[str, Any]:
     if repeats:
         raise failed(repeats, where)
     return parsed
+
+
+def _too_deep(where: str) -> InvalidMechanism:
+    return failed([Problem("", "lists or tables are nested too deeply")], where)
 
 
 def _toml_problem(message: str, text: str) -> Problem:

@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.files.single_values import bad, held, numbers, single, wrong
+from compoundkin.files.worded_numbers import warn_of_radians, worded_range, worded_rate
 from compoundkin.model.geometry import polar, vector
 
 # {from, to, step} beyond this many values is taken for a slip: it would only fill the memory.
@@ -38,9 +39,14 @@ def degrees(value: Any, where: str, angle: bool | None = True) -> Number:
 
 
 def values(value: Any, where: str, angle: bool | None) -> Number:
-    """Read a coordinate, also as ``{from, to, step}``."""
+    """Read a coordinate, also as ``{from, to, step}`` or as "from:to:step"."""
+    value = worded_range(value)
+    ends = (value[0], value[-1]) if isinstance(value, list) and len(value) > 1 else (None, None)
     if isinstance(value, dict) and value.keys() & {"from", "to", "step"}:
-        return coordinate(_range(value, where), where, angle)
+        ends = value.get("from"), value.get("to")
+        value = _range(value, where)
+    if angle and isinstance(ends[0], int | float) and isinstance(ends[1], int | float):
+        warn_of_radians(where, ends[0], ends[1])
     return coordinate(value, where, angle)
 
 
@@ -50,6 +56,7 @@ def times(value: Any, where: str, angle: bool | None = None) -> Number:
     >>> times({"from": 0, "to": 1, "step": 0.5}, "time").tolist()
     [0.0, 0.5, 1.0]
     """
+    value = worded_range(value)
     if isinstance(value, dict) and not value.keys() & {"from", "to", "step"}:
         raise wrong(where, value, "a list of times", "write seconds, or { from = 0, to = 2, step = 0.01 }")
     return values(value, where, False)
@@ -82,7 +89,12 @@ def spaced(start: float, stop: float, step: float) -> np.ndarray[Any, np.dtype[n
 
 
 def rate(value: Any, where: str, angle: bool | None) -> Number:
-    """Read a rate, also as ``{rpm = ...}`` or ``{deg = ...}``, as rad/s."""
+    """Read a rate as rad/s, also ``{rpm = ...}``, ``{deg = ...}``, "60 rpm"."""
+    value = worded_rate(value)
+    if isinstance(value, str):
+        raise wrong(
+            where, value, "a number", 'write 10 or "60 rpm"' if angle is not False else "write lengths a second"
+        )
     if not isinstance(value, dict):
         return numbers(value, where)
     unit, amount = _unit(value, where, ("rpm", "deg"), angle)
@@ -116,7 +128,7 @@ def point(value: Any, where: str, angle: bool | None = None) -> Number:
         np.broadcast_shapes(*map(np.shape, parts))
     except ValueError:
         raise bad(where, "the two lists differ in shape") from None
-    return vector(where, polar(*parts) if is_polar else parts)
+    return vector(where, polar(*parts) if is_polar else list(parts))
 
 
 def published(value: Any, where: str, angle: bool | None) -> complex:

@@ -25,6 +25,7 @@ from compoundkin.kinematics.block import places
 from compoundkin.kinematics.chosen_modes import shown_by, signs_of
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
 from compoundkin.kinematics.driver_values import by_name, inputs, times_of
+from compoundkin.kinematics.likely_slips import warn_of_degrees
 from compoundkin.kinematics.lost_digits import without_lost
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
@@ -92,6 +93,8 @@ def solve(
         motion = replace(told.motion, time=times)
         if solving_order.structure.relaxation:
             check_redundant(motion)
+    if times is None:
+        warn_of_degrees(motion.structure, given)
     _warn(motion, told.poor)
     return motion
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort, short
-from compoundkin.base.errors import InvalidMechanism, Problem
+from compoundkin.base.errors import InvalidMechanism, LikelySlip, Problem, warn
 from compoundkin.base.given_numbers import planar_numbers, real_numbers
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
@@ -125,6 +125,9 @@ def vector(where: str, value: Any) -> Number:
     """
     if isinstance(value, tuple | list) and len(value) == 2:
         x, y = (real_numbers(where, v, InvalidMechanism) for v in value)
+        if isinstance(value, list) and x.shape == y.shape == (1,):
+            told = f"{where}: {value} is read as x = {x[0]:g}, y = {y[0]:g} of one design"
+            warn(f"{told}; two designs are written ({value}, 0)", LikelySlip)
         try:
             out = x + 1j * y
         except ValueError:

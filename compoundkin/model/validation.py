@@ -123,6 +123,7 @@ def _joined(mechanism: Written) -> Iterator[Problem]:
             continue
         others = [k for k, names in mechanism.carriers.items() if name not in names]
         hints = [f"{k}: {nearest(k, others)}" for k in link.points if nearest(k, others).startswith("did")]
+        hints += [f"{a} and {b} are two letters" for a, b in mechanism.case_slips() if {a, b} & set(link.points)]
         yield Problem(f"links.{name}", f"it is joined to nothing: no other link carries {', '.join(link.points)}",
                       "; ".join(hints) or "share a letter with another link or write a slide")  # fmt: skip
 

@@ -109,6 +109,15 @@ class Written:
                 found.setdefault(letter, []).append(name)
         return {letter: tuple(names) for letter, names in found.items()}
 
+    def case_slips(self) -> list[tuple[str, str]]:
+        """List pairs of letters on one link each that differ in case only."""
+        alone: dict[str, list[str]] = {}
+        for letter, names in self.carriers.items():
+            if len(names) == 1:
+                alone.setdefault(letter.casefold(), []).append(letter)
+        twos = (letters for letters in alone.values() if len(letters) == 2)
+        return [(a, b) for a, b in twos if self.carriers[a] != self.carriers[b]]
+
     @cached_property
     def pins(self) -> dict[str, tuple[str, ...]]:
         """The letters that two links or more share, with those links."""

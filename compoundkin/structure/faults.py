@@ -156,7 +156,9 @@ def _under(system: System, part: Subsystem, found: Deficiency) -> Fault:
     else:
         choices = [choice for constraint in found.moving for choice in _drivable(system, constraint)]
         remedy = _under_remedy(found.free, sorted(choices, key=lambda text: " on frame (" not in text))
-    return Fault("under", links, found.free, text, remedy)
+    slips = system.mechanism.case_slips()
+    asked = f"did you mean {slips[0][0]!r} and {slips[0][1]!r} to be one letter? else " if slips else ""
+    return Fault("under", links, found.free, text, asked + remedy)
 
 
 def _under_remedy(amount: int, choices: Sequence[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -63,9 +64,16 @@ def interpolated(s: Number, points: Number, degree: int, closed: bool) -> Pieces
     knots (not-a-knot). Source: C. de Boor, A Practical Guide to Splines, revised ed., chapters IV and XIII.
     """
     from scipy.interpolate import make_interp_spline
+    from scipy.linalg import LinAlgWarning
 
     both = np.stack((points.real, points.imag), axis=-1)
-    spline = make_interp_spline(s, both, k=degree, bc_type="periodic" if closed else None)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", LinAlgWarning)
+            spline = make_interp_spline(s, both, k=degree, bc_type="periodic" if closed else None)
+    except (ValueError, np.linalg.LinAlgError, LinAlgWarning):
+        what = "no smooth curve leads through them: their distances differ too much"
+        raise InvalidMechanism(Problem("points", what, "is one of them a slip?")) from None
     breaks = spline.t[degree:-degree]
     rows = [spline(breaks[:-1], k) / factorial(k) for k in range(degree + 1)]
     return Pieces(breaks, np.array([row[:, 0] + 1j * row[:, 1] for row in rows]))

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.argument_forms import is_finite_real
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import (
     InvalidInput,
@@ -139,7 +140,7 @@ def _by_name(structure: Structure, at: Any) -> dict[str, float]:
     for name, value in at.items():
         if name not in names:
             raise UnknownName(Problem(f"at.{name}", "there is no such driver", nearest(str(name), names)))
-        if isinstance(value, bool) or np.ndim(value) or not np.isfinite(np.real(value)):
+        if not is_finite_real(value):
             raise InvalidInput(Problem(f"at.{name}", f"{value!r} is not a number", "give the value at one pose"))
     return {name: float(value) for name, value in at.items()}
 
