@@ -54,7 +54,7 @@ class GuideEnds(PrintsShort):
         return {bounds_name(pair): tuple(End(value) for value in pair.bounds(geometry)) for pair in self.pairs}
 
     def mask(self, block: Block, index: int) -> None:
-        """Note the poses beyond an end that is known after a group, or BEFORE all."""
+        """Note the poses beyond an end that is known after a group. BEFORE is that of none."""
         for k, pair in self._after.get(index, ()):
             outside = self._margin(block, pair) < 0.0
             if np.any(outside):

@@ -152,7 +152,7 @@ def events_legend(figure: Any, gaps: bool, limits: bool, changes: bool, marks: s
 
 
 def ring_handle(label: str) -> Any:
-    """Return the legend's ring for a pose next to a limit position or an end of a guide."""
+    """Return the legend's ring for a pose next to a gap."""
     from matplotlib.lines import Line2D
 
     return Line2D([], [], **RING, color=INK, label=label)
