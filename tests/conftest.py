@@ -23,6 +23,7 @@ settings.load_profile("compoundkin")
 # Files that take longest, in seconds on one core: each worker begins with some of them, so that none is left over
 # for the end, and what is made once for a whole file is made once. A file that is not listed takes a few seconds.
 SLOW = {
+    "kinematics/test_home.py": 60,
     "view/page/test_browser.py": 30,
     "test_site.py": 30,
     "view/report/test_catalog.py": 20,

@@ -33,7 +33,8 @@ def approach_path(
     shown = {name: drawn_value(solving_order, given, name, drawn, sketch) for name in solving_order.structure.driven}
     values = {name: value for name, value in shown.items() if value is not None}
     at = _nearest(solving_order, given, values) if values else 0.0
-    end = given.at(np.array([at])).of_poses(1)
+    between_poses = at != np.floor(at)
+    end = given.at(np.array([at])) if between_poses else given.cut(slice(None), slice(int(at), int(at) + 1))
     ways: dict[str, Number] = {}
     for name, rest in end.drives.items():
         way = rest[0] - values.get(name, rest[0])

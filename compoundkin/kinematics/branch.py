@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,17 +14,18 @@ from compoundkin.kinematics.group_march import GroupPath
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
 
-# A full turn may be longer by rounding.
-ROUNDING = 1.0 + 1e-9
-
 
 @dataclass(frozen=True)
 class Begin:
-    """A place where the pose drawn is known to be. It has the dyads' signs and the other groups' states there."""
+    """A place where the pose drawn is known to be. It has the dyads' signs and the other groups' states there.
+
+    After `period` places the way is the same again.
+    """
 
     at: float
     signs: Mapping[int, Number]
     states: Mapping[int, Number]
+    period: float
 
     def way(self, given: Inputs) -> tuple[Inputs, float, float]:
         """Return the approach path, which is one pose. Return also its place and the reference."""
@@ -45,6 +46,11 @@ class Course:
     at: float
     count: int
     wraps: bool
+
+    @property
+    def period(self) -> float:
+        """After how many places the driver is at the same pose again."""
+        return TURN / self.step if self.wraps else np.inf
 
     def inputs(self, given: Inputs) -> Inputs:
         """Return it as the inputs of a motion. The other drivers stand where they are in `given`."""
@@ -94,19 +100,6 @@ def course_of(solving_order: SolvingOrder, given: Inputs, approach_path: Inputs)
     count = max(2, 1 + spacings(solving_order, name, np.array(high - low)))
     step = (high - low) / (count - 1)
     return Course(name, start, step, -low / step, count, wraps=False)
-
-
-def leads_on(course: Course, given: Inputs, paths: Iterable[GroupPath]) -> bool:
-    """Tell whether a course leads to poses that its motion does not reach.
-
-    It cannot where a motion that passes each value once leaves the branch at both ends.
-    """
-    steps = np.diff(given.drives[course.driver][0])
-    once = given.poses > 1 and bool(np.all(steps > 0.0) or np.all(steps < 0.0))
-    once = once and bool(np.all(np.abs(np.sum(steps, axis=-1)) <= TURN * ROUNDING))
-    low, high = np.moveaxis(np.stack([path.reach for path in paths]), -1, 0)
-    last = given.poses - 1.0
-    return not once or not bool(np.all((low > 0.0) & (high < last) | (low <= 0.0) & (high >= last)))
 
 
 def _moves(value: Number) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, column
 from compoundkin.base.bracketing import bisected
+from compoundkin.kinematics.group_returns import why_no_return
 from compoundkin.kinematics.motion import Motion
 
 # Halvings of the distance between two neighbouring poses: 2**-45 of it is far below 1e-9 of any driver value.
@@ -128,7 +129,11 @@ def _blames(motion: Motion, designs: Number, poses: Number) -> list[_Blame]:
             found.append(_Blame(passed.pair.members, "", passed.reason, passed.pair.name))
         else:
             group, solver = motion.structure.groups[index - 1], motion.solving_order.solvers[index - 1]
-            found.append(_Blame(group.links, group.name, solver.why(block, k)))
+            reason = solver.why(block, k)
+            if solver.is_numbered:
+                path = (motion.tracker.branch or motion.tracker).paths[solver.index]
+                reason += f"; {why_no_return(motion.tracker, solver.index, path, int(designs[k]), float(poses[k]))}"
+            found.append(_Blame(group.links, group.name, reason))
     return found
 
 

@@ -41,16 +41,24 @@ class GroupPath:
     """The tracked states of one group.
 
     Its nodes are `s`, the states (designs, nodes, 3 n), with their slopes by s, and the reach (designs, 2) of s within
-    which each design was tracked.
+    which each design was tracked. `side` (designs,) is the sign of the Jacobian, `returns` are paths after gaps.
     """
 
     s: Number
     states: Number
     slopes: Number
     reach: Number
+    side: Number
+    returns: tuple[GroupPath, ...] = ()
 
     def seeds(self, designs: Number, s: Number) -> Number:
         """Interpolate by cubics for design indices and places `s` (broadcast together): NaN beyond reach."""
+        found = self._seeds(designs, s)
+        for path in self.returns:
+            found = np.where(np.isnan(found), path.seeds(designs, s), found)
+        return found
+
+    def _seeds(self, designs: Number, s: Number) -> Number:
         low, high = self.reach[designs, 0], self.reach[designs, 1]
         if len(self.s) == 1:
             out = self.states[designs, np.zeros(np.shape(s), dtype=int)]
@@ -91,6 +99,7 @@ class GroupMarch:
         """Step from stop to stop. Those that lie within one stride of each other are passed over."""
         self.here, self.goal, self.stops, self.trials = float(stops[0]), 1, stops, 0
         self.rates, self.side = self._rates(self.state, self.around(self.here))
+        self.first_side = self.side
         self._note()
         self.reached = np.where(self.alive, self.here, np.nan)
         while self.goal < len(stops) and self.alive.any():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
@@ -13,9 +13,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.group_march import TERMS, GroupMarch, GroupPath
 from compoundkin.kinematics.groups import equations_of
 from compoundkin.kinematics.inputs import Inputs
-
-if TYPE_CHECKING:
-    from compoundkin.kinematics.tracking import Tracker
+from compoundkin.kinematics.solving_order import SolvingOrder
 
 # No step takes more spacings than this of the drivers (of five degrees each), even where nothing moves.
 SPACINGS = 6.0
@@ -23,19 +21,39 @@ SPACINGS = 6.0
 SLOWEST = 1e-9
 
 
-def track(tracker: Tracker, k: int, state: Number) -> tuple[GroupPath, GroupPath]:
+class Followed(Protocol):
+    """What is needed of a tracker to follow a group through its inputs."""
+
+    solving_order: SolvingOrder
+    given: Inputs
+    approach_path: Inputs
+    at: float
+
+    def run(
+        self, part: Inputs, order: int, s: Number, designs: Number, upto: int | None = None, on_approach: bool = False
+    ) -> Block:
+        """Solve a block of inputs, up to a group."""
+
+
+def track(tracker: Followed, k: int, state: Number) -> tuple[GroupPath, GroupPath]:
     """Follow group `k` along the approach path to the motion. From there it goes to both ends of the motion."""
-    given, approach, at = tracker.given, tracker.approach_path, tracker.at
+    approach = tracker.approach_path
     first = _march(tracker, k, approach.at, state, on_approach=True)
     first.go(np.arange(approach.poses, dtype=float))
     state = np.where(first.alive[:, None, None], first.state, np.nan)
+    return _path(first, np.zeros(len(state))), both_ways(tracker, k, state, tracker.at)
+
+
+def both_ways(tracker: Followed, k: int, state: Number, at: float) -> GroupPath:
+    """Follow a group from a state at a place to both ends."""
+    given = tracker.given
     ahead = _march(tracker, k, given.at, state).go(_stops(at, given.poses - 1.0))
     back = _march(tracker, k, given.before, state).go(_stops(at, 0.0))
-    return _path(first, np.zeros(len(state))), _joined(back, ahead)
+    return _joined(back, ahead)
 
 
 def _march(
-    tracker: Tracker, k: int, along: Callable[[Number], Inputs], state: Number, on_approach: bool = False
+    tracker: Followed, k: int, along: Callable[[Number], Inputs], state: Number, on_approach: bool = False
 ) -> GroupMarch:
     """Return a continuation of a group from a state, (designs, 1, width), NaN for designs that have none."""
     designs = np.arange(len(state))[:, None]
@@ -67,6 +85,7 @@ def _joined(back: GroupMarch, ahead: GroupMarch) -> GroupPath:
         np.concatenate([one.slopes[:, keep], two.slopes], axis=1),
         # a change point at an end of the motion is solved just beyond it
         np.stack([_beyond(back.reached, 0.0, -CLOSE), _beyond(ahead.reached, two.s[-1], CLOSE)], axis=1),
+        two.side,
     )
 
 
@@ -81,4 +100,5 @@ def _path(march: GroupMarch, begin: Number) -> GroupPath:
         np.concatenate(march.states, axis=1),
         np.concatenate(march.slopes, axis=1),
         np.stack([begin, march.reached], axis=1),
+        march.first_side[:, 0],
     )

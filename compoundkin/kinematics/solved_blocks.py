@@ -6,7 +6,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
-from compoundkin.kinematics.branch import Begin, TrackedBranch, course_of, leads_on
+from compoundkin.kinematics.branch import Begin, TrackedBranch
 from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.lost_digits import doubtful
@@ -43,11 +43,11 @@ def with_branch(tracker: Tracker) -> bool:
     """Track the branch of the drawn pose, for what its motion has lost. Tell whether it did."""
     if tracker.branch is not None or tracker.begin is not None:
         return False
-    course = course_of(tracker.solving_order, tracker.given, tracker.approach_path)
-    if course is None or not leads_on(course, tracker.given, tracker.paths.values()):
+    course = tracker.course
+    if course is None:
         return False
     states = {k: path.states[:, :1] for k, path in tracker.approach_paths.items()}
-    begin = Begin(course.at, tracker.signs, states)
+    begin = Begin(course.at, tracker.signs, states, course.period)
     around = Tracker(tracker.solving_order, course.inputs(tracker.given), tracker.fixed, tracker.shown, begin)
     settled(tracker.solving_order, around.given, around, 0)
     tracker.branch = TrackedBranch(course, around.paths)

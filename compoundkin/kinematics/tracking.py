@@ -12,13 +12,14 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import CLOSE, approach_path
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.branch import Begin, TrackedBranch
+from compoundkin.kinematics.branch import Begin, TrackedBranch, course_of
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.default_modes import open_sign
 from compoundkin.kinematics.first_pose import first_state, letters_shown, nearest_sign
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
 from compoundkin.kinematics.group_march import GroupPath
 from compoundkin.kinematics.group_paths import track
+from compoundkin.kinematics.group_returns import with_returns
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs, fit
 from compoundkin.kinematics.limits import NEAREST
@@ -53,6 +54,7 @@ class Tracker(PrintsShort):
         if begin is None and solving_order.turning and solving_order.structure.mechanism.geometry.drawn:
             first = self.approach_path.cut(slice(None), slice(0, 1))
             self.given, self.approach_path = recounted(solving_order, (given, self.approach_path), first)
+        self.course = course_of(solving_order, self.given, self.approach_path) if solving_order.numbered else None
         if shown.points or solving_order.numbered or solving_order.turning:
             self.choose()
         else:
@@ -116,9 +118,8 @@ class Tracker(PrintsShort):
     @property
     def lost(self) -> bool:
         """Whether some group without a closed form was not reached everywhere."""
-        last = self.given.poses - 1.0
-        reach = [self.paths[k].reach for k in self.solving_order.numbered]
-        return any(not np.all((each[:, 0] <= 0.0) & (each[:, 1] >= last)) for each in reach)
+        ends, reach = (0.0, self.given.poses - 1.0), (self.paths[k].reach for k in self.solving_order.numbered)
+        return any(not np.all((each[:, 0] <= ends[0]) & (each[:, 1] >= ends[1])) for each in reach)
 
     def choose(self, last: int | None = None) -> None:
         """Pass through the groups at the drawn pose, choosing, all or up to one. Track those without a closed form."""
@@ -175,7 +176,8 @@ class _First:
         number = tracker.fixed.get(k)
         state, by = first_state(tracker.solving_order, solver, block, tracker.shown, number)
         tracker.chosen_by[k] = tracker.shown.source if by == "drawing" else by
-        tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, state)
+        tracker.approach_paths[k], path = track(tracker, k, state)
+        tracker.paths[k] = path if tracker.course else with_returns(tracker, k, path)
         return state
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
@@ -189,7 +191,8 @@ class _First:
         if not solver.is_numbered:
             tracker.signs[k] = begin.signs[k]
             return begin.signs[k]
-        tracker.approach_paths[k], tracker.paths[k] = track(tracker, k, begin.states[k])
+        tracker.approach_paths[k], path = track(tracker, k, begin.states[k])
+        tracker.paths[k] = with_returns(tracker, k, path, begin.period)
         return begin.states[k]
 
     def _sign(self, block: Block, solver: GroupSolver) -> tuple[Number, str]:
