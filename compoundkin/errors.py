@@ -8,6 +8,7 @@ True
 from __future__ import annotations
 
 from compoundkin.base.errors import (
+    ChangePointWarning,
     CompoundkinError,
     DrawnBeyondEnd,
     FewDigits,
@@ -22,6 +23,6 @@ from compoundkin.base.errors import (
 )
 
 __all__ = [
-    "CompoundkinError", "DrawnBeyondEnd", "FewDigits", "InvalidInput", "InvalidMechanism", "LikelySlip",
-    "NotAssembled", "NotDetermined", "Problem", "UnassembledPoses", "UnknownName",
+    "ChangePointWarning", "CompoundkinError", "DrawnBeyondEnd", "FewDigits", "InvalidInput", "InvalidMechanism",
+    "LikelySlip", "NotAssembled", "NotDetermined", "Problem", "UnassembledPoses", "UnknownName",
 ]  # fmt: skip

@@ -80,6 +80,10 @@ class UnassembledPoses(UserWarning):
     """Some poses of a motion cannot be assembled; they are NaN, masked and explained."""
 
 
+class ChangePointWarning(UserWarning):
+    """Drivers rest exactly at a change point, where two branches meet."""
+
+
 class DrawnBeyondEnd(UserWarning):
     """The pose drawn is beyond an end of a guide."""
 

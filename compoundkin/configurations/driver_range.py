@@ -163,5 +163,5 @@ def _drawn(solving_order: SolvingOrder, first: Mapping[str, float]) -> dict[str,
     if not mechanism.sketch:
         return {}
     given = inputs(solving_order, first, None, None, None)
-    path, _, _ = approach_path(solving_order, given, mechanism.drawn_poses, mechanism.geometry.sketch)
+    path, _ = approach_path(solving_order, given, mechanism.drawn_poses, mechanism.geometry.sketch)
     return {name: float(first_entry(v[0])) for name, v in path.drives.items()}

@@ -23,12 +23,11 @@ CLOSE = 1e-6
 
 def approach_path(
     solving_order: SolvingOrder, given: Inputs, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]
-) -> tuple[Inputs, float, float]:
-    """Return the way from the drawn drivers to the motion, where, and the reference.
+) -> tuple[Inputs, float]:
+    """Return the way from the drawn drivers to the motion, and its place there.
 
-    It leads to the place `at`, between two poses too, that is nearest to the drawing. It is one pose where the drawing
-    shows no driver, or shows them at a place of the motion. The reference is the place along the motion to which the
-    modes belong: just before `at` where the path comes from before, else just after.
+    It leads to the place, between two poses too, that is nearest to the drawing. It is one pose where the drawing
+    shows no driver, or shows them at a place of the motion.
     """
     shown = {name: drawn_value(solving_order, given, name, drawn, sketch) for name in solving_order.structure.driven}
     values = {name: value for name, value in shown.items() if value is not None}
@@ -44,7 +43,7 @@ def approach_path(
     count = 1 + max((spacings(solving_order, name, way) for name, way in ways.items()), default=0)
     ramp = np.linspace(-1.0, 0.0, count)[None] if count > 1 else np.zeros((1, 1))
     path = end.driven({name: (rest[0] + ways[name] * ramp,) for name, rest in end.drives.items()})
-    return path.of_poses(count), at, at + _side(given, at, ways if count > 1 else {}) * CLOSE
+    return path.of_poses(count), at
 
 
 def drawn_value(
@@ -93,14 +92,6 @@ def _off(solving_order: SolvingOrder, given: Inputs, name: str, value: Number) -
         off = off - whole_turns(off)
     off = np.atleast_2d(off / _unit(solving_order, name))
     return np.broadcast_to(off, (len(off), given.poses))
-
-
-def _side(given: Inputs, at: float, ways: Mapping[str, Number]) -> float:
-    """-1 where the approach path reaches the motion's place `at` in the direction of the motion, else +1."""
-    moves = given.poses > 1 and any(np.any(way != 0.0) for way in ways.values())
-    step = given.at(np.array([at])).drives if moves else {}
-    along = sum(float(np.sum(np.sign(values[1] * ways[name]))) for name, values in step.items())
-    return -1.0 if along > 0.0 else 1.0
 
 
 def first_of(value: Number) -> Number:

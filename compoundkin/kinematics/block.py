@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.limits import CLIPPED, LimitRule, Root, double_root
+from compoundkin.kinematics.limits import CLIPPED, LimitRule, Root
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Body
 
@@ -23,8 +23,8 @@ class Block:
     its composite body (absent for the body's own base); all have derivatives to `order`. `shape` is designs x poses,
     before them an axis for each group of which several configurations are tried side by side: what is known may be
     smaller, where it does not change. `failed` is the index of the first group that does not close plus one, else 0;
-    `margins` are by the groups' indices. `limits` holds at limit positions; `doubles` marks, by group, the poses that
-    are change points.
+    `margins` and the `meetings` of pins are by the groups' indices. `limits` holds at limit positions, but for groups
+    that have `roots` of their own.
     """
 
     shape: tuple[int, ...]
@@ -33,9 +33,10 @@ class Block:
     local: Mapping[str, Pose]
     order: int
     limits: LimitRule = CLIPPED
-    doubles: Mapping[int, Number] = field(default_factory=dict)
+    roots: Mapping[int, Root] = field(default_factory=dict)
     failed: Number = 0
     margins: dict[int, Number] = field(default_factory=dict)
+    meetings: dict[int, Series] = field(default_factory=dict)
 
     def copy(self) -> Block:
         """Return the same block, to try a group on."""
@@ -62,7 +63,7 @@ class Block:
 
     def root(self, index: int) -> Root:
         """Return how a group takes the square root in its closed form."""
-        return double_root(self.doubles[index]) if index in self.doubles else self.limits.root
+        return self.roots.get(index, self.limits.root)
 
     def fail(self, good: Number, index: int) -> None:
         """Note that a group does not close where `good` is false. One that failed before it stays noted."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, whole_turns
 from compoundkin.base.series import Number
-from compoundkin.kinematics.approach import CLOSE, SPACING, spacings
+from compoundkin.kinematics.approach import SPACING, spacings
 from compoundkin.kinematics.group_march import GroupPath
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -27,9 +27,9 @@ class Begin:
     states: Mapping[int, Number]
     period: float
 
-    def way(self, given: Inputs) -> tuple[Inputs, float, float]:
-        """Return the approach path, which is one pose. Return also its place and the reference."""
-        return given.at(np.array([self.at])).of_poses(1), self.at, self.at + CLOSE
+    def way(self, given: Inputs) -> tuple[Inputs, float]:
+        """Return the approach path, which is one pose, and its place."""
+        return given.at(np.array([self.at])).of_poses(1), self.at
 
 
 @dataclass(frozen=True)

@@ -1,69 +1,81 @@
 """Change points: where the two modes of a dyad meet and the smooth motion goes on in the other one.
 
-A parallelogram that becomes flat has both its modes in one pose. Its discriminant touches zero there
-without changing sign, as a square does; the root of it that is smooth changes sign. Between samples such
-a place is found as a minimum of the margin that is zero but for rounding.
+A parallelogram that becomes flat has both its modes in one pose. Its discriminant touches zero there without changing
+sign, as the square of a smooth function does; that function, the root, changes sign. On which side of the zero a pose
+lies is seen from the discriminant's rate by the drivers, which is a multiple of the root: of the discriminant itself
+nothing is left near its zero but rounding. It is the drivers' path that counts, not time: where they turn back at a
+change point the linkage returns as it came.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from functools import reduce
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import column
-from compoundkin.base.bracketing import least
-from compoundkin.base.poses import Pose
+from compoundkin.base.bracketing import false_position
 from compoundkin.base.series import Number
-from compoundkin.kinematics.approach import CLOSE, between
-from compoundkin.kinematics.block import blocks, places
-from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.double_roots import EXTRA, TOUCHING, roots_along, slope_is_zero, squares
+from compoundkin.kinematics.searched_ways import BLOCK, NEAR, SearchedWay, searched_ways
 from compoundkin.kinematics.tracking import Tracker
 
-# Margins (squared sines) below this between poses five degrees apart may have a zero between them.
-NEAR = 0.05
-# A margin below this at its minimum is a touching zero: rounding times the inverse of the margin's curvature.
-TOUCHING = 1e-12
-# A minimum is searched for unless the parabola through three samples stays above this part of the higher neighbour:
-# that of a zero that falls like a square is near zero, that of one that falls linearly at most at a quarter.
-CLEAR = 0.35
-# From a zero a margin rises at most so many times as fast as to the higher end of its bracket.
-STEEP = 4.0
-# Steps of golden-section search: 0.618**65 is below TOUCHING, for margins that fall linearly to zero.
-STEPS = 65
-BLOCK = 4096
+# The discriminant's rate is searched for its zero so often, to this part of its values at the ends.
+TRIALS = 60
+FLAT = 1e-15
 
 
-@dataclass(frozen=True)
-class _Way:
-    """The approach path or the motion, searched at samples near enough to each other, `unit` places apart."""
+class _Slopes(NamedTuple):
+    """The rates of a square by the drivers, (n, drivers), at samples.
 
-    samples: Inputs
-    unit: float
-    on_approach: bool
+    `touching` is where the square is zero, `still` where its rates are too.
+    """
 
-    def margins(self, tracker: Tracker, part: Inputs, s: Number, designs: Number, upto: int) -> Mapping[int, Number]:
-        """Return the margins of all groups up to one, at samples `s` of a part of the way."""
-        return tracker.run(part, 0, s * self.unit, designs, upto, self.on_approach).margins
+    rates: Number
+    touching: Number
+    still: Number
 
-    def blocks(self) -> Iterator[tuple[slice, slice, Inputs, Number, Number]]:
-        """Return the way in blocks: designs, samples, their inputs, places and design indices."""
-        for d, m in blocks(self.samples.designs, self.samples.poses, BLOCK):
-            yield d, m, self.samples.cut(d, m), *places(d, m)
+    def joined(self, other: _Slopes) -> _Slopes:
+        """Return these and others."""
+        return _Slopes(*(np.concatenate(columns) for columns in zip(self, other, strict=True)))
 
 
-def near_groups(tracker: Tracker) -> set[int]:
-    """Find groups near a limit position. It is on the approach path, or between a coarse motion's poses."""
-    found: set[int] = set()
-    upto = 1 + max((k for k, solver in enumerate(tracker.solving_order.solvers) if solver.modes_may_meet), default=-1)
-    for way in _ways(tracker) if upto else ():
-        if way.on_approach or way.unit < 1.0:
-            for _, _, part, s, designs in way.blocks():
-                margins = way.margins(tracker, part, s, designs, upto)
-                found |= {k for k, margin in margins.items() if np.any(margin < NEAR)}
-    return found
+def _slopes(columns: Sequence[Sequence[Number]], bound: float) -> _Slopes:
+    """Return the slopes from coefficients by each driver; a square is zero below a bound."""
+    first, second = (np.stack([c[i] for c in columns], axis=-1) for i in (1, 2))
+    touching = np.abs(columns[0][0]) < bound
+    return _Slopes(first, touching, slope_is_zero(first, second).all(axis=-1) & touching)
+
+
+class _Known(NamedTuple):
+    """What is known of a square of a group at samples of a way, in order along each design.
+
+    `square` tells which it is, `per_pose` how many samples there are to a pose.
+    """
+
+    designs: Number
+    samples: Number
+    slopes: _Slopes
+    square: int
+    per_pose: float
+
+
+class _Found(NamedTuple):
+    """At which designs and places a group is at change points: an even number of times where it returns as it came.
+
+    `rests` are the designs and poses at which drivers come to rest at one.
+    """
+
+    places: list[tuple[int, float]]
+    rests: list[tuple[int, int]]
+
+    @classmethod
+    def of(cls, parts: Iterable[_Found]) -> _Found:
+        """Return what is found in several parts."""
+        every = list(parts)
+        return cls([p for each in every for p in each.places], [r for each in every for r in each.rests])
 
 
 def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
@@ -71,148 +83,125 @@ def pass_through(tracker: Tracker, near: Iterable[int]) -> bool:
 
     They are noted in the tracker, which changes the group's sign there.
     """
-    open_to = [k for k in sorted(near) if k not in tracker.flips and tracker.solving_order.solvers[k].modes_may_meet]
-    if not open_to:
-        return False
-    found = [(way, _touching(way, tracker, open_to)) for way in _ways(tracker)]
-    first = min((int(spots.groups[0]) for _, spots in found if len(spots.groups)), default=None)
-    if first is None:
-        return False
-    for way, spots in found:
-        here = spots.groups == first
-        if here.any():
-            flips = tracker.approach_flips if way.on_approach else tracker.flips
-            flips[first] = _padded(spots.designs[here], spots.places[here], tracker.given.designs)
-    tracker.flips.setdefault(first, np.full((tracker.given.designs, 1), np.inf))
-    if tracker.solving_order.numbered or tracker.turns:
-        tracker.choose()
-    return True
+    ways, count = list(searched_ways(tracker)), tracker.given.designs
+    for k in sorted(k for k in near if k not in tracker.flips and tracker.solving_order.solvers[k].modes_may_meet):
+        known = [(way, each) for way in ways for each in _known(way, k)]
+        early, late = ([(way, each) for way, each in known if way.on_approach is which] for which in (True, False))
+        before, found = (_Found.of(_passed(way, k, each) for way, each in part) for part in (early, late))
+        end = tracker.approach_path.poses - 1.0
+        pairs = product((each for _, each in early), (each for _, each in late))
+        entered = [(d, end) for one, two in pairs if one.square == two.square for d in _entered(tracker, one, two)]
+        if entered or before.places or found.places:
+            tracker.approach_flips[k] = _padded([*entered, *before.places], count)
+            tracker.flips[k] = _padded(found.places, count)
+            tracker.rests[k] = found.rests
+            if tracker.solving_order.numbered or tracker.turns:
+                tracker.choose()
+            return True
+    return False
 
 
-def _sampled(way: _Way, tracker: Tracker, groups: Sequence[int]) -> dict[int, Number]:
-    """Return the margins of some groups at all samples of a way; right as far as the first group that changes."""
-    found = {k: np.empty((way.samples.designs, way.samples.poses)) for k in groups}
-    for d, m, part, s, designs in way.blocks():
-        margins = way.margins(tracker, part, s, designs, groups[-1] + 1)
-        for k, whole in found.items():
-            whole[d, m] = margins[k]
-    return found
-
-
-def _ways(tracker: Tracker) -> Iterator[_Way]:
-    """The approach path, and the motion with samples put between poses that are far apart; none of a single pose."""
-    if tracker.approach_path.poses > 1:
-        yield _Way(tracker.approach_path, 1.0, on_approach=True)
-    given = tracker.given
-    if given.poses > 1:
-        per_pose = max(1, between(tracker.solving_order, given))
-        yield _Way(given.refined(per_pose), 1.0 / per_pose, on_approach=False)
-
-
-def rates_at(given: Inputs, tracker: Tracker, order: int) -> tuple[Number, Number, Mapping[str, Pose]]:
-    """Return the poses that are change points themselves, solved through the double root.
-
-    They are designs, indices, poses.
-    """
-    spots: dict[tuple[int, int], dict[int, bool]] = {}
-    for k, flips in tracker.flips.items():
-        place: Number = np.round(flips)
-        for d, j in zip(*np.nonzero(np.abs(flips - place) < CLOSE), strict=True):
-            spots.setdefault((int(d), int(place[d, j])), {})[k] = True
-    designs = np.array([d for d, _ in spots], dtype=int)
-    index = np.array([m for _, m in spots], dtype=int)
-    if not spots:
-        return designs, index, {}
-    doubles = {k: np.array([[k in found] for found in spots.values()]) for k in tracker.flips}
-    part = given.pick(designs, index.astype(float))
-    after = index[:, None] + _direction(given, designs, index)[:, None] * 2.0 * CLOSE
-    # each double root in a row costs two orders
-    block = tracker.run(part, order + 2 * len(doubles), after, designs[:, None], doubles=doubles)
-    return designs, index, block.world
-
-
-def _direction(given: Inputs, designs: Number, index: Number) -> Number:
-    """+1 where the drivers' speeds carry the motion on to its next pose, -1 where back."""
-    part = given.pick(designs, index.astype(float))
-    ahead = given.pick(designs, np.minimum(index + 1, given.poses - 1).astype(float))
-    behind = given.pick(designs, np.maximum(index - 1, 0).astype(float))
-    total: Number = np.zeros(len(index))
-    for name, values in part.drives.items():
-        total = total + np.ravel((ahead.drives[name][0] - behind.drives[name][0]) * values[1])
-    return np.where(total < 0, -1.0, 1.0)
-
-
-class _Spots(NamedTuple):
-    """Places along a way, each of one group and one design; in the order of the groups."""
-
-    groups: Number
-    designs: Number
-    places: Number
-
-    def where(self, which: Number) -> _Spots:
-        """Return some of them."""
-        return _Spots(self.groups[which], self.designs[which], self.places[which])
-
-
-def _touching(way: _Way, tracker: Tracker, groups: Sequence[int]) -> _Spots:
-    """Where groups have a zero margin that does not change sign; right as far as the first group that has any."""
-    margins = _sampled(way, tracker, groups)
-    lowest = [(k, *_lowest(margins[k])) for k in groups]
-    spots = _Spots(*(np.concatenate(parts) for parts in zip(*((np.full(len(d), k), d, i) for k, d, i in lowest),
-                                                           strict=True)))  # fmt: skip
-    if not len(spots.groups):
-        return spots
-    place, lowest = _minimum(way, tracker, spots)
-    place = place * way.unit
-    snapped = np.where(np.abs(place - np.round(place)) < CLOSE, np.round(place), place)
-    return spots._replace(places=snapped).where((np.abs(lowest) < TOUCHING) & np.isfinite(lowest))
-
-
-def _lowest(margin: Number) -> tuple[Number, Number]:
-    """Return designs and samples at which a margin is least and may have a zero beside them."""
-    padded = np.pad(margin, ((0, 0), (1, 1)), constant_values=np.inf)
-    here, before, after = margin, padded[:, :-2], padded[:, 2:]
-    lowest = (here < NEAR) & (here >= -TOUCHING) & (here <= before) & (here < after) & (before >= 0) & (after >= 0)
-    # at an end of the way the neighbour is not known: only between three samples is a parabola any evidence
-    bend = before + after - 2.0 * here
-    vertex = here - (after - before) ** 2 / (8.0 * bend)
-    clear = np.isfinite(bend) & (vertex > CLEAR * np.maximum(before, after))
-    designs, index = np.nonzero(lowest & ~clear)
-    return designs, index
-
-
-def _minimum(way: _Way, tracker: Tracker, spots: _Spots) -> tuple[Number, Number]:
-    """Golden-section search for the least margins beside samples, for all groups and brackets at once.
-
-    A bracket is left as soon as its margin is negative somewhere, or higher than it could rise from a zero within what
-    is left of it.
-    """
-    low = np.maximum(spots.places - 1.0, 0.0)
-    high = np.minimum(spots.places + 1.0, way.samples.poses - 1.0)
-    steepest = STEEP * np.fmax(_margins(way, tracker, spots, low), _margins(way, tracker, spots, high))
-    return least(
-        lambda s, which: _margins(way, tracker, spots.where(which), s),
-        low,
-        high,
-        STEPS,
-        lambda values, widths: (values >= -TOUCHING) & (values <= steepest * widths),
+def _slopes_at(way: SearchedWay, k: int, designs: Number, s: Number) -> list[_Slopes]:
+    """Return the slopes of a group's squares at samples."""
+    tracker, part = way.tracker, way.samples.pick(designs, s)
+    groups, found = [n for n in tracker.flips if n < k], []
+    onward, sense = (
+        way.values.onward(designs, s.astype(int))
+        if groups
+        else (np.zeros((len(s), len(part.drives))), np.zeros(len(s)))
     )
+    place = s * way.unit
+    spots = np.nextafter(place, place + sense)[:, None], designs[:, None], way.on_approach
+    for name in part.drives:
+        rates = {n: (v[0], tracker.solving_order.unit(n) if n == name else 0.0) for n, v in part.drives.items()}
+        along = part.driven(rates)
+        roots, _ = roots_along(tracker, along, spots, groups, onward)
+        found.append(squares(tracker, along, spots, k, roots, 2 + (EXTRA if roots else 0)))
+    both = ((each.discriminant for each in found), (each.meeting for each in found if each.meeting))
+    bounds = (TOUCHING, TOUCHING**2)
+    return [_slopes(columns, bound) for columns, bound in zip(map(list, both), bounds, strict=True) if columns]
 
 
-def _margins(way: _Way, tracker: Tracker, spots: _Spots, s: Number) -> Number:
-    """Return the margin of each spot's group at a place beside it."""
-    upto = int(spots.groups.max()) + 1
-    found = way.margins(tracker, way.samples.pick(spots.designs, s), s[:, None], spots.designs[:, None], upto)
-    own = np.empty(len(s))
-    for k in np.unique(spots.groups):
-        here = spots.groups == k
-        own[here] = column(found[k], len(s))[here]
-    return own
+def _known(way: SearchedWay, k: int) -> list[_Known]:
+    """Return what is known of a group's squares at samples at or beside which its margin is near zero."""
+    near: Number = np.zeros((way.samples.designs, way.samples.poses), dtype=bool)
+    for d, m, part, s, designs in way.blocks():
+        near[d, m] = np.abs(way.margins(part, s, designs, k + 1)[k]) < NEAR
+    beside = near.copy()
+    beside[:, 1:] |= near[:, :-1]
+    beside[:, :-1] |= near[:, 1:]
+    designs, samples = np.nonzero(beside)
+    parts = (slice(i, i + BLOCK) for i in range(0, len(designs), BLOCK))
+    found = [_slopes_at(way, k, designs[part], samples[part].astype(float)) for part in parts]
+    slopes = (reduce(_Slopes.joined, each) for each in zip(*found, strict=True))
+    return [_Known(designs, samples, each, square, 1.0 / way.unit) for square, each in enumerate(slopes)]
 
 
-def _padded(designs: Number, where: Number, count: int) -> Number:
-    rows = [np.sort(where[designs == d]) for d in range(count)]
-    out = np.full((count, max(len(row) for row in rows)), np.inf)
-    for d, row in enumerate(rows):
-        out[d, : len(row)] = row
+def _passed(way: SearchedWay, k: int, known: _Known) -> _Found:
+    """Return where a group passes between samples whose rates are opposite, or is at samples that are change points."""
+    designs, samples, slopes = known.designs, known.samples, known.slopes
+    moving = np.flatnonzero(~slopes.still)
+    a, b = moving[:-1], moving[1:]
+    # samples that are not near lie between some
+    joined = (designs[a] == designs[b]) & (samples[b] - samples[a] == b - a)
+    opposite = np.sum(slopes.rates[a] * slopes.rates[b], axis=-1) < 0.0
+    places = _between(way, k, known, a[joined & opposite & (b - a == 1)])
+    rests = []
+    for one, two, passes in zip(*(x[joined & (b - a > 1)] for x in (a, b, opposite)), strict=True):
+        first, last = samples[one + 1] * way.unit, samples[two - 1] * way.unit
+        places += [(int(designs[one]), float(first))] * (1 if passes else 2)
+        rests += [(int(designs[one]), int(np.ceil(first)))] if np.floor(last) > np.ceil(first) else []
+    for n in np.flatnonzero(slopes.still & (not way.on_approach)):
+        if samples[n] == 0:
+            places.append((int(designs[n]), 0.0))
+        elif samples[n] == way.samples.poses - 1:
+            # beyond all poses, the motion is on one side of it
+            places.append((int(designs[n]), float(np.nextafter(samples[n] * way.unit, np.inf))))
+    return _Found(places, rests)
+
+
+def _between(way: SearchedWay, k: int, known: _Known, a: Number) -> list[tuple[int, float]]:
+    """Return designs and places of zeros between some samples and those after them. They are change points."""
+    designs, samples, rates = known.designs[a], known.samples[a].astype(float), known.slopes.rates
+    if not len(a):
+        return []
+    # the rates by the drivers are all multiples of the root: of one direction, which changes to the opposite
+    across = rates[a + 1] - rates[a]
+    across = across / np.sum(across**2, axis=-1, keepdims=True)
+
+    def slopes(s: Number) -> _Slopes:
+        return _slopes_at(way, k, designs, samples + s)[known.square]
+
+    def rate(s: Number) -> Number:
+        found: Number = np.sum(slopes(s).rates * across, axis=-1)
+        return found
+
+    low, high = (np.sum(rates[i] * across, axis=-1) for i in (a, a + 1))
+    place = false_position(rate, np.ones(len(a)), low, high, FLAT, TRIALS)
+    touching = slopes(place).touching
+    return [
+        (int(d), float(s)) for d, s in zip(designs[touching], ((samples + place) * way.unit)[touching], strict=True)
+    ]
+
+
+def _entered(tracker: Tracker, early: _Known, late: _Known) -> Iterator[int]:
+    """Yield the designs whose approach path ends at a change point that the motion has passed as it goes on."""
+    at, last = tracker.at * late.per_pose, tracker.approach_path.poses - 1
+    for d in early.designs[early.slopes.still & (early.samples == last)]:
+        before = np.flatnonzero((early.designs == d) & ~early.slopes.still)
+        moving = np.flatnonzero((late.designs == d) & ~late.slopes.still)
+        ahead, back = moving[late.samples[moving] > at], moving[late.samples[moving] < at]
+        after = ahead[:1] if len(ahead) else back[-1:]
+        if len(before) and len(after) and early.slopes.rates[before[-1]] @ late.slopes.rates[after[0]] < 0.0:
+            yield int(d)
+
+
+def _padded(found: Sequence[tuple[int, float]], count: int) -> Number:
+    """Return places by design in order, (count, most), padded with inf."""
+    rows: list[list[float]] = [[] for _ in range(count)]
+    for design, place in found:
+        rows[design].append(place)
+    out = np.full((count, max(1, *map(len, rows))), np.inf)
+    for row, own in zip(out, rows, strict=True):
+        row[: len(own)] = sorted(own)
     return out

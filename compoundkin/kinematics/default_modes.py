@@ -2,43 +2,81 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver, equations_of
+from compoundkin.kinematics.inputs import Inputs, fit
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.structure.four_bars import FourBarLoops, Place
 
 # Twice a triangle's area below this part of the product of two sides is none: both modes close polygons of one area.
 TIE = 1e-12
 # Where the modes tie they are told apart by the first derivative of the area that is not zero, up to this one.
 HIGHEST = 3
+# The modes of a dyad meet where its margin is below this: a change point, but for rounding.
+FLAT = 1e-12
 # Configurations whose determinants differ by less than this part are mirror images but for rounding.
 EVEN = 1e-9
 # Stands for the largest of no heights at all.
 TINY = 1e-300
 
 
-def open_sign(
-    loops: FourBarLoops, point: Callable[[str, str], Number], block: Block, ahead: Callable[[int], Block]
-) -> Number:
+class AtFirstPose(Protocol):
+    """What chooses the modes: the motion, its approach path, signs so far."""
+
+    solving_order: SolvingOrder
+    given: Inputs
+    approach_path: Inputs
+    at: float
+    signs: dict[int, Number]
+
+    def run(
+        self, part: Inputs, order: int, s: Number, designs: Number, upto: int | None = None, on_approach: bool = False
+    ) -> Block:
+        """Solve a block of inputs, up to a group."""
+
+
+def default_sign(tracker: AtFirstPose, k: int, block: Block) -> Number:
+    """Return the sign that a dyad has where nothing chooses. All before it is assembled in a block."""
+    loops = tracker.solving_order.four_bars.get(k)
+    return 1 if loops is None else _open_sign(tracker, k, loops, block)
+
+
+def _open_sign(tracker: AtFirstPose, k: int, loops: FourBarLoops, block: Block) -> Number:
     """Return the sign with which a dyad's four-bar loop has the larger area.
 
     The polygon of a loop A, B, C, D has the area of half the vector product of its diagonals, so that its two modes, C
     on one or on the other side of BD, differ in how A lies beside BD: C lies opposite. Where A is on BD, it is where A
-    will be that counts. `point(link, letter)` is a point on its link, `block` the first pose, `ahead(order)` the same
-    with derivatives as the drivers go on.
+    will be that counts.
     """
-    sides = _sides(loops, point, block)[0]
+    sides = _sides(tracker, loops, block)[0]
     if np.any(sides == 0.0):
-        for rate in _sides(loops, point, ahead(HIGHEST))[1:]:
+        for rate in _sides(tracker, loops, _ahead(tracker, k))[1:]:
             sides = np.where(sides == 0.0, rate, sides)
-        first, second = (_at(place, point, block).c[0] for place in (loops.first, loops.second))
+        first, second = (_at(tracker, place, block).c[0] for place in (loops.first, loops.second))
         sides = np.where(sides == 0.0, _upward(second - first), sides)
     signs = np.broadcast_to(np.where(sides < 0.0, -1.0, 1.0), (block.shape[0], 1))
     return float(signs[0, 0]) if np.all(signs == signs[0, 0]) else signs
+
+
+def _ahead(tracker: AtFirstPose, k: int) -> Block:
+    """Return what is solved before a group, with derivatives by increasing drivers. It is at the drawn pose.
+
+    At a change point of the group a mode is that of the side to which the motion goes: its drivers may decrease.
+    """
+    first = tracker.approach_path.cut(slice(None), slice(0, 1))
+    place = np.zeros((1, 1)), np.arange(tracker.given.designs)[:, None]
+    tracker.signs[k] = 1
+    margin = tracker.run(first, 0, *place, upto=k + 1, on_approach=True).margins[k]
+    single = tracker.approach_path.poses == 1
+    sense = _senses(tracker.given, int(tracker.at)) if single else _senses(tracker.approach_path, 0)
+    rates = {n: tracker.solving_order.unit(n) * np.where(margin < FLAT, sense[n], 1.0) for n in first.drives}
+    part = first.driven({name: (v[0], rates[name]) for name, v in first.drives.items()})
+    return tracker.run(part, HIGHEST, *place, upto=k, on_approach=True)
 
 
 def regularity(solver: GroupSolver, state: Number, block: Block) -> Number:
@@ -55,17 +93,28 @@ def regularity(solver: GroupSolver, state: Number, block: Block) -> Number:
     return determinant * (1.0 + EVEN * heights / np.nanmax(np.abs(heights), initial=TINY))
 
 
-def _sides(loops: FourBarLoops, point: Callable[[str, str], Number], block: Block) -> list[Number]:
+def _senses(way: Inputs, start: int) -> dict[str, Number]:
+    """Return in which sense each driver goes on from a pose of a way, +1 or -1. It is +1 for one that rests."""
+    found: dict[str, Number] = {}
+    for name, (value, *_) in way.drives.items():
+        steps = value[:, start + 1 :] - value[:, start : start + 1] if np.ndim(value) else np.zeros((1, 0))
+        first = np.argmax(steps != 0.0, axis=1) if steps.shape[1] else 0
+        falls = steps[np.arange(len(steps)), first] < 0.0 if steps.shape[1] else np.zeros(len(steps), dtype=bool)
+        found[name] = np.where(falls, -1.0, 1.0)[:, None]
+    return found
+
+
+def _sides(tracker: AtFirstPose, loops: FourBarLoops, block: Block) -> list[Number]:
     """Return on which side of the line through the outer pins the opposite pin lies, with derivatives; 0 for none.
 
     Of several opposite pins it is the one that makes the largest area.
     """
-    first, second = (_at(place, point, block) for place in (loops.first, loops.second))
+    first, second = (_at(tracker, place, block) for place in (loops.first, loops.second))
     line = second - first
     found: list[Number] = [0.0] * (block.order + 1)
     most: Number = 0.0
     for place in loops.opposite:
-        arm = _at(place, point, block) - first
+        arm = _at(tracker, place, block) - first
         area = line.cross(arm)
         scale = TIE * np.abs(line.c[0]) * np.abs(arm.c[0])
         values = [np.where(np.abs(c) > scale, c, 0.0) for c in (*area.c, *[0.0] * (block.order - area.order))]
@@ -75,8 +124,12 @@ def _sides(loops: FourBarLoops, point: Callable[[str, str], Number], block: Bloc
     return found
 
 
-def _at(place: Place, point: Callable[[str, str], Number], block: Block) -> Series:
-    return as_series(block.world[place.link].at(point(place.link, place.letter)))
+def _at(tracker: AtFirstPose, place: Place, block: Block) -> Series:
+    """Return where a point is, its place on its link being that of the motion's pose nearest to the drawn one."""
+    mechanism = tracker.solving_order.structure.mechanism
+    point = fit(tracker.given.shape)(mechanism.geometry.points[place.link][place.letter])
+    varies = np.ndim(point) > 0 and point.shape[1] > 1
+    return as_series(block.world[place.link].at(point[:, [int(tracker.at)]] if varies else point))
 
 
 def _upward(line: Number) -> Number:

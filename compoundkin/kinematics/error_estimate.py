@@ -20,7 +20,7 @@ import numpy as np
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import blocks, places
-from compoundkin.kinematics.change_points import rates_at
+from compoundkin.kinematics.double_roots import rates_at
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.tracking import Tracker
@@ -47,7 +47,7 @@ def errors_of(tracker: Tracker, given: Inputs, order: int) -> list[Number]:
         part = errors_at(tracker, given.cut(d, m), order, *places(d, m))
         for whole, errors in zip(found, _largest(part, order), strict=True):
             whole[d, m] = errors
-    if tracker.flips and order:
+    if tracker.expanded is not None:
         designs, index, poses = rates_at(given, tracker, order)
         if len(designs):
             part = _differences(

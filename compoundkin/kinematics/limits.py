@@ -13,6 +13,8 @@ from compoundkin.base.series import Number, Series
 # Below this fraction of its largest terms a discriminant is zero: rounding of a limit position, where
 # the group is stretched or folded. A few hundred units in the last place of the terms it is the difference of.
 LIMIT = 1e-13
+# Rounds in which the smooth root of a square settles: each gains a power of the way to its zero, some hundredths.
+ROUNDS = 8
 # Corrections above this (of the size, or radians) leave the region where Newton's answer is a neighbour.
 LEAP = 0.5
 # A seed is at its configuration within this (of the size, or radians), or Newton has left it.
@@ -52,22 +54,52 @@ def edge_root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
     return Series((lead, *discriminant.c[1:])).sqrt(), np.divide(discriminant.c[0], scale)
 
 
-def double_root(where: Number) -> Root:
-    """Return the root that takes, where asked, the discriminant to be a square.
+def noted_root(notes: list[Series]) -> Root:
+    """Return the clipped root that notes its discriminants, in parts of their scale."""
 
-    It is zero then, and so is its first rate.
+    def root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
+        notes.append(Series(tuple(np.divide(c, scale) for c in discriminant.c)))
+        return clipped_root(discriminant, scale)
 
-    There the root is ``t sqrt(c[2] + c[3] t + ...)``: the group passes through its limit position without
-    turning back. Two coefficients are lost: the last two of the result mean nothing.
+    return root
+
+
+def signed_root(where: Number, sign: Number) -> Root:
+    """Return the root that is smooth where asked: the discriminant is its square.
+
+    It has a sign, before which its first rate is positive.
     """
 
     def root(discriminant: Series, scale: Number) -> tuple[Series, Number]:
         plain, margin = clipped_root(discriminant, scale)
-        inner = Series(discriminant.c[2:]).sqrt().c
-        through = (np.zeros_like(margin), *inner, np.zeros_like(margin))
-        return Series(tuple([np.where(where, t, p) for t, p in zip(through, plain.c, strict=True)])), margin
+        size = np.sqrt(scale)
+        smooth = [c * size * sign for c in root_of_square(tuple(np.divide(c, scale) for c in discriminant.c))]
+        both = zip([*smooth, np.zeros_like(margin)], plain.c, strict=True)
+        return Series(tuple([np.where(where, t, p) for t, p in both])), margin
 
     return root
+
+
+def root_of_square(c: tuple[Number, ...]) -> list[Number]:
+    """Return the coefficients, one fewer, of a smooth function whose square has these.
+
+    The function is near its zero, and grows: of the square itself nothing is left there but rounding, so that all is
+    taken from its rates. Each round takes on another power of the way to the zero; the last coefficients need those
+    that are not known, and mean less.
+
+    >>> root_of_square((0.0001, 0.02, 1.0, 0.0, 0.0))  # of 0.01 + t
+    [0.01, 1.0, 0.0, 0.0]
+    """
+    n = len(c) - 1
+    r: list[Number] = [0.0] * (n + 1)
+    for _ in range(ROUNDS):
+        r[1] = np.sqrt(c[2] - 2.0 * r[0] * r[2])
+        half = 0.5 / r[1]
+        r[0] = c[1] * half
+        for j in range(2, n):
+            inner = sum((r[i] * r[j + 1 - i] for i in range(2, j)), 2.0 * r[0] * r[j + 1])
+            r[j] = (c[j + 1] - inner) * half
+    return r[:n]
 
 
 @dataclass(frozen=True)

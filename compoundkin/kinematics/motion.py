@@ -156,7 +156,7 @@ class Motion(CopiesFields, ShowsPicture):
 
     @property
     def change_points(self) -> Mapping[int, Number]:
-        """Where groups pass change points: places along the motion (designs, count), padded with inf."""
+        """Where groups are at change points, (designs, count), padded with inf. Twice where the motion turns back."""
         return self.tracker.flips
 
     def sign(self, k: int, design: int) -> int:

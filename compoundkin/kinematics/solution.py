@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import (
+    ChangePointWarning,
     DrawnBeyondEnd,
     FewDigits,
     InvalidInput,
@@ -72,8 +73,9 @@ def solve(
 
     Raises NotDetermined where the structure cannot be solved, InvalidInput for values that do not fit,
     NotAssembled where a group has no pose at all or a redundant pair opens; warns UnassembledPoses where some poses do
-    not close, DrawnBeyondEnd where the drawing is beyond an end of a guide, FewDigits where rates next to a limit
-    position have fewer than three digits; those without any are NaN.
+    not close, DrawnBeyondEnd where the drawing is beyond an end of a guide, ChangePointWarning where drivers rest
+    exactly at a change point (the smooth motion goes on), FewDigits where rates next to a limit position have fewer
+    than three digits; those without any are NaN.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
@@ -100,9 +102,11 @@ def solve(
 
 
 def _warn(motion: Motion, poor: int) -> None:
-    """Warn of poses not assembled, of rates with few digits, of a drawing beyond an end."""
+    """Warn of poses not assembled, of rates with few digits, of rests at change points, of drawings beyond ends."""
     if motion.solving_order.guide_ends.pairs:
         _warn_of_drawing(motion.tracker)
+    if any(motion.tracker.rests.values()):
+        warn(_rest(motion), ChangePointWarning)
     missing = int(np.count_nonzero(motion.failed))
     if missing:
         how_many = f"{missing} of {motion.failed.size} poses cannot be assembled"
@@ -110,6 +114,20 @@ def _warn(motion: Motion, poor: int) -> None:
     if poor:
         how_many = f"rates at {poor} of {motion.failed.size} poses have fewer than three digits"
         warn(f"{how_many}, next to limit positions: Motion.error(order) tells where", FewDigits)
+
+
+def _rest(motion: Motion) -> str:
+    """Return where drivers rest at a change point for the first time, and which branch is taken from there."""
+    group, (design, pose) = next((k, found[0]) for k, found in motion.tracker.rests.items() if found)
+    values = {
+        name: np.broadcast_to(v[0], motion.failed.shape)[design, pose] for name, v in motion.inputs.drives.items()
+    }
+    angles = motion.structure.driven_angles
+    told = (f"{name} = {np.rad2deg(v) if angles[name] else v:.6g}{' degrees' if angles[name] else ''}"
+            for name, v in values.items())  # fmt: skip
+    links = ", ".join(motion.structure.groups[group].links)
+    where = f"at pose {pose}, {', '.join(told)}, the drivers rest at a change point of {links}"
+    return f"{where}: either branch may go on from there, and the smooth motion is taken"
 
 
 def _warn_of_drawing(tracker: Tracker) -> None:

@@ -7,10 +7,12 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.branch import Begin, TrackedBranch
-from compoundkin.kinematics.change_points import NEAR, near_groups, pass_through, rates_at
+from compoundkin.kinematics.change_points import pass_through
+from compoundkin.kinematics.double_roots import expanded
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.lost_digits import doubtful
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.searched_ways import NEAR, near_groups
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.tracking import Tracker
 
@@ -32,9 +34,9 @@ def settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order:
         if near and pass_through(tracker, near):
             continue
         if not tracker.lost or not with_branch(tracker):
-            if not tracker.flips or not order:
+            if not near:
                 return motion, where
-            designs, index, poses = rates_at(given, tracker, order)
+            designs, index, poses = expanded(tracker, near, order)
             where[designs, index] = False
             return motion.mended(designs, index, poses), where
 

@@ -62,6 +62,10 @@ class SolvingOrder(PrintsShort):
         """The indices of the groups whose configurations are numbered."""
         return tuple(solver.index for solver in self.solvers if solver.is_numbered)
 
+    def unit(self, name: str) -> float:
+        """Return by how much a driver goes where it goes far. It is a radian, or the mechanism's size."""
+        return 1.0 if self.structure.driven_angles[name] else self.size
+
     @cached_property
     def four_bars(self) -> Mapping[int, FourBarLoops]:
         """The four-bar loops of pins that dyads close, by the indices of these groups."""

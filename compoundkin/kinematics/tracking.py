@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -10,19 +10,19 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.kinematics.approach import CLOSE, approach_path
+from compoundkin.kinematics.approach import approach_path
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.branch import Begin, TrackedBranch, course_of
 from compoundkin.kinematics.chosen_modes import Shown
-from compoundkin.kinematics.default_modes import open_sign
+from compoundkin.kinematics.default_modes import default_sign
 from compoundkin.kinematics.first_pose import first_state, letters_shown, nearest_sign
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
 from compoundkin.kinematics.group_march import GroupPath
 from compoundkin.kinematics.group_paths import track
 from compoundkin.kinematics.group_returns import with_returns
 from compoundkin.kinematics.groups import GroupSolver
-from compoundkin.kinematics.inputs import Inputs, fit
-from compoundkin.kinematics.limits import NEAREST
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.limits import NEAREST, Root
 from compoundkin.kinematics.solving_order import SolvingOrder, run
 
 
@@ -39,18 +39,9 @@ class Tracker(PrintsShort):
     ) -> None:
         self.solving_order, self.given = solving_order, given
         self.fixed, self.shown, self.begin = fixed, shown, begin
-        self.signs: dict[int, Number] = {}
-        self.paths: dict[int, GroupPath] = {}
-        self.approach_paths: dict[int, GroupPath] = {}
-        # the angles of links, full turns counted, that pairs ask for and no driver tells
-        self.turns: dict[str, Turns] = {}
-        self.chosen_by: dict[int, str] = {}
-        # where along the approach path and the motion each group passes a change point, (designs, count), padded
-        self.approach_flips: dict[int, Number] = {}
-        self.flips: dict[int, Number] = {}
-        self.branch: TrackedBranch | None = None
+        self._clear()
         way = begin.way(given) if begin else approach_path(solving_order, given, shown.poses, shown.beside)
-        self.approach_path, self.at, self.reference = way
+        self.approach_path, self.at = way
         if begin is None and solving_order.turning and solving_order.structure.mechanism.geometry.drawn:
             first = self.approach_path.cut(slice(None), slice(0, 1))
             self.given, self.approach_path = recounted(solving_order, (given, self.approach_path), first)
@@ -59,6 +50,24 @@ class Tracker(PrintsShort):
             self.choose()
         else:
             self._take_signs()
+
+    def _clear(self) -> None:
+        """Have nothing chosen and nothing found yet."""
+        self.signs: dict[int, Number] = {}
+        self.paths: dict[int, GroupPath] = {}
+        self.approach_paths: dict[int, GroupPath] = {}
+        # the angles of links, full turns counted, that pairs ask for and no driver tells
+        self.turns: dict[str, Turns] = {}
+        self.chosen_by: dict[int, str] = {}
+        # where along the approach path and the motion each group passes a change point, (designs, count), padded; one
+        # at the very place where the approach path ends is passed before the motion goes on
+        self.approach_flips: dict[int, Number] = {}
+        self.flips: dict[int, Number] = {}
+        # by group, the designs and poses from which on the drivers rest at a change point
+        self.rests: dict[int, Sequence[tuple[int, int]]] = {}
+        # designs and indices of poses that are solved through the double root of some groups
+        self.expanded: tuple[Number, Number, Sequence[int]] | None = None
+        self.branch: TrackedBranch | None = None
 
     def _take_signs(self) -> None:
         """Note the signs of dyads where nothing is drawn or tracked; four-bar loops stand open."""
@@ -76,18 +85,18 @@ class Tracker(PrintsShort):
         designs: Number,
         upto: int | None = None,
         on_approach: bool = False,
-        doubles: Mapping[int, Number] | None = None,
+        roots: Mapping[int, Root] | None = None,
     ) -> Block:
         """Solve a block of inputs, up to a group.
 
         `s` are the places along the motion (or along the way to it) and `designs` the design indices; both
-        broadcast to the block, so that a column of designs and a row of places make a rectangle. `doubles`
-        marks, by group, the poses that are change points.
+        broadcast to the block, so that a column of designs and a row of places make a rectangle. `roots` says, by
+        group, how square roots are taken.
         """
         block = self.solving_order.start(
             part.ends, part.series(order), order, np.broadcast_shapes(s.shape, designs.shape)
         )
-        block.doubles = doubles or {}
+        block.roots = roots or {}
         return run(self.solving_order, block, _Kept(self, part, designs, s, on_approach), upto)
 
     def sign(self, k: int, designs: Number, s: Number, on_approach: bool = False) -> Number:
@@ -96,24 +105,11 @@ class Tracker(PrintsShort):
         sign = sign if np.ndim(sign) == 0 else sign[designs, 0]
         if k in self.approach_flips:
             flips = self.approach_flips[k][designs]
-            sign = sign * _parity(flips < (s[..., None] if on_approach else self.approach_path.poses - 1 - CLOSE))
+            sign = sign * _parity(flips < (s[..., None] if on_approach else np.inf))
         if k in self.flips and not on_approach:
             flips = self.flips[k][designs]
-            sign = sign * _parity(flips < s[..., None]) * _parity(flips < self.reference)
+            sign = sign * _parity(flips < s[..., None]) * _parity(flips <= self.at)
         return sign
-
-    def ahead(self, k: int, order: int) -> Block:
-        """Return what is solved before a group, with derivatives by increasing drivers. It is at the drawn pose."""
-        structure, first = self.solving_order.structure, self.approach_path.cut(slice(None), slice(0, 1))
-        rates = {name: 1.0 if angle else self.solving_order.size for name, angle in structure.driven_angles.items()}
-        part = first.driven({name: (values[0], rates[name]) for name, values in first.drives.items()})
-        place = np.zeros((1, 1)), np.arange(self.given.designs)[:, None]
-        return self.run(part, order, *place, upto=k, on_approach=True)
-
-    def place(self, link: str, letter: str) -> Number:
-        """Return a point on its link, (1 or designs, 1). It is that of the motion's pose nearest to the drawn one."""
-        point = fit(self.given.shape)(self.solving_order.structure.mechanism.geometry.points[link][letter])
-        return point if np.ndim(point) == 0 or point.shape[1] == 1 else point[:, [int(self.at)]]
 
     @property
     def lost(self) -> bool:
@@ -203,19 +199,11 @@ class _First:
         letters = letters_shown(solving_order, solver, tracker.shown)
         closing = solving_order.closing(solver)
         if not letters and not closing:
-            return self._default(block, solver), "default"
-        default = partial(self._default, block, solver)
+            return default_sign(tracker, solver.index, block), "default"
+        default = partial(default_sign, tracker, solver.index, block)
         chosen, is_told = nearest_sign(solving_order, solver, block, tracker.shown, default)
         source = "redundant" if closing else tracker.shown.source
         return chosen, source if is_told else "default"
-
-    def _default(self, block: Block, solver: GroupSolver) -> Number:
-        """Return the sign that a dyad has where nothing chooses."""
-        tracker, k = self.tracker, solver.index
-        loops = tracker.solving_order.four_bars.get(k)
-        if loops is None:
-            return 1
-        return open_sign(loops, tracker.place, block, lambda order: tracker.ahead(k, order))
 
 
 def _parity(passed: Number) -> Number:

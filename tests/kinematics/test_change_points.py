@@ -210,3 +210,162 @@ def test_a_turning_guide_is_on_the_same_branch_on_every_grid(start):
     good = motion.assembled
     expected = np.exp(1j * (values / 2 - np.pi / 2))
     assert np.abs(motion.points["E"].position - (1 + 2 * expected))[good].max() < 1e-12
+
+
+# --- whatever the grid: issue 13, item 3 ----------------------------------------------------------------------
+
+OFFSETS = [10.0**-k for k in range(1, 13)]
+DRAWINGS = {"parallel": DRAWN, "crossed": CROSSED}
+
+
+def coupler_of(drawn, q):
+    """The coupler's angle and its derivatives by the crank's: none, or twice those of the diagonal from B to D."""
+    if drawn == "parallel":
+        return [np.zeros_like(q)] * 4
+    turned = 2.0 * np.exp(1j * q)
+    w = 5.0 - turned
+    first = -1j * turned / w
+    second = turned / w - first**2
+    third = 1j * turned / w + 1j * turned**2 / w**2 - 2.0 * first * second
+    return [2.0 * np.angle(w), *(2.0 * rate.imag for rate in (first, second, third))]
+
+
+def assert_exact(drawn, values, speed=1.0, **options):
+    """The plain root loses 1e-16 / h^(k + 1); within 0.003 of a change point nothing is lost any more."""
+    motion = ck.solve(parallelogram(DRAWINGS[drawn]), {"crank": values}, speed=speed, order=3, **options)
+    coupler = motion.links["coupler"]
+    found = coupler.angle, coupler.angular_velocity, coupler.angular_acceleration, coupler.angular_jerk
+    expected = coupler_of(drawn, np.asarray(values, dtype=float))
+    assert np.abs(np.exp(1j * found[0]) - np.exp(1j * expected[0])).max() < 1e-13
+    for k, limit in ((1, 1e-11), (2, 2e-9), (3, 1e-6)):
+        assert np.abs(found[k] - expected[k] * speed**k).max() < limit
+    return motion
+
+
+@pytest.mark.parametrize("at", [0.0, np.pi, 2 * np.pi])
+@pytest.mark.parametrize("drawn", DRAWINGS)
+def test_a_fan_of_offsets_comes_out_alike(drawn, at):
+    fan = at + np.array(sorted([*OFFSETS, *(-x for x in OFFSETS), 0.0]))
+    assert_exact(drawn, fan)
+    assert_exact(drawn, fan[::-1], -1.0)
+    assert_exact(drawn, np.random.default_rng(0).permutation(fan))
+
+
+@pytest.mark.parametrize("offset", [0.0, *OFFSETS])
+@pytest.mark.parametrize("drawn", DRAWINGS)
+def test_poses_beside_a_change_point(drawn, offset):
+    """Single ones, two on either side of it, an ordinary sweep, one that turns back, one that begins or ends there."""
+    for sign in (1.0, -1.0):
+        beside = np.pi + sign * offset
+        assert_exact(drawn, [beside])
+        assert_exact(drawn, [beside], -1.0)
+        pair = [np.pi - sign * offset, np.pi + sign * offset][: 2 if offset else 1]
+        assert_exact(drawn, [np.pi - 0.5 * sign, *pair, np.pi + 0.5 * sign], sign)
+        assert_exact(drawn, beside + sign * ck.deg(np.arange(-20.0, 21.0, 5.0)), sign)
+        assert_exact(drawn, [np.pi - 0.5, np.pi - 0.2, beside, np.pi - 0.2, np.pi - 0.5])
+        assert_exact(drawn, beside + sign * np.array([0.0, 0.05, 0.1]), sign)
+        assert_exact(drawn, beside - sign * np.array([0.1, 0.05, 0.0]), sign)
+
+
+def timed(*segments, poses=251):
+    mechanism = ck.catalog.load_named("parallelogram").replace(ck.drive("crank", law=ck.laws.program(*segments)))
+    motion = ck.solve(mechanism, time=np.linspace(0.0, sum(each.over for each in segments), poses), order=3)
+    coupler = motion.links["coupler"]
+    for k, limit in enumerate((1e-12, 1e-10, 1e-8, 1e-6)):
+        assert np.abs((coupler.angle, coupler.angular_velocity, coupler.angular_acceleration, coupler.angular_jerk)[k]
+                      ).max() < limit  # fmt: skip
+    return motion
+
+
+def half_turn(by=0.0):
+    return ck.laws.rise(np.pi + by, 1.0, "4-5-6-7")
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_a_rest_at_a_change_point_is_warned_about_once_and_gone_through(back):
+    """251 times over 2.5 s came out as the antiparallelogram without a word."""
+    last = ck.laws.fall(np.pi, 1.0, "4-5-6-7") if back else half_turn()
+    with pytest.warns(ck.errors.ChangePointWarning, match="pose 100, crank = 180 degrees") as caught:
+        timed(half_turn(), ck.laws.dwell(0.5), last)
+    assert len(caught) == 1
+
+
+@pytest.mark.parametrize("by", [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, -1e-6, -1e-9])
+def test_a_rest_beside_a_change_point_is_nothing_special(by):
+    timed(half_turn(by), ck.laws.dwell(0.5), half_turn(-by))
+
+
+def test_a_turn_without_a_rest_returns_as_it_came():
+    motion = timed(half_turn(), ck.laws.fall(np.pi, 1.0, "4-5-6-7"), poses=201)
+    assert np.count_nonzero(motion.change_points[0] == 100.0) == 2
+
+
+def chain_of_parallelograms(turned=0.0):
+    """The rocker of one parallelogram is the crank of the next, whose frame is turned by an angle."""
+    base, b = np.exp(1j * turned), 2.0 * np.exp(1j)
+    places = {"B": b, "C": b + 5.0, "E": 5.0 + 1.5 * np.exp(1j), "F": 5.0 + 1.5 * np.exp(1j) + 4.0 * base}
+    return ck.Mechanism(
+        "Parallelograms",
+        ck.link("frame", A=0, D=5, G=5 + 4 * base),
+        ck.link("crank", A=0, B=2),
+        ck.link("coupler", B=0, C=5),
+        ck.link("rocker", D=0, C=2, E=1.5),
+        ck.link("second", E=0, F=4),
+        ck.link("last", G=0, F=1.5),
+        ck.drive("crank"),
+        ck.drawn(**places),
+    )
+
+
+@pytest.mark.parametrize("turned", [0.0, 1e-9, 0.3])
+def test_groups_in_a_row_have_each_their_change_points(turned):
+    for values in (np.arange(0.0, 4.0, 0.1), np.pi + np.array([-1e-7, 0.0, 1e-9, 1e-3]), [np.pi + 1e-8], [np.pi]):
+        motion = ck.solve(chain_of_parallelograms(turned), {"crank": values})
+        assert np.abs(motion.links["coupler"].angle).max() < 1e-12
+        assert np.abs(np.exp(1j * motion.links["second"].angle) - np.exp(1j * turned)).max() < 1e-10
+        assert np.abs(motion.links["last"].angular_velocity - 1.0).max() < 1e-8
+        assert np.abs(motion.links["last"].angular_acceleration).max() < 1e-5
+
+
+def test_some_designs_have_change_points_and_others_have_none():
+    frames = np.array([5.0, 4.9, 5.0])[:, None]
+    mechanism = parallelogram(DRAWN).replace(ck.link("frame", A=0, D=frames))
+    motion = ck.solve(mechanism, {"crank": np.pi + np.array([-0.2, -1e-7, 1e-7, 0.2])}, modes={"coupler": -1})
+    other = parallelogram(DRAWN).replace(ck.link("frame", A=0, D=4.9))
+    alone = ck.solve(other, {"crank": motion.drives["crank"].value[1]}, modes={"coupler": -1})
+    assert np.abs(motion.links["coupler"].angle[[0, 2]]).max() < 1e-12
+    assert np.abs(motion.links["coupler"].angle[1] - alone.links["coupler"].angle).max() < 1e-13
+    assert np.isfinite(motion.change_points[0]).sum(axis=1).tolist() == [1, 0, 1]
+
+
+def test_two_drivers_pass_where_one_of_them_does():
+    """The parallelogram stands on a table that turns as well: only the crank's angle from the table counts."""
+    b = 2.0 * np.exp(1j)
+    mechanism = ck.Mechanism(
+        "On a table",
+        ck.link("frame", O=0),
+        ck.link("table", O=0, A=1, D=6),
+        ck.link("crank", A=0, B=2),
+        ck.link("coupler", B=0, C=5),
+        ck.link("rocker", D=0, C=2),
+        ck.drive("table"),
+        ck.drive("crank", on="table"),
+        ck.drawn(O=0, A=1, D=6, B=1 + b, C=6 + b),
+    )
+    s = np.linspace(0.0, 1.0, 40)
+    for crank in (np.pi + (s - 0.5), np.pi + 1e-7 * (s - 0.5), np.pi - 0.3 * np.abs(s - s[20])):
+        speeds = {"table": 0.8, "crank": 1.0}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ck.errors.ChangePointWarning)
+            motion = ck.solve(mechanism, {"table": 0.8 * s, "crank": crank}, speed=speeds)
+        assert np.abs(motion.links["coupler"].angle - 0.8 * s).max() < 1e-12
+        assert np.abs(motion.links["coupler"].angular_velocity - 0.8).max() < 1e-9
+
+
+def test_where_nothing_chooses_a_pose_at_a_change_point_belongs_to_the_open_loop():
+    for first in (0.0, 180.0, 360.0):
+        for speed in (1.0, -1.0):
+            for values in ([first], first + speed * np.arange(0.0, 30.0, 5.0)):
+                motion = ck.solve(parallelogram(), {"crank": ck.deg(values)}, speed=speed)
+                assert np.abs(motion.links["coupler"].angle).max() < 1e-12
+                assert np.abs(motion.links["coupler"].angular_velocity).max() < 1e-9

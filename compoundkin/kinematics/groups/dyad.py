@@ -40,12 +40,12 @@ class Closed(NamedTuple):
     """A group solved. The poses of its two bodies, and the margin, negative where it cannot be assembled.
 
     For a group of two modes the margin is the squared sine of the angle in which the modes differ. `meeting`
-    is a squared length whose zero leaves the pose undetermined, for groups that have such a place.
+    is a squared length whose zero leaves the pose undetermined, for groups that have such a place, with its rates.
     """
 
     poses: tuple[Pose, Pose]
     margin: Number
-    meeting: Number | None = None
+    meeting: Series | None = None
 
 
 class DyadSolver(GroupSolver):
@@ -108,7 +108,8 @@ class DyadSolver(GroupSolver):
         """Assemble the bodies and add the group's links to what is known."""
         poses, margin, meeting = self.assemble(*self.arguments(block), mode, block.root(self.index))
         if meeting is not None:
-            margin = np.fmin(margin, np.sqrt(meeting) / self.size - COINCIDENT)
+            block.meetings[self.index] = meeting
+            margin = np.fmin(margin, np.sqrt(meeting.c[0]) / self.size - COINCIDENT)
         block.margins[self.index] = margin
         block.fail(margin >= 0, self.index)
         for body, pose in zip(self.bodies, poses, strict=True):

@@ -40,7 +40,7 @@ class RRR(DyadSolver):
         u = line * a.conj() / planar(foot, height * sign)
         v = (u * a - line) / b
         first_pose = placed_at(_point(first), u, first.local.point)
-        return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin, line2.c[0])
+        return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin, line2)
 
     @staticmethod
     def explain(

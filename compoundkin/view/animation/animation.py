@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
+from compoundkin.base.errors import ChangePointWarning, InvalidInput, Problem, UnassembledPoses
 from compoundkin.base.series import Number
 from compoundkin.base.suffixes import Kind, form_of
 from compoundkin.files.atomic import write_atomically
@@ -196,6 +196,7 @@ def _motion(what: Motion | Mechanism | Structure) -> Motion:
         return what
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnassembledPoses)
+        warnings.simplefilter("ignore", ChangePointWarning)
         motion = solve(what)
         finer = finer_values(motion)
         return motion if finer is None else solve(what, finer)

@@ -191,5 +191,9 @@ def _mode(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]]:
 
 def _changes(motion: Motion, k: int, design: int) -> str:
     places = motion.change_points.get(k)
-    count = 0 if places is None else int(np.count_nonzero(np.isfinite(places[design])))
+    if places is None:
+        return ""
+    # a motion that returns from a change point as it came is there twice
+    _, times = np.unique(places[design][np.isfinite(places[design])], return_counts=True)
+    count = int(np.count_nonzero(times % 2))
     return f"; it changes at {counted(count, 'change point')}" if count else ""

@@ -12,6 +12,7 @@ import numpy as np
 from compoundkin.base.argument_forms import is_finite_real
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import (
+    ChangePointWarning,
     InvalidInput,
     NotAssembled,
     NotDetermined,
@@ -101,6 +102,7 @@ def solved_over(what: Mechanism | Structure) -> Motion | None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UnassembledPoses)
+            warnings.simplefilter("ignore", ChangePointWarning)
             return solve(what)
     except (InvalidInput, NotAssembled, NotDetermined):
         return None
