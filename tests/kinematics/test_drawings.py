@@ -160,3 +160,44 @@ def test_a_far_origin_costs_nothing(offset: float) -> None:
     assert np.max(np.abs(x - expected)) < 1e-9
     assert np.max(np.abs(motion.points["M"].position.imag - 1.0)) < 1e-9
     assert np.max(np.abs(motion.links["wheel"].angle + x)) < 1e-9
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_rocker_of_one_point_keeps_the_orientation_that_its_gear_tells(sign: int) -> None:
+    """O and B are where they are drawn in both modes; the rocker points from O to B, or away from it."""
+    joints = {"O": 0j, "A": 4 + 0j, "B": 4 + 1.5 * np.exp(2j), "W": -2 + 0j, "V": -2 + np.exp(0.7j)}
+    angle = float(np.angle(sign * joints["B"]))
+    mechanism = ck.Mechanism(
+        "geared rocker",
+        ck.link("frame", O=0, A=4, W=-2),
+        ck.link("crank", A=0, B=1.5),
+        ck.link("block", B=0),
+        ck.link("rocker", O=0),
+        ck.slide("block", on="rocker", at="B", through="O"),
+        ck.link("pinion", W=0, V=1),
+        ck.gear("pinion", "rocker", carrier="frame", teeth=(20, 30), phase=angle + 20 / 30 * 0.7),
+        ck.drive("crank", values=[2.0, 2.01]),
+        ck.drawn(**joints),
+    )
+    motion = ck.solve(mechanism)
+    assert off_the_drawing(motion) < 1e-12
+    assert abs(motion.links["rocker"].angle[0] - angle) < 1e-12
+    assert abs(motion.links["pinion"].angle[0] - 0.7) < 1e-12
+
+
+def test_where_a_drawing_shows_both_modes_alike_the_mode_is_that_by_default() -> None:
+    """Not one by rounding: a rocker of one point whose orientation nothing tells."""
+    for turn in np.linspace(0.1, 6.2, 12):
+        mechanism = ck.Mechanism(
+            "rocker",
+            ck.link("frame", O=0, A=4),
+            ck.link("crank", A=0, B=1.5),
+            ck.link("block", B=0),
+            ck.link("rocker", O=0),
+            ck.slide("block", on="rocker", at="B", through="O"),
+            ck.drive("crank", values=[turn]),
+            ck.drawn(O=0, A=4, B=4 + 1.5 * np.exp(1j * turn)),
+        )
+        motion = ck.solve(mechanism)
+        assert motion.tracker.chosen_by == {0: "default"}
+        assert float(motion.tracker.signs[0]) == 1.0
