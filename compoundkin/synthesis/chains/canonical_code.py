@@ -134,18 +134,30 @@ def _profile(masks: Sequence[int], cells: Cells) -> tuple[int, ...]:
 
     Sizes of cells, and how they are joined.
     """
-    firsts = [masks[cell.bit_length() - 1] for cell in cells]
-    return (*(cell.bit_count() for cell in cells), *((mask & cell).bit_count() for mask in firsts for cell in cells))
+    place, joined = _places(cells), list(map(int.bit_count, cells))
+    for cell in cells:
+        counts = [0] * len(cells)
+        for vertex in vertices_of(masks[cell.bit_length() - 1]):
+            counts[place[vertex]] += 1
+        joined += counts
+    return tuple(joined)
 
 
 def _adjacency(masks: Sequence[int], cells: Cells) -> int:
     """Return the adjacency matrix above its diagonal, column by column, as one number."""
-    number = 0
+    place, bits = _places(cells), ["0"]
     for column, cell in enumerate(cells):
-        mask = masks[cell.bit_length() - 1]
-        for row in cells[:column]:
-            number = number << 1 | bool(mask & row)
-    return number
+        rows = ["0"] * column
+        for vertex in vertices_of(masks[cell.bit_length() - 1]):
+            if place[vertex] < column:
+                rows[place[vertex]] = "1"
+        bits += rows
+    return int("".join(bits), 2)
+
+
+def _places(cells: Cells) -> dict[int, int]:
+    """Return the place of the cell of each vertex."""
+    return {vertex: k for k, cell in enumerate(cells) for vertex in vertices_of(cell)}
 
 
 def _by_colour(colours: Sequence[str]) -> list[tuple[str, list[int]]]:
