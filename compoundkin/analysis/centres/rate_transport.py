@@ -42,9 +42,9 @@ class TransportedRates:
 
     def turn(self, turn: Turn, place: Number, amplitude: Number) -> None:
         """Add a twist of the given amplitude (poses) on a parameter."""
-        shape = np.broadcast_shapes(place.shape[-1:], amplitude.shape)
-        relative = np.zeros((3, self.twists[turn.i].shape[1], 1 + SAMPLES, *shape))
-        relative[:, turn.parameter] = self.sampled(place, self.spread[couple(turn.i, turn.k)]) * amplitude
+        twist = self.sampled(place, self.spread[couple(turn.i, turn.k)]) * amplitude
+        relative = np.zeros((3, self.twists[turn.i].shape[1], *twist.shape[1:]))
+        relative[:, turn.parameter] = twist
         attach(self.twists, self.member, turn.i, turn.k, relative)
 
     def join(self, join: Join) -> None:
