@@ -20,6 +20,10 @@ from compoundkin.base.series import Number
 
 # Where the error of a twist is magnified more than this, other links are taken to carry it through.
 FAIR = 1e5
+# A twist is tried through every two of so many others, those known best, and so many times at most: each body's twist
+# gets better through those next to it, and with a hundred links every two of all of them would take minutes.
+OTHERS = 14
+ROUNDS = 14
 # Other links are taken if they are better by this factor.
 BETTER = 2.0
 
@@ -68,9 +72,10 @@ class DriverRates:
         for error in self.errors.values():
             poor |= ~(error <= FAIR * scale)
         at = np.flatnonzero(poor)
-        for _ in self.errors if at.size else ():
-            better = [self._recarry(k, at) for k in self.errors]
-            if not any(better):
+        if not at.size:
+            return
+        for _ in range(min(len(self.errors), ROUNDS)):
+            if not any([self._recarry(k, at) for k in self.errors]):
                 break
 
     def _recarry(self, k: int, at: Number) -> bool:
@@ -91,7 +96,8 @@ class DriverRates:
     def _ways(self, k: int, at: Number) -> Iterator[tuple[Number, Number]]:
         """Yield a body's twist through every two others known well, with its error."""
         others = [b for b in self.errors if b != k and np.isfinite(self.errors[b][at]).any()]
-        for i, j in combinations(others, 2):
+        others.sort(key=lambda b: float(np.min(known(self.errors[b][at] + self._place(b, k, at)[1]))))
+        for i, j in combinations(others[:OTHERS], 2):
             (p, dp), (q, dq) = self._place(i, k, at), self._place(j, k, at)
             a, b = pair_amplitudes(p, q, self.twists[j][:, at] - self.twists[i][:, at])
             one, other = self.errors[i][at], self.errors[j][at]

@@ -13,9 +13,9 @@ from compoundkin.base.series import Number
 
 # Where errors are magnified more than this (rounding becomes 1e-11), other lines are tried for the centre.
 FAIR = 1e5
-# Lines of all poses together that are drawn, in some eight seconds, and rounds that are gone whatever they take. Centres
+# Lines of all poses together that are drawn, in some four seconds, and rounds that are gone whatever they take. Centres
 # that remain poor say so by their conditioning.
-MOST_LINES = 50_000_000
+MOST_LINES = 25_000_000
 ROUNDS = 4
 # Centres with less than this at all poses are left alone: through them no other gets poor.
 GOOD = 1e2
