@@ -66,7 +66,7 @@ def is_finite(value: Any) -> bool:
 
 
 def is_too_great(value: Any) -> bool:
-    """Return whether a finite value, or one of an array, is beyond what can be computed with."""
+    """Return whether a finite value is beyond what can be computed with. Of an array, any."""
     return bool(np.max(np.abs(value)) > LONGEST)
 
 

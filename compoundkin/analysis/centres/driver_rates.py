@@ -75,7 +75,8 @@ class DriverRates:
         if not at.size:
             return
         for _ in range(min(len(self.errors), ROUNDS)):
-            if not any([self._recarry(k, at) for k in self.errors]):
+            better = [self._recarry(k, at) for k in self.errors]
+            if not any(better):
                 break
 
     def _recarry(self, k: int, at: Number) -> bool:

@@ -73,11 +73,8 @@ def _words(made: Synthesised) -> Iterator[Problem]:
     if made.side not in (1, -1):
         yield Problem("side", f"{made.side!r} is not a side", "write 1 (rises counterclockwise) or -1 (clockwise)")
     if not isinstance(made.program, Program):
-        yield Problem(
-            "program",
-            f"{made.program!r} is not a motion program",
-            "write laws.program(laws.rise(...), laws.dwell(...))",
-        )
+        remedy = "write laws.program(laws.rise(...), laws.dwell(...))"
+        yield Problem("program", f"{made.program!r} is not a motion program", remedy)
     yield from _misplaced(made)
 
 
