@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -123,24 +123,30 @@ def vector(where: str, value: Any) -> Number:
     >>> vector("A", (1, [2, 3])).tolist()
     [(1+2j), (1+3j)]
     """
+    try:
+        out = _planar(where, value)
+    except InvalidMechanism as error:
+        raise InvalidMechanism(replace(p, remedy="write (x, y) or a complex number") for p in error.problems) from None
+    return complex(out) if out.ndim == 0 else _frozen(out)
+
+
+def _planar(where: str, value: Any) -> Any:
     if isinstance(value, tuple | list) and len(value) == 2:
         x, y = (real_numbers(where, v, InvalidMechanism) for v in value)
         if isinstance(value, list) and x.shape == y.shape == (1,):
             told = f"{where}: {value} is read as x = {x[0]:g}, y = {y[0]:g} of one design"
             warn(f"{told}; two designs are written ({value}, 0)", LikelySlip)
         try:
-            out = x + 1j * y
+            return x + 1j * y
         except ValueError:
             raise _no_point(where, value) from None
-    elif value is None or isinstance(value, tuple | list | str):
+    if value is None or isinstance(value, tuple | list | str):
         raise _no_point(where, value)
-    else:
-        out = planar_numbers(where, value, InvalidMechanism)
-    return complex(out) if out.ndim == 0 else _frozen(out)
+    return planar_numbers(where, value, InvalidMechanism)
 
 
 def _no_point(where: str, value: Any) -> InvalidMechanism:
-    return InvalidMechanism(Problem(where, f"{short(value)} is not a point", "write (x, y) or a complex number"))
+    return InvalidMechanism(Problem(where, f"{short(value)} is not a point"))
 
 
 def _frozen(array: Any) -> Any:

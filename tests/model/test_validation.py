@@ -123,7 +123,7 @@ def test_the_message_lists_every_problem_with_its_place() -> None:
 def test_what_is_not_a_word_is_refused() -> None:
     with pytest.raises(ck.errors.InvalidMechanism, match=r"items\[2\].*not a"):
         ck.Mechanism("m", ck.link("frame", A=0), ck.link("b", A=0), "crank")  # type: ignore[arg-type]
-    with pytest.raises(ck.errors.InvalidMechanism, match=r"expected.*tolerance"):
+    with pytest.raises(ck.errors.InvalidInput, match="tolerance: 'small' is no number"):
         ck.expect("b.angle", 1, "small")  # type: ignore[arg-type]
 
 
