@@ -32,8 +32,8 @@ from compoundkin.structure.kinematic_structure import Structure
 
 # A redundant pair is closed where it opens by less than this part of the size: dimensions are given with few digits.
 CLOSED = 1e-6
-# More configurations than this of one mechanism are distinguished by nobody.
-MOST = 4096
+# More configurations than this of one mechanism are distinguished by nobody; those of more bodies no search finds.
+MOST, MOST_BODIES = 4096, 24
 # Where nothing can be assembled, so many values of each driver are tried, and the nearest that can is refined.
 TRIED = 721
 HALVINGS = 40
@@ -78,6 +78,8 @@ class AllModes:
         return drawn_angle(self.solving_order, link)
 
     def _numbered(self, block: Block, solver: GroupSolver) -> Number:
+        if (bodies := len(solver.group.bodies)) > MOST_BODIES:
+            raise InvalidInput(Problem("modes", f"{bodies} bodies in a group are too many", "solve() finds one"))
         found = solver.every(block)
         states = found.states
         batch = (1,) * (len(block.shape) - (states.ndim - 2)) + states.shape[:-2]

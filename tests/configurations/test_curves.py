@@ -72,3 +72,9 @@ def test_the_unit_rhombus_has_no_branches_of_no_width(size: float, turn: float) 
 
 
 RHOMBUS = {"crank": "AB", "coupler": "BC", "rocker": "DC"}
+
+
+def test_groups_that_no_search_can_cover_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.modules["compoundkin.configurations.enumeration"], "MOST_BODIES", 3)
+    with pytest.raises(ck.errors.InvalidInput, match="6 bodies in a group are too many"):
+        ck.configurations(seven_bar(drawn=True))
