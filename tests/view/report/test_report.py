@@ -383,7 +383,7 @@ def test_a_mechanism_is_reported_as_its_motion_or_as_its_structure() -> None:
     press = ck.slide("block", on="frame", through="O", turn=0.0)
     without_range = ck.Mechanism("Press", ck.link("frame", O=0), ck.link("block", P=0), press, ck.drive("block"))
     assert report(without_range).section("outputs") is None
-    with pytest.raises(ck.errors.InvalidInput, match="is no motion and no mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="is no mechanism or structure or motion"):
         report("six-bar")
 
 

@@ -149,7 +149,7 @@ def test_structure_pictures_tell_what_they_cannot_show() -> None:
         ck.draw(loose, kind="groups")
     with pytest.raises(ck.errors.InvalidInput, match="there is no picture"):
         ck.draw(loose, kind="net")
-    with pytest.raises(ck.errors.InvalidInput, match="is no motion and no mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="is no motion or mechanism or structure"):
         ck.draw("six-bar", kind="groups")
     motion = ck.solve(shipped_mechanisms.load_named("crank-rocker"))
     assert ck.draw(motion, kind="groups").svg == ck.draw(motion.mechanism, kind="groups").svg
