@@ -86,7 +86,7 @@ def solved(structure: Structure, asked: Mapping[str, Any]) -> Motion:
 
 def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[str, Any]) -> Motion:
     """Solve as `solved`, at these values of the drivers."""
-    from compoundkin.base.errors import ChangePointWarning, UnassembledPoses
+    from compoundkin.base.errors import ChangePointWarning, FewDigits, UnassembledPoses
     from compoundkin.cli import typed_values
     from compoundkin.cli.progress import working
     from compoundkin.kinematics import solve
@@ -98,6 +98,7 @@ def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[st
     with working("solving"), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UnassembledPoses)
         warnings.simplefilter("always", ChangePointWarning)
+        warnings.simplefilter("always", FewDigits)
         motion = solve(structure, driven, time=time, **rates, order=_order(structure, asked), modes=modes)
     for warning in caught:
         _pass_on(warning, motion)
@@ -139,12 +140,12 @@ def _order(structure: Structure, asked: Mapping[str, Any]) -> int:
 
 def _pass_on(warning: warnings.WarningMessage, motion: Motion) -> None:
     """The sentence on poses that cannot be assembled; any other warning as it is."""
-    from compoundkin.base.errors import ChangePointWarning, DrawnBeyondEnd, UnassembledPoses
+    from compoundkin.base.errors import ChangePointWarning, DrawnBeyondEnd, FewDigits, UnassembledPoses
 
     if issubclass(warning.category, UnassembledPoses):
         missing = int((motion.failed != 0).sum())
         say(f"Warning: {missing:,} of {motion.failed.size:,} poses cannot be assembled.")
-    elif issubclass(warning.category, DrawnBeyondEnd | ChangePointWarning):
+    elif issubclass(warning.category, DrawnBeyondEnd | ChangePointWarning | FewDigits):
         say(f"Warning: {warning.message}.")
     else:
         warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)

@@ -56,3 +56,29 @@ def test_true_errors_exceed_the_estimate_in_fewer_than_one_sample_in_a_hundred()
 def test_the_estimate_exceeds_a_hundred_true_errors_in_fewer_than_one_sample_in_ten():
     true, estimate = np.concatenate([compared(title) for title in CASES]).T
     assert np.mean(estimate > 100.0 * true) < 0.10
+
+
+@pytest.mark.parametrize(("distance", "warned", "regular"), [(1e-9, 0, 2), (1e-13, 1, 2), (1e-16, 0, 1)])
+def test_rates_with_few_digits_are_warned_about_and_those_with_none_are_no_numbers(distance, warned, regular):
+    case = CASES["four-bar"]
+    values = [1.0, float(special("four-bar") - mpf(distance))]
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        motion = ck.solve(case.mechanism, {"crank": values})
+    assert [w.category for w in said] == [ck.errors.FewDigits] * warned
+    assert motion.assembled.all()
+    assert motion.regular.sum() == regular
+    assert np.isfinite(motion.links["rocker"].angular_velocity).sum() == regular
+    assert np.isfinite(motion.error(1)).sum() == regular
+    assert motion.error(0)[1] < 1e-6
+    assert ck.verify(motion).passed
+    text = " ".join(ck.report(motion).text().split())
+    assert ("Rates have fewer than three digits" in text) == bool(warned)
+
+
+@pytest.mark.parametrize("distance", [1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9])
+def test_motions_next_to_change_points_pass(distance):
+    values = np.sort([*np.linspace(0.0, 2.0 * np.pi, 73), np.pi - distance, np.pi + distance])
+    motion = ck.solve(CASES["parallelogram"].mechanism, {"crank": values}, order=3)
+    assert motion.regular.all()
+    assert ck.verify(motion).passed
