@@ -17,6 +17,8 @@ from compoundkin.kinematics.groups.general import bodies_at, known_configuration
 # So many pieces of a branch are looked for, and so many poses of it at most.
 MOST_PIECES = 8
 MOST_POSES = 20_000
+# Every design meets limits of its own, each of some thirty steps for all: of more designs only the branch is followed.
+MOST_DESIGNS = 4
 # All configurations of groups of more bodies take too long to be asked for at every pose.
 MOST_BODIES = 4
 
@@ -39,7 +41,7 @@ def with_returns(way: Followed, k: int, home: GroupPath, period: float = np.inf)
     A configuration that goes on beside the branch itself, or beside another one of its sign, is no return of it. After
     `period` places the way is the same again.
     """
-    kin = _kin(way, k, home, period)
+    kin = _kin(way, k, home, period) if len(home.reach) <= MOST_DESIGNS else None
     if kin is None:
         return home
     todo, found = kin.count == 1, list[GroupPath]()
@@ -126,6 +128,8 @@ def _before(way: Followed, k: int, designs: Number, places: Number) -> Block:
 
 def why_no_return(way: Followed, k: int, home: GroupPath, design: int, place: float) -> str:
     """Say why a group does not come back at a pose of a gap."""
+    if len(home.reach) > MOST_DESIGNS:
+        return f"whether it comes back is looked for in motions of up to {MOST_DESIGNS} designs only"
     found = kin_at(way, k, home, np.array([design]), np.array([place]))
     if found is None:
         return "not all its configurations are known, so that none can be told to be its own after a gap"

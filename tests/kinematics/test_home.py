@@ -301,9 +301,9 @@ def leads_where_it_says(entry: dict[str, Any], mechanism: ck.Mechanism, motion: 
         assert abs(motion.points[letter].position[count - 1] - complex(*place)) < 1e-9 * size
 
 
-@pytest.mark.parametrize("name", ["case_1114", "case_800004", "case_20170", "case_20239"])
+@pytest.mark.parametrize("name", ["case_1114", "case_800004", "case_20170", "case_20239", "case_5500"])
 def test_hard_cases(name: str) -> None:
-    """Full turns that cannot be completed, and configurations that run to infinity: two minutes before."""
+    """Full turns that cannot be completed, false gaps at small lengths, what runs to infinity: two minutes before."""
     begin = process_time()
     entry, mechanism, motion = hard(name)
     assert process_time() - begin < 10.0
