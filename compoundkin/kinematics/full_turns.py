@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compoundkin.base.arrays import TURN, cross, whole_turns, wrapped
-from compoundkin.base.series import Number
+from compoundkin.base.series import Number, constant
 from compoundkin.kinematics.approach import CLOSE, MOST, column, drawn_value, spacings_between
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -149,7 +149,20 @@ def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Input
     """
     drawn, rounds = _as_drawn(solving_order, pose)
     turns = dict(_turns_at(solving_order, _counted_on(solving_order, drawn, rounds, {})))
-    return tuple(_counted_on(solving_order, way, rounds, turns) for way in ways)
+    return tuple(_blocks_counted(solving_order, _counted_on(solving_order, way, rounds, turns), turns) for way in ways)
+
+
+def _blocks_counted(solving_order: SolvingOrder, way: Inputs, turns: Mapping[str, Number]) -> Inputs:
+    """A way with blocks that count turns as they are drawn: a slide tells their angle within half a turn only."""
+    drawn, ends = solving_order.structure.mechanism.drawn_poses, dict(way.ends)
+    for mounted in (mounted for solver in solving_order.solvers for mounted in solver.slid):
+        name, links, other = mounted.lower.name, mounted.lower.members, mounted.side.other
+        if not drawn.keys() >= set(links):
+            continue
+        guide, block = (column(drawn[k]).angle.c[0] + TURN * (turns.get(k, 0.0) if k == other else 0.0) for k in links)
+        turned = mounted.lower.placed(ends[name], constant(0.0)).angle.c[0]
+        ends[name] = ends[name][0], ends[name][1]._replace(measure=np.round((block - guide - turned) / TURN))
+    return replace(way, ends=ends)
 
 
 def _as_drawn(solving_order: SolvingOrder, pose: Inputs) -> tuple[Inputs, dict[str, Number]]:

@@ -312,7 +312,8 @@ TASTES: tuple[dict[str, float], ...] = (
 def flavour_of(rng: np.random.Generator) -> Flavour:
     taste = TASTES[int(rng.integers(len(TASTES)))]
     large = rng.random()
-    links = int(rng.integers(3, 9)) if large < 0.75 else int(rng.integers(9, 19)) if large < 0.95 else int(rng.integers(19, 61))
+    sizes = ((3, 7), (7, 10), (10, 19), (19, 61))
+    links = int(rng.integers(*sizes[int(np.searchsorted((0.6, 0.88, 0.98), large))]))
     return Flavour(
         links,
         tuple(taste),

@@ -32,6 +32,8 @@ CLOSED, CLOSED_SPLINE = 1e-9, 3e-5
 RATES, RATES_BY_CONDITION = 1e-8, 1e-13
 # Rates that have fewer digits are not compared.
 NO_DIGITS = 1e-2
+# Outside its range a motion is drawn where this (radians) is the whole way.
+FAR_OUTSIDE = 2.5
 # Nearer to a limit than this part of a pose's distance either answer is right.
 AT_LIMIT = 1e-3
 
@@ -125,6 +127,9 @@ def random_way(rng: np.random.Generator, sketch: Sketch) -> Way:
     kind = str(rng.choice(["start", "one", "end", "middle", "between", "outside"], p=[0.45, 0.05, 0.1, 0.15, 0.15, 0.1]))
     if kind == "one":
         return Way(kind, 1, 0.0, rate)
+    if kind == "outside":
+        # so far only that no pose of the motion is the drawn one after a full turn
+        rate = np.where(angles, np.minimum(1.0, FAR_OUTSIDE / np.max(np.abs(rate) * (poses + 3))) * rate, rate)
     home = {
         "start": 0.0,
         "end": poses - 1.0,

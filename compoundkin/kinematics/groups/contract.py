@@ -36,6 +36,8 @@ class GroupSolver(ABC):
     tells_margin: ClassVar[bool] = False  # whether it says how far it is from its limit position
     ends: Mapping[str, Ends]
     counted_from: tuple[str, ...] = ()
+    # bodies on slides whose angles, full turns counted, are those of the other link and the slide's
+    slid: tuple[MountedBody, ...] = ()
     # the equations of a group whose configurations are numbered: states are followed by them
     equations: GroupEquations | None = None
 

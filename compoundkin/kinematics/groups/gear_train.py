@@ -50,6 +50,9 @@ class GearTrainSolver(GroupSolver):
         self.mounted = tuple(MountedBody(pair, highers[0], body) for pair, body in lowers)
         self.highers = highers
         self.counted_from = tuple(mounted.side.other for mounted in self.mounted)
+        self.slid = tuple(
+            mounted for mounted in self.mounted if not mounted.lower.free_is_angle and mounted.lower.is_simple
+        )
         self.links = tuple(dict.fromkeys([*self.counted_from, *(name for pair in highers for name in pair.members)]))
 
     @classmethod

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import cross, dot
+from compoundkin.base.arrays import TURN, cross, dot
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
@@ -186,7 +186,9 @@ class Prismatic(Drivable, Orienting, Ended):
         """Return the block moved along the guide by the given displacement."""
         guide, block = ends
         u = guide.along * block.along.conj()
-        return Pose(free * guide.along + guide.point - u * block.point, u, u.angle())
+        # the measure of a block are the full turns by which it is drawn ahead of its guide
+        theta = u.angle() if block.measure is None else u.angle() + TURN * block.measure
+        return Pose(free * guide.along + guide.point - u * block.point, u, theta)
 
     def generic(self, rng: np.random.Generator) -> Ends:
         """Draw a guide in a random direction with the block along it."""
