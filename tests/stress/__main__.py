@@ -1,4 +1,4 @@
-"""The stress suite: `python -m tests.stress --count 300 --seed 1` holds random mechanisms against independent equations."""
+"""The stress suite: `python -m tests.stress --count N --seed S`; subcommands `files` and `misuse`."""
 
 from __future__ import annotations
 

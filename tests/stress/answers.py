@@ -44,7 +44,7 @@ class Answer:
         return np.stack([np.broadcast_to(v, shape) for v in (place.real, place.imag, np.asarray(angle))], axis=-1)
 
     def _turned(self) -> np.ndarray:
-        """The unknowns with angles counted from the drawn pose: of counted links as they are, else by the nearest turn."""
+        """The unknowns with angles counted from the drawn pose: counted links as they are, others by nearest turns."""
         x = self.raw.copy()
         at = np.flatnonzero(self.assembled)
         if not at.size:

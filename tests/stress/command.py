@@ -14,6 +14,8 @@ from pathlib import Path
 import click
 
 import compoundkin as ck
+from tests.stress.misuse import misused
+from tests.stress.mutated_files import mutated
 from tests.stress.trial import Outcome, Placed, drawn_case, tried
 
 JOBS = click.option("--jobs", default=1, show_default=True, help="So many processes.")
@@ -29,10 +31,19 @@ FIRST = click.option("--first", default=0, show_default=True, help="From this ca
 @JOBS
 @click.option("--case", "one", type=int, help="This case alone, told in full.")
 @click.option("--verify", "verified", is_flag=True, help="`verify` must pass wherever nothing else is wrong.")
-@click.option("--save", "folder", type=click.Path(path_type=Path), help="Write faulty cases (or the one) as files here.")
+@click.option(
+    "--save", "folder", type=click.Path(path_type=Path), help="Write faulty cases (or the one) as files here."
+)
 @click.pass_context
 def main(
-    context: click.Context, count: int, seed: int, first: int, jobs: int, one: int | None, verified: bool, folder: Path | None
+    context: click.Context,
+    count: int,
+    seed: int,
+    first: int,
+    jobs: int,
+    one: int | None,
+    verified: bool,
+    folder: Path | None,
 ) -> None:
     """Hold random mechanisms against the suite's own equations and continuation."""
     if context.invoked_subcommand:
@@ -42,7 +53,29 @@ def main(
     sys.exit(1 if faulty else 0)
 
 
-def run(trial: partial[Outcome], numbers: Iterable[int], jobs: int, seed: int, folder: Path | None) -> int:
+@main.command()
+@COUNT
+@SEED
+@FIRST
+@JOBS
+def files(count: int, seed: int, first: int, jobs: int) -> None:
+    """Change catalog files at random: reading and solving them answer or say what is wrong."""
+    sys.exit(1 if run(partial(mutated, seed), range(first, first + count), jobs, seed, None, "files ") else 0)
+
+
+@main.command()
+@COUNT
+@SEED
+@FIRST
+@JOBS
+def misuse(count: int, seed: int, first: int, jobs: int) -> None:
+    """Call public functions with what they are not for: only the package's own errors may come of it."""
+    sys.exit(1 if run(partial(misused, seed), range(first, first + count), jobs, seed, None, "misuse ") else 0)
+
+
+def run(
+    trial: partial[Outcome], numbers: Iterable[int], jobs: int, seed: int, folder: Path | None, verb: str = ""
+) -> int:
     """Run the cases, telling faults as they come and the statistics at the end, or when interrupted."""
     total, faulty, done, began = Counter[str](), 0, 0, time.perf_counter()
     slowest = Outcome(-1)
@@ -57,7 +90,8 @@ def run(trial: partial[Outcome], numbers: Iterable[int], jobs: int, seed: int, f
                 click.echo(f"case {outcome.number}: {fault}")
             if outcome.faults:
                 faulty += 1
-                click.echo(f"    python -m tests.stress --seed {seed} --case {outcome.number}")
+                which = f"--first {outcome.number} --count 1" if verb else f"--case {outcome.number}"
+                click.echo(f"    python -m tests.stress {verb}--seed {seed} {which}")
             if folder and (outcome.faults or len(numbers) == 1):
                 save(seed, outcome.number, folder)
             if sys.stderr.isatty() or done % 200 == 0:

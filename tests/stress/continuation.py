@@ -1,9 +1,9 @@
-"""The suite's own continuation: from the drawn pose along the drivers' way, by length of arc, to the limit of its branch.
+"""The suite's own continuation: from the drawn pose along the drivers' way, by length of arc, to its branch's limit.
 
-A way is s -> drivers' values, `values + rate * s`; the drawn pose is at s = 0. Unknowns and s together move along a curve
-that is regular at limit positions as well: there s turns back. A step is taken where the corrections are small and
-contract, where the tangent has hardly turned, and where the sign of the determinant stayed, so that no other branch that
-passes near is taken for this one. Poses that somebody proposes are held to the same, which costs less than finding them.
+A way is s -> drivers' values, `values + rate * s`; the drawn pose is at s = 0. Unknowns and s together move along a
+curve that is regular at limit positions as well: there s turns back. A step is taken where the corrections are small
+and contract, where the tangent has hardly turned, and where the sign of the determinant stayed, so that no other branch
+that passes near is taken for this one. Proposed poses are held to the same, which costs less than finding them.
 """
 
 from __future__ import annotations

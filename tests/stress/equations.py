@@ -255,7 +255,10 @@ class _Parts:
             return [n["ratio"], n["phase"]]
         if joint.kind in "AO":
             ends = [*self._xy(n["centre"]), *self._xy(n["point"])]
-            return [*ends, *([n["radius"] / unit] if joint.kind == "A" else [n["distance"] / unit, n["phase"], n["turns"]])]
+            return [
+                *ends,
+                *([n["radius"] / unit] if joint.kind == "A" else [n["distance"] / unit, n["phase"], n["turns"]]),
+            ]
         oval = n["oval"]
         shape = [*self._xy(oval.middle), oval.a / unit, oval.b / unit, oval.tilt]
         last = n["away"] / unit if joint.kind == "C" else n["angle"]

@@ -1,4 +1,4 @@
-"""Random mechanisms drawn at a pose that closes by construction: chains of drivers, groups of every class, single links.
+"""Random mechanisms drawn at a pose that closes by construction: drivers, groups of every class, single links.
 
 Each is grown link by link. What is attached is drawn at random places and then asked, by the suite's own equations,
 whether it holds as much as it must: only mechanisms with a regular drawn pose are kept.
@@ -235,7 +235,9 @@ class Grown:
         for _ in range(count // 2):
             one = self.pick(new)
             rest = [k for k in (*new, *old) if k != one]
-            self.join(self.kind(), self._end(one), self.pick([k for k in rest if k in both] if self.chance(0.4) else rest))
+            self.join(
+                self.kind(), self._end(one), self.pick([k for k in rest if k in both] if self.chance(0.4) else rest)
+            )
 
     def mixed(self) -> None:
         """Links held by a pair of two and higher pairs of one."""

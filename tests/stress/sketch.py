@@ -1,4 +1,4 @@
-"""A mechanism as the stress suite draws it: places of letters in one pose, pairs between links, drives, frames of links.
+"""A mechanism as the stress suite draws it: places of letters in one pose, pairs between links, drives, frames.
 
 Everything is known in the world, at the drawn pose; `Placed` has it in the links' own frames, in which the words of the
 package and the suite's own equations are written. Nothing here is read from the package.

@@ -1,23 +1,27 @@
-"""The stress suite in the test command: random mechanisms are right, all but those whose faults are known."""
+"""The stress suite in the test command: random mechanisms, mutated files and wrong calls come out right."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 from tests.stress.continuation import Branch
 from tests.stress.equations import Equations
-from tests.stress.known import KNOWN, SEED
+from tests.stress.known import KNOWN, SEED, SLOW
+from tests.stress.misuse import misused
+from tests.stress.mutated_files import mutated
 from tests.stress.sketch import Placed
-from tests.stress.trial import drawn_case, tried
+from tests.stress.trial import Outcome, drawn_case, tried
 
-COUNT, PARTS = 300, 6
+COUNT, PARTS = 90, 3
 
 
 @pytest.mark.parametrize("part", range(PARTS))
 def test_random_mechanisms_are_right(part: int) -> None:
-    outcomes = [tried(SEED, number) for number in range(part, COUNT, PARTS) if number not in KNOWN]
-    assert [f"case {outcome.number}: {fault}" for outcome in outcomes for fault in outcome.faults] == []
+    numbers = [number for number in range(part, COUNT, PARTS) if number not in {*KNOWN, *SLOW}]
+    assert faults(tried, numbers) == []
 
 
 @pytest.mark.parametrize("number", KNOWN)
@@ -29,14 +33,26 @@ def test_what_is_known_to_be_faulty_still_is(number: int) -> None:
 def test_the_suites_own_jacobian_and_rates_are_those_of_differences(number: int) -> None:
     case = drawn_case(SEED, number)
     equations = Equations(Placed(case.sketch))
-    x = equations.drawn
-    step = 1e-6
+    x, step = equations.drawn, 1e-6
     for k in range(x.size):
         ahead, behind = (equations.residual(x + h * np.eye(x.size)[k]) for h in (step, -step))
         assert np.max(np.abs((ahead - behind) / (2 * step) - equations.jacobian(x)[:, k])) < 1e-7
     branch = Branch(equations, case.way.rate)
     way = 1e-3 / np.max(np.abs(branch.start.rate))
-    ahead, behind = (branch.follow(branch.start, [s]).places.get(s) for s in (way, -way))
-    if ahead and behind:
-        rate = (ahead.x - behind.x) / (2 * way)
+    there, back = (branch.follow(branch.start, [s]).places.get(s) for s in (way, -way))
+    if there and back:
+        rate = (there.x - back.x) / (2 * way)
         assert np.max(np.abs(rate - branch.start.rate)) < 1e-4 * np.max(np.abs(rate))
+
+
+def test_mutated_files_answer_or_say_what_is_wrong() -> None:
+    assert faults(mutated, range(200)) == []
+
+
+def test_wrong_calls_say_what_is_wrong() -> None:
+    assert faults(misused, range(150)) == []
+
+
+def faults(trial: Callable[[int, int], Outcome], numbers: list[int] | range) -> list[str]:
+    outcomes = (trial(SEED, number) for number in numbers)
+    return [f"case {outcome.number}: {fault}" for outcome in outcomes for fault in outcome.faults]

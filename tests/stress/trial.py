@@ -20,7 +20,7 @@ from tests.stress.equations import Equations
 from tests.stress.random_sketches import random_sketch
 from tests.stress.sketch import Joint, Placed, Sketch
 
-# A case that takes longer (seconds of the processor) is a fault; one that takes three times as long is broken off.
+# A case that takes longer (processor seconds) is a fault; at three times as long it is broken off.
 SLOW = 10.0
 # Pairs that count full turns.
 COUNTED = frozenset("GBKLO")
@@ -28,7 +28,7 @@ COUNTED = frozenset("GBKLO")
 SAME, SAME_BY_CONDITION = 1e-6, 1e-11
 # A pose is closed where no residual (sizes, radians) is more; the second where a profile is a spline through points.
 CLOSED, CLOSED_SPLINE = 1e-9, 3e-5
-# Rates agree to this part of the greatest, and to this by the square of the condition, as a root of a small number does.
+# Rates agree to this part of the greatest, and to this by the square of the condition, as near a double root.
 RATES, RATES_BY_CONDITION = 1e-8, 1e-13
 # Rates that have fewer digits are not compared.
 NO_DIGITS = 1e-2
@@ -124,7 +124,9 @@ def random_way(rng: np.random.Generator, sketch: Sketch) -> Way:
         if count == 1:
             home = float(rng.choice([0.0, float(rng.integers(1, poses - 1)), rng.uniform(0.0, poses - 1)]))
             return Way("turn", poses, home, rate, whole=not any(j.kind in COUNTED for j in sketch.joints))
-    kind = str(rng.choice(["start", "one", "end", "middle", "between", "outside"], p=[0.45, 0.05, 0.1, 0.15, 0.15, 0.1]))
+    kind = str(
+        rng.choice(["start", "one", "end", "middle", "between", "outside"], p=[0.45, 0.05, 0.1, 0.15, 0.15, 0.1])
+    )
     if kind == "one":
         return Way(kind, 1, 0.0, rate)
     if kind == "outside":
@@ -152,9 +154,14 @@ def near_limit(sketch: Sketch, way: Way, distance: float) -> Sketch:
 
 
 def redrawn(sketch: Sketch, equations: Equations, x: np.ndarray) -> Sketch:
-    """The sketch in another pose. Dimensions stay; parameters of joints that were drawn in the world are turned along."""
+    """The sketch in another pose. Dimensions stay; what joints drew in the world is turned along."""
     placed, new = Placed(sketch), sketch.copy()
-    poses = {**{k: (complex(*x[3 * i : 3 * i + 2]) * equations.unit, float(x[3 * i + 2])) for k, i in equations.index.items()}}
+    poses = {
+        **{
+            k: (complex(*x[3 * i : 3 * i + 2]) * equations.unit, float(x[3 * i + 2]))
+            for k, i in equations.index.items()
+        }
+    }
     poses["frame"] = (0j, 0.0)
     for link, points in placed.points.items():
         z, angle = poses[link]
@@ -261,11 +268,15 @@ class Trial:
     def _solved(self) -> Any:
         case = self.case
         mechanism = self.placed.mechanism(f"stress {case.number}")
-        named = {k: dict(zip(case.names, v.tolist(), strict=True)) for k, v in
-                 (("speed", case.speed), ("acceleration", case.acceleration))}
+        named = {
+            k: dict(zip(case.names, v.tolist(), strict=True))
+            for k, v in (("speed", case.speed), ("acceleration", case.acceleration))
+        }
         motion = ck.solve(mechanism, case.values(self.placed.values()), **named)
-        self.outcome.counts.update(f"group {g.name} (class {g.class_})" if hasattr(g, "class_") else f"group {g.name}"
-                                   for g in motion.structure.groups)
+        self.outcome.counts.update(
+            f"group {g.name} (class {g.class_})" if hasattr(g, "class_") else f"group {g.name}"
+            for g in motion.structure.groups
+        )
         return motion
 
     def _warnings(self, caught: list[warnings.WarningMessage]) -> None:
@@ -347,12 +358,13 @@ class Trial:
         elif missing:
             direct_ones = [k for k in missing if k in direct]
             what = "gap" if direct_ones else "gap through the wrap"
-            out.faults.append(f"{what}: not assembled at {shown(direct_ones or missing)} of {way.poses}, which are reached")
+            told = f"{what}: not assembled at {shown(direct_ones or missing)} of {way.poses}, which are reached"
+            out.faults.append(told)
         if other:
             first = int(way.home) if way.home == int(way.home) and 0 <= way.home < way.poses else None
             what = "first pose" if first in other else "branch"
-            told = f"{what}: another pose at {shown(other)} of {way.poses}, off by {self._worst(other, direct | wrapped):.2g}"
-            out.faults.append(told)
+            off = self._worst(other, direct | wrapped)
+            out.faults.append(f"{what}: another pose at {shown(other)} of {way.poses}, off by {off:.2g}")
         beyond = [k for k in np.flatnonzero(answer.assembled) if k not in direct and k not in wrapped]
         out.counts["poses beyond a limit"] += len(beyond)
 
