@@ -201,3 +201,23 @@ def test_where_a_drawing_shows_both_modes_alike_the_mode_is_that_by_default() ->
         motion = ck.solve(mechanism)
         assert motion.tracker.chosen_by == {0: "default"}
         assert float(motion.tracker.signs[0]) == 1.0
+
+
+@pytest.mark.parametrize("turns", [0, 1, -2])
+@pytest.mark.parametrize("phase", [None, 4 * np.cos(ck.deg(120)) - ck.deg(120)])
+def test_a_pinion_on_a_slide_keeps_the_turn_in_which_it_is_drawn(turns: int, phase: float | None) -> None:
+    # the block is drawn at 240 degrees, which a drawing shows as -120: the slide's own angles add up to the former
+    drawn = {k: ck.polar(r, ck.deg(120)) for k, r in (("A", 3), ("B", 4))}
+    mechanism = ck.Mechanism(
+        "pinion on a slide",
+        ck.link("frame", O=(0, 0), Q=(0, -1)),
+        ck.link("crank", O=(0, 0), A=(3, 0)),
+        ck.link("block", B=(0, 0), C=(1, 0)),
+        ck.slide("block", on="crank", through="A", at="B", turn=ck.deg(120)),
+        ck.rack("frame", "block", through="Q", at="B", radius=1, phase=phase),
+        ck.drive("crank"),
+        ck.drawn(O=0, Q=-1j, C=drawn["B"] + ck.polar(1, ck.deg(-120)), **drawn),
+    )
+    motion = ck.solve(mechanism, ck.deg([120 + 360 * turns, 121 + 360 * turns]))
+    for name, place in drawn.items():
+        assert complex(motion.points[name].position[0]) == pytest.approx(place, abs=1e-12)

@@ -30,6 +30,7 @@ FIRST = click.option("--first", default=0, show_default=True, help="From this ca
 @FIRST
 @JOBS
 @click.option("--case", "one", type=int, help="This case alone, told in full.")
+@click.option("--small", is_flag=True, help="Few links and poses, as in the test command.")
 @click.option("--verify", "verified", is_flag=True, help="`verify` must pass wherever nothing else is wrong.")
 @click.option(
     "--save", "folder", type=click.Path(path_type=Path), help="Write faulty cases (or the one) as files here."
@@ -42,6 +43,7 @@ def main(
     first: int,
     jobs: int,
     one: int | None,
+    small: bool,
     verified: bool,
     folder: Path | None,
 ) -> None:
@@ -49,8 +51,9 @@ def main(
     if context.invoked_subcommand:
         return
     numbers = [one] if one is not None else range(first, first + count)
-    faulty = run(partial(tried, seed, verified=verified), numbers, jobs, seed, folder)
-    sys.exit(1 if faulty else 0)
+    again = f"{'--small ' if small else ''}--seed {seed} --case NUMBER"
+    saving = partial(save, folder, seed, small) if folder else None
+    sys.exit(1 if run(partial(tried, seed, small=small, verified=verified), numbers, jobs, again, saving) else 0)
 
 
 @main.command()
@@ -60,7 +63,13 @@ def main(
 @JOBS
 def files(count: int, seed: int, first: int, jobs: int) -> None:
     """Change catalog files at random: reading and solving them answer or say what is wrong."""
-    sys.exit(1 if run(partial(mutated, seed), range(first, first + count), jobs, seed, None, "files ") else 0)
+    sys.exit(
+        1
+        if run(
+            partial(mutated, seed), range(first, first + count), jobs, f"files --seed {seed} --first NUMBER --count 1"
+        )
+        else 0
+    )
 
 
 @main.command()
@@ -70,11 +79,17 @@ def files(count: int, seed: int, first: int, jobs: int) -> None:
 @JOBS
 def misuse(count: int, seed: int, first: int, jobs: int) -> None:
     """Call public functions with what they are not for: only the package's own errors may come of it."""
-    sys.exit(1 if run(partial(misused, seed), range(first, first + count), jobs, seed, None, "misuse ") else 0)
+    sys.exit(
+        1
+        if run(
+            partial(misused, seed), range(first, first + count), jobs, f"misuse --seed {seed} --first NUMBER --count 1"
+        )
+        else 0
+    )
 
 
 def run(
-    trial: partial[Outcome], numbers: Iterable[int], jobs: int, seed: int, folder: Path | None, verb: str = ""
+    trial: partial[Outcome], numbers: Iterable[int], jobs: int, again: str, saving: partial[None] | None = None
 ) -> int:
     """Run the cases, telling faults as they come and the statistics at the end, or when interrupted."""
     total, faulty, done, began = Counter[str](), 0, 0, time.perf_counter()
@@ -90,10 +105,9 @@ def run(
                 click.echo(f"case {outcome.number}: {fault}")
             if outcome.faults:
                 faulty += 1
-                which = f"--first {outcome.number} --count 1" if verb else f"--case {outcome.number}"
-                click.echo(f"    python -m tests.stress {verb}--seed {seed} {which}")
-            if folder and (outcome.faults or len(numbers) == 1):
-                save(seed, outcome.number, folder)
+                click.echo(f"    python -m tests.stress {again.replace('NUMBER', str(outcome.number))}")
+            if saving and (outcome.faults or len(numbers) == 1):
+                saving(outcome.number)
             if sys.stderr.isatty() or done % 200 == 0:
                 click.echo(f"\r{done} of {len(numbers)}, {faulty} faulty", err=True, nl=not sys.stderr.isatty())
     except KeyboardInterrupt:
@@ -113,9 +127,9 @@ def outcomes(trial: partial[Outcome], numbers: list[int], jobs: int) -> Iterator
         yield from pool.imap_unordered(trial, numbers, chunksize=4)
 
 
-def save(seed: int, number: int, folder: Path) -> None:
-    """Write a case as a mechanism file with its values; profiles by formula become splines."""
-    case = drawn_case(seed, number)
+def save(folder: Path, seed: int, small: bool, number: int) -> None:
+    """Write a case as a mechanism file with its values; one with a profile by formula is not written."""
+    case = drawn_case(seed, number, small)
     placed = Placed(case.sketch)
     mechanism = placed.mechanism(f"stress {seed} {number}")
     values = case.values(placed.values())

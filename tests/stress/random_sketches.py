@@ -311,10 +311,10 @@ TASTES: tuple[dict[str, float], ...] = (
 )
 
 
-def flavour_of(rng: np.random.Generator) -> Flavour:
+def flavour_of(rng: np.random.Generator, small: bool) -> Flavour:
     taste = TASTES[int(rng.integers(len(TASTES)))]
     large = rng.random()
-    sizes = ((3, 7), (7, 10), (10, 19), (19, 61))
+    sizes = ((3, 6), (3, 6), (6, 9), (6, 9)) if small else ((3, 7), (7, 10), (10, 19), (19, 61))
     links = int(rng.integers(*sizes[int(np.searchsorted((0.6, 0.88, 0.98), large))]))
     return Flavour(
         links,
@@ -327,10 +327,10 @@ def flavour_of(rng: np.random.Generator) -> Flavour:
     )
 
 
-def random_sketch(rng: np.random.Generator) -> tuple[Sketch, list[str]]:
+def random_sketch(rng: np.random.Generator, small: bool = False) -> tuple[Sketch, list[str]]:
     """A random mechanism, all lengths near 5, and the names of what it was grown from."""
     while True:
-        grown = Grown(rng, flavour_of(rng))
+        grown = Grown(rng, flavour_of(rng, small))
         used = _grow(grown)
         if used and regular(_finished(grown.sketch, rng)):
             return grown.sketch, used

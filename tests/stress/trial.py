@@ -89,11 +89,11 @@ class TooSlow(Exception):
 # --- drawing ---------------------------------------------------------------------------------------------
 
 
-def drawn_case(seed: int, number: int) -> Case:
-    """The case of a number: always the same."""
+def drawn_case(seed: int, number: int, small: bool = False) -> Case:
+    """The case of a number: always the same. Small ones have few links and poses, so that many are soon done."""
     rng = np.random.default_rng((seed, number))
-    sketch, grown = random_sketch(rng)
-    way = random_way(rng, sketch)
+    sketch, grown = random_sketch(rng, small)
+    way = random_way(rng, sketch, SMALL if small else POSES)
     near = rng.random() < 0.1
     if near:
         sketch = near_limit(sketch, way, 10.0 ** rng.uniform(-6, -1))
@@ -111,14 +111,19 @@ def drawn_case(seed: int, number: int) -> Case:
     return case
 
 
-def random_way(rng: np.random.Generator, sketch: Sketch) -> Way:
+# Numbers of poses, and those of full turns.
+POSES = ((2, 5, 9, 13, 25, 41, 73), (13, 25, 37, 73))
+SMALL = ((2, 3, 4, 5, 6, 7, 8), (9, 13, 13, 25))
+
+
+def random_way(rng: np.random.Generator, sketch: Sketch, numbers: tuple[tuple[int, ...], tuple[int, ...]]) -> Way:
     count = len(sketch.drivers)
     angles = np.array([d.kind in "RO" for d in sketch.drivers])
-    poses = int(rng.choice([2, 5, 9, 13, 25, 41, 73], p=[0.05, 0.15, 0.2, 0.2, 0.2, 0.1, 0.1]))
+    poses = int(rng.choice(numbers[0], p=[0.05, 0.15, 0.2, 0.2, 0.2, 0.1, 0.1]))
     span = rng.uniform(0.05, 3.0, count) * rng.choice([-1.0, 1.0], count)
     rate = span / poses
     if angles[0] and rng.random() < 0.25:
-        poses = int(rng.choice([13, 25, 37, 73]))
+        poses = int(rng.choice(numbers[1]))
         rate = rng.choice([-1.0, 1.0], count) * 2.0 * np.pi / (poses - 1)
         rate[1:] *= rng.integers(0, 2, count - 1)
         if count == 1:
@@ -437,6 +442,6 @@ def shown(numbers: list[int]) -> str:
     return ", ".join(map(str, numbers)) if len(numbers) < 7 else f"{numbers[0]}..{numbers[-1]} ({len(numbers)})"
 
 
-def tried(seed: int, number: int, verified: bool = False) -> Outcome:
+def tried(seed: int, number: int, small: bool = False, verified: bool = False) -> Outcome:
     """The outcome of a case."""
-    return Trial(drawn_case(seed, number), verified).run()
+    return Trial(drawn_case(seed, number, small), verified).run()
