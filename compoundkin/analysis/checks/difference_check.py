@@ -37,15 +37,17 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
     if not counted.any():
         return
     for k in range(1, motion.order + 1):
-        weights = _weights(k)
+        weights, fewer = _weights(k, OFFSETS), np.pad(_weights(k, OFFSETS[1:-1]), 1)
         parts: dict[str, Number] = {}
         for link, pose in motion.poses.items():
             for what, size in (("z", motion.size), ("u", 1.0)):
                 series = getattr(pose, what)
                 found = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights, stencils, strict=True))
+                # what is left of the differences' own error is less than what two neighbours fewer change
+                rest = sum(w * getattr(s[link], what).c[0] for w, s in zip(weights - fewer, stencils, strict=True))
                 own = series.derivative(k) * step**k
                 # relative to the largest derivative the series' own time allows
-                parts[link] = np.maximum(parts.get(link, 0.0), np.abs(found - own) / (STEP**k * size))
+                parts[link] = np.maximum(parts.get(link, 0.0), _beyond(found - own, rest) / (STEP**k * size))
         yield worst(motion, f"{NAMES[k]}, differences", LIMITS[k], _rounded(motion, k, step, parts), counted)
 
 
@@ -55,10 +57,15 @@ def _rounded(motion: Motion, k: int, step: Number, parts: dict[str, Number]) -> 
     return rounded_by(motion, k, parts, LIMITS[k], motion.size * (STEP / step) ** k)
 
 
-def _weights(k: int) -> Number:
+def _beyond(gap: Number, rest: Number) -> Number:
+    """Return the size of a gap beyond what is left open."""
+    return np.maximum(np.abs(gap) - np.abs(rest), 0.0)
+
+
+def _weights(k: int, offsets: Number) -> Number:
     """Central-difference weights of the k-th derivative at unit step."""
-    powers = np.vander(OFFSETS.astype(float), increasing=True).T
-    right = np.zeros(len(OFFSETS))
+    powers = np.vander(offsets.astype(float), increasing=True).T
+    right = np.zeros(len(offsets))
     right[k] = factorial(k)
     return np.linalg.solve(powers, right)
 
