@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from math import pi
 from typing import Any
 
 from compoundkin.base.errors import LikelySlip, warn
@@ -15,7 +16,7 @@ _RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*({_NUMBER})\s*")
 _KEY = {"rpm": "rpm", "1/min": "rpm", "deg": "deg", "deg/s": "deg"}
 
 # Quarters of a turn in radians, and how far what is rounded to three digits may be from one: 1.57, 3.14, 4.71, 6.28.
-_QUARTER, _ROUNDED = 1.5707963267948966, 6e-4
+_QUARTER, _ROUNDED = pi / 2.0, 6e-4
 # A range of so many quarters is looked for; 18 of them are 28.27 degrees, which may well be meant.
 _MOST_QUARTERS = 8
 
@@ -53,6 +54,8 @@ def warn_of_radians(where: str, first: float, last: float) -> None:
     """
     quarters = abs(last - first) / _QUARTER
     whole = round(quarters)
-    if 1 <= whole <= _MOST_QUARTERS and abs(quarters - whole) <= _ROUNDED * whole:
+    # 11 degrees are seven quarters by chance: nobody rounds radians to whole numbers
+    is_rounded = float(last - first).is_integer()
+    if not is_rounded and 1 <= whole <= _MOST_QUARTERS and abs(quarters - whole) <= _ROUNDED * whole:
         told = f"{where}: {first:g} to {last:g} degrees look like radians"
         warn(f"{told}; write degrees, or {{ rad = [...] }}", LikelySlip)

@@ -90,11 +90,11 @@ def spaced(start: float, stop: float, step: float) -> np.ndarray[Any, np.dtype[n
 
 def rate(value: Any, where: str, angle: bool | None) -> Number:
     """Read a rate as rad/s, also ``{rpm = ...}``, ``{deg = ...}``, "60 rpm"."""
-    value = worded_rate(value)
+    if angle is not False:
+        value = worded_rate(value)
     if isinstance(value, str):
-        raise wrong(
-            where, value, "a number", 'write 10 or "60 rpm"' if angle is not False else "write lengths a second"
-        )
+        how = "write lengths a second" if angle is False else 'write 10 or "60 rpm"'
+        raise wrong(where, value, "a number", how)
     if not isinstance(value, dict):
         return numbers(value, where)
     unit, amount = _unit(value, where, ("rpm", "deg"), angle)
