@@ -68,7 +68,9 @@ def test_radians_in_a_file_are_warned_about(values: str) -> None:
         loads(f"{FOUR_BAR}values = {values}")
 
 
-@pytest.mark.parametrize("values", ["{ from = 0, to = 6, step = 0.1 }", "{ rad = [0, 1.57, 3.14] }", "[0, 30, 90]", "[0, 11]"])
+@pytest.mark.parametrize(
+    "values", ["{ from = 0, to = 6, step = 0.1 }", "{ rad = [0, 1.57, 3.14] }", "[0, 30, 90]", "[0, 11]"]
+)
 def test_degrees_in_a_file_are_not(values: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", ck.errors.LikelySlip)
@@ -113,7 +115,7 @@ def test_other_texts_are_refused_with_a_remedy() -> None:
 
 @pytest.mark.parametrize("speed", ["60 rpm", "1.5 rad/s", "90 deg"])
 def test_rates_of_angles_are_none_of_lengths(speed: str) -> None:
-    slide = 'slides = [{ link = "b", on = "frame", through = "A" }]\ndrives = [{ link = "b", speed = "%s" }]' % speed
+    slide = f'slides = [{{ link = "b", on = "frame", through = "A" }}]\ndrives = [{{ link = "b", speed = "{speed}" }}]'
     links = "[links]\nframe.points = { A = [0, 0] }\nb.points = { B = [0, 0] }"
     with pytest.raises(ck.errors.InvalidMechanism, match=f"the text '{speed}' is not a number; write lengths a second"):
         loads(f'format = 1\ntitle = "m"\n{slide}\n{links}')

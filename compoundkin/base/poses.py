@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import factorial
 from typing import NamedTuple
 
@@ -69,6 +70,14 @@ class Pose(PrintsShort):
         """
         return self.u.angle() if self.theta is None else self.theta
 
+    def mapped(self, change: Callable[[Series], Series]) -> Pose:
+        """Change all series of the pose alike, that of a counted angle too.
+
+        >>> Pose.of(1j, 1 + 0j).mapped(lambda series: series * 2.0).z.c
+        (2j,)
+        """
+        return Pose(change(self.z), change(self.u), None if self.theta is None else change(self.theta))
+
     def counted(self, near: Number) -> Pose:
         """Return the pose with full turns counted. Its angle is the one nearest to `near`.
 
@@ -117,8 +126,7 @@ class Pose(PrintsShort):
         """Cut the pose to an order at most."""
         if self.z.order <= order and self.u.order <= order:
             return self
-        theta = None if self.theta is None else Series(self.theta.c[: order + 1])
-        return Pose(Series(self.z.c[: order + 1]), Series(self.u.c[: order + 1]), theta)
+        return self.mapped(lambda series: Series(series.c[: order + 1]))
 
     def inverse(self) -> Pose:
         """Return the pose of the world as seen from the link."""

@@ -179,7 +179,7 @@ def _of_link(
     )
     values = segments.at(at, low[:, None])[:, 0] if len(at) else np.zeros(0)
     owner = {v.row: (c, b) for c in circuits for b in c.branches for v in b.visits}
-    period = placing.sweep.solving_order.structure.driven[placing.sweep.driver].pair.free_is_angle
+    period = placing.sweep.solving_order.structure.driven_angles[placing.sweep.driver]
     for row, angle, s, one in zip(
         at.tolist(), low.tolist(), values.tolist(), placing.configurations(at, values), strict=True
     ):

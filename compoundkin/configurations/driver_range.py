@@ -144,7 +144,7 @@ def starting_values(solving_order: SolvingOrder, values: Mapping[str, Any], move
 def _first(solving_order: SolvingOrder, drive: Drive) -> float:
     if drive.values is not None:
         return float(first_entry(drive.values))
-    return 0.0 if solving_order.structure.driven[drive.name].pair.free_is_angle else solving_order.size / 2.0
+    return 0.0 if solving_order.structure.driven_angles[drive.name] else solving_order.size / 2.0
 
 
 def _number(name: str, value: Any) -> float:

@@ -192,7 +192,7 @@ def _nothing(solving_order: SolvingOrder, given: Inputs) -> Problem:
     if not found:
         return Problem("values", f"{what}, nor at any other value of a single driver")
     _, value, name = min(found)
-    is_angle = solving_order.structure.driven[name].pair.free_is_angle
+    is_angle = solving_order.structure.driven_angles[name]
     shown = f"{degrees(value):.6g} degrees" if is_angle else f"{value:.6g}"
     return Problem("values", what, f"the nearest value is {name} = {shown}")
 
@@ -201,7 +201,7 @@ def _nearest(solving_order: SolvingOrder, given: Inputs, name: str) -> tuple[flo
     """The value of a driver nearest to its own with any configuration, and how far it is (of the size, or radians)."""
     first = given.cut(slice(0, 1), slice(0, 1))
     here = float(first_entry(first.drives[name][0]))
-    is_angle = solving_order.structure.driven[name].pair.free_is_angle
+    is_angle = solving_order.structure.driven_angles[name]
     span = TURN / 2.0 if is_angle else 2.0 * reach_of(solving_order)
     offsets = np.linspace(-span, span, TRIED)
     good = _any(solving_order, first, name, here + offsets)

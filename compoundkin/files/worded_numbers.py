@@ -22,9 +22,9 @@ _MOST_QUARTERS = 8
 
 
 def worded_rate(value: Any) -> Any:
-    """Return the number or table that says the same as a text such as "60 rpm".
+    """Read a rate that is written as text, such as "60 rpm".
 
-    What is no such text stays as it is.
+    It is the number or the table that says the same; what is no such text stays as it is.
 
     >>> worded_rate("60 rpm"), worded_rate("-1.5 rad/s"), worded_rate("90deg"), worded_rate("fast")
     ({'rpm': 60.0}, -1.5, {'deg': 90.0}, 'fast')

@@ -37,7 +37,7 @@ def approach_path(
     ways: dict[str, Number] = {}
     for name, rest in end.drives.items():
         way = rest[0] - values.get(name, rest[0])
-        if solving_order.structure.driven[name].pair.free_is_angle:
+        if solving_order.structure.driven_angles[name]:
             way = way - whole_turns(way)
         ways[name] = way
     count = 1 + max((spacings(solving_order, name, way) for name, way in ways.items()), default=0)
@@ -73,7 +73,7 @@ def _nearest(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Nu
         return 0.0
     # from each pose to the next the drivers go straight on: the foot of the perpendicular to that line
     here = [off[:, :-1] for off in offs]
-    steps = [_step(given.drives[name][0]) / _unit(solving_order, name) for name in values]
+    steps = [_step(given.drives[name][0]) / solving_order.unit(name) for name in values]
     square = np.broadcast_to(sum(np.sum(step**2, axis=0) for step in steps), given.poses - 1)
     back = sum(np.sum(step * off, axis=0) for step, off in zip(steps, here, strict=True))
     share = np.divide(-back, square, out=np.zeros(given.poses - 1), where=square > 0.0)
@@ -88,9 +88,9 @@ def _nearest(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Nu
 def _off(solving_order: SolvingOrder, given: Inputs, name: str, value: Number) -> Number:
     """Return how far a driver is from where it is drawn, (1 or designs, poses), in radians or parts of the size."""
     off = given.drives[name][0] - value
-    if solving_order.structure.driven[name].pair.free_is_angle:
+    if solving_order.structure.driven_angles[name]:
         off = off - whole_turns(off)
-    off = np.atleast_2d(off / _unit(solving_order, name))
+    off = np.atleast_2d(off / solving_order.unit(name))
     return np.broadcast_to(off, (len(off), given.poses))
 
 
@@ -104,8 +104,7 @@ def first_of(value: Number) -> Number:
 
 def column(pose: Pose) -> Pose:
     """Return a pose at the first pose of each design."""
-    theta = None if pose.theta is None else constant(first_of(pose.theta.c[0]))
-    return Pose(constant(first_of(pose.z.c[0])), constant(first_of(pose.u.c[0])), theta)
+    return pose.mapped(lambda series: constant(first_of(series.c[0])))
 
 
 def spacings(solving_order: SolvingOrder, name: str, way: Number) -> int:
@@ -125,7 +124,7 @@ def spacings_between(solving_order: SolvingOrder, given: Inputs) -> Number:
     """Return the spacings from each pose of a motion to the next, as fractions. They are those of the fastest."""
     found = np.zeros(max(given.poses - 1, 0))
     for name, steps in _steps(given):
-        found = np.maximum(found, np.max(np.abs(steps), axis=0) / _unit(solving_order, name) / SPACING)
+        found = np.maximum(found, np.max(np.abs(steps), axis=0) / solving_order.unit(name) / SPACING)
     return found
 
 
@@ -135,12 +134,7 @@ def pace(solving_order: SolvingOrder, given: Inputs) -> float:
 
 
 def _spacings(solving_order: SolvingOrder, name: str, way: Number) -> float:
-    return float(np.max(np.abs(way))) / _unit(solving_order, name) / SPACING
-
-
-def _unit(solving_order: SolvingOrder, name: str) -> float:
-    """Return what makes a way of a driver a pure number. It is a radian, or the size."""
-    return 1.0 if solving_order.structure.driven[name].pair.free_is_angle else float(solving_order.size)
+    return float(np.max(np.abs(way))) / solving_order.unit(name) / SPACING
 
 
 def _steps(given: Inputs) -> Iterator[tuple[str, Number]]:

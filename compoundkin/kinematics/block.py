@@ -109,6 +109,20 @@ def blocks(designs: int, poses: int, size: int) -> Iterator[tuple[slice, slice]]
             yield slice(d, min(d + high, designs)), slice(m, min(m + wide, poses))
 
 
+def poses_at(poses: Mapping[str, Pose], shape: tuple[int, ...], designs: Number, index: Number) -> dict[str, Pose]:
+    """Pick the poses of links at some designs and indices, as columns.
+
+    >>> slider = Pose(Series((np.array([[0j, 1j]]), 1j)), FIXED.u)
+    >>> poses_at({"slider": slider}, (1, 2), np.array([0]), np.array([1]))["slider"].z.c[0]
+    array([[0.+1.j]])
+    """
+
+    def some(series: Series) -> Series:
+        return Series(tuple([np.broadcast_to(c, shape)[designs, index][:, None] for c in series.c]))
+
+    return {name: pose if pose is FIXED else pose.mapped(some) for name, pose in poses.items()}
+
+
 class JoinedBlocks:
     """The arrays to which blocks are added; complete when all blocks have been.
 

@@ -91,7 +91,7 @@ def course_of(solving_order: SolvingOrder, given: Inputs, approach_path: Inputs)
         return None
     (name,) = moving
     start = np.atleast_2d(approach_path.drives[name][0])[:, :1]
-    angle = solving_order.structure.driven[name].pair.free_is_angle
+    angle = solving_order.structure.driven_angles[name]
     if angle and not solving_order.turning:
         each = round(TURN / SPACING)
         return Course(name, start, TURN / each, float(each), 2 * each + 1, wraps=True)

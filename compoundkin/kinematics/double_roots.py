@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.composition import composed
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.block import blocks, places, rates
+from compoundkin.kinematics.block import blocks, places, poses_at, rates
 from compoundkin.kinematics.driver_ways import DriverValues, straight_way
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.limits import Root, noted_root, root_of_square, signed_root
@@ -124,7 +124,7 @@ def expanded(tracker: Tracker, groups: Iterable[int], order: int) -> tuple[Numbe
     tracker.expanded = designs, index, groups
     poses, good = _solved(tracker, tracker.given, order)
     tracker.expanded = designs[good], index[good], groups
-    return designs[good], index[good], {name: _where(pose, good) for name, pose in poses.items()}
+    return designs[good], index[good], poses_at(poses, (len(good), 1), np.flatnonzero(good), 0)
 
 
 def rates_at(given: Inputs, tracker: Tracker, order: int) -> tuple[Number, Number, Mapping[str, Pose]]:
@@ -173,13 +173,4 @@ def _composed(pose: Pose, gone: Series) -> Pose:
     def in_time(series: Series) -> Series:
         return series if len(series.c) == 1 else composed(series.c, gone)
 
-    return Pose(in_time(pose.z), in_time(pose.u), None if pose.theta is None else in_time(pose.theta))
-
-
-def _where(pose: Pose, good: Number) -> Pose:
-    """Return some of the poses."""
-
-    def some(series: Series) -> Series:
-        return Series(tuple([np.broadcast_to(c, (len(good), 1))[good] for c in series.c]))
-
-    return Pose(some(pose.z), some(pose.u), None if pose.theta is None else some(pose.theta))
+    return pose.mapped(in_time)

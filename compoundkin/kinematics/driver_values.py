@@ -80,7 +80,7 @@ def _driver(
 
 def _unsaid(solving_order: SolvingOrder, drive: Drive) -> Number:
     """Return the values of a driver that is given none: a full turn."""
-    if not solving_order.structure.driven[drive.name].pair.free_is_angle:
+    if not solving_order.structure.driven_angles[drive.name]:
         raise InvalidInput(
             Problem(f"drives.{drive.name}", "it has no values", f"solve(..., {{{drive.name!r}: lengths}})")
         )

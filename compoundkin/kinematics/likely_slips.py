@@ -18,7 +18,7 @@ COARSE = 0.5
 def warn_of_degrees(structure: Structure, given: Inputs) -> None:
     """Warn of drivers of angles whose values look like degrees."""
     for name, (values, *_) in given.drives.items():
-        if structure.driven[name].pair.free_is_angle and look_like_degrees(values):
+        if structure.driven_angles[name] and look_like_degrees(values):
             told = f"{name!r} is driven in radians, and its values look like degrees"
             warn(f"{told}; write compoundkin.deg(values)", LikelySlip)
 

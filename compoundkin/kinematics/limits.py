@@ -87,7 +87,7 @@ def root_of_square(c: tuple[Number, ...]) -> list[Number]:
     taken from its rates. Each round takes on another power of the way to the zero; the last coefficients need those
     that are not known, and mean less.
 
-    >>> root_of_square((0.0001, 0.02, 1.0, 0.0, 0.0))  # of 0.01 + t
+    >>> [float(r) for r in root_of_square((0.0001, 0.02, 1.0, 0.0, 0.0))]  # of 0.01 + t
     [0.01, 1.0, 0.0, 0.0]
     """
     n = len(c) - 1

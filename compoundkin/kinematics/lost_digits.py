@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import Block, poses_at
 from compoundkin.kinematics.error_estimate import LinkErrors, errors_at
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
@@ -56,9 +56,8 @@ def _pace(solving_order: SolvingOrder, part: Inputs) -> Number:
     """Return the speed of the fastest driver: radians, or parts of the size, per second."""
     fastest: Number = 0.0
     for name, values in part.drives.items():
-        is_angle = solving_order.structure.driven[name].pair.free_is_angle
         speed = values[1] if len(values) > 1 else 0.0
-        fastest = np.maximum(fastest, np.abs(speed) / (1.0 if is_angle else solving_order.size))
+        fastest = np.maximum(fastest, np.abs(speed) / solving_order.unit(name))
     return fastest
 
 
@@ -75,7 +74,7 @@ def without_lost(motion: Motion, where: Number) -> Told:
     part, s = motion.inputs.pick(designs, index.astype(float)), index[:, None].astype(float)
     with np.errstate(all="ignore"):
         errors = errors_at(motion.tracker, part, motion.order, s, designs[:, None])
-        poses = {name: _picked(pose, motion, designs, index) for name, pose in motion.poses.items()}
+        poses = poses_at(motion.poses, motion.failed.shape, designs, index)
         allowed = _natural(poses, motion.order, motion.size)
         lost = {name: [~(e <= a) for e, a in zip(found, allowed, strict=True)] for name, found in errors.items()}
         few = _any(errors, [UNCERTAIN * a for a in allowed]) & ~_any(errors, allowed)
@@ -119,17 +118,6 @@ def _natural(poses: Mapping[str, Pose], order: int, size: float) -> list[Number]
     return found
 
 
-def _picked(pose: Pose, motion: Motion, designs: Number, index: Number) -> Pose:
-    """Return some poses of a link, as a column."""
-    if pose is FIXED:
-        return pose
-
-    def part(series: Series) -> Series:
-        return Series(tuple([np.broadcast_to(c, motion.failed.shape)[designs, index][:, None] for c in series.c]))
-
-    return Pose(part(pose.z), part(pose.u), None if pose.theta is None else part(pose.theta))
-
-
 def _kept(pose: Pose, lost: list[Number]) -> Pose:
     """Return a pose with what is lost, and all higher derivatives, no numbers."""
 
@@ -140,4 +128,4 @@ def _kept(pose: Pose, lost: list[Number]) -> Pose:
             kept.append(np.where(gone, np.nan, series.c[k] if k < len(series.c) else 0.0))
         return Series(tuple(kept))
 
-    return Pose(part(pose.z), part(pose.u), None if pose.theta is None else part(pose.theta))
+    return pose.mapped(part)

@@ -216,5 +216,5 @@ class Motion(CopiesFields, ShowsPicture):
         return PairMotion(self.grid, pair.coordinate(ends, poses), pair.free_is_angle, counted=counted)
 
     def _drive(self, name: str) -> PairMotion:
-        is_angle = self.structure.driven[name].pair.free_is_angle
+        is_angle = self.structure.driven_angles[name]
         return PairMotion(self.grid, self.inputs.series(self.order)[name], is_angle, prescribed=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from compoundkin.analysis.checks.continuation_check import SAME, poses_at
+from compoundkin.analysis.checks.continuation_check import SAME, known_at
 from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
 from compoundkin.analysis.checks.group_walk import GroupWalk
 from compoundkin.base.poses import Pose
@@ -44,7 +44,7 @@ def _farther(motion: Motion, drawn: list[int]) -> dict[str, Number]:
     begin = motion.inputs.pick(designs, index.astype(float))
     first = motion.tracker.approach_path.cut(slice(None), slice(0, 1))
     walk = GroupWalk(motion, begin, first.pick(designs, np.zeros(len(designs))),
-                     poses_at(motion, designs, index), len(designs))  # fmt: skip
+                     known_at(motion, designs, index), len(designs))  # fmt: skip
     arrived, found = walk.follow(), dict[str, Number]()
     for solver, block in walk.groups():
         if solver.index in drawn and len(solver.group.bodies) <= MOST_BODIES:

@@ -9,9 +9,10 @@ import numpy as np
 
 from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
 from compoundkin.analysis.checks.group_walk import SINGULAR, GroupWalk
-from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.block import poses_at
 
 # Where continuation arrives and where the pose is may differ by this (of the size, or radians) and what rounding
 # leaves: the same configuration is found to rounding, another is farther away, but next to where the two meet.
@@ -37,7 +38,7 @@ def continuation_findings(motion: Motion) -> Iterator[Finding]:
     for ways in _between(motion, usable):
         walk = _walk(motion, ways)
         arrived = walk.follow()
-        gaps = _apart(motion, walk.poses(), poses_at(motion, ways.designs, ways.end))
+        gaps = _apart(motion, walk.poses(), known_at(motion, ways.designs, ways.end))
         for link, part in parts.items():
             np.maximum.at(part, (ways.designs, ways.end), np.where(arrived, gaps[link], 0.0))
     yield worst(motion, "continuity", SAME, rounded_by(motion, 0, parts, SAME), motion.failed == 0)
@@ -84,21 +85,13 @@ def _parts(ways: Ways) -> Iterator[Ways]:
 
 def _walk(motion: Motion, ways: Ways) -> GroupWalk:
     begin, end = (motion.inputs.pick(ways.designs, at.astype(float)) for at in (ways.begin, ways.end))
-    return GroupWalk(motion, begin, end, poses_at(motion, ways.designs, ways.begin), len(ways.designs))
+    return GroupWalk(motion, begin, end, known_at(motion, ways.designs, ways.begin), len(ways.designs))
 
 
-def poses_at(motion: Motion, designs: Number, index: Number) -> dict[str, Pose]:
+def known_at(motion: Motion, designs: Number, index: Number) -> dict[str, Pose]:
     """Return the links' poses at some places, as columns without derivatives."""
-
-    def part(series: Series) -> Series:
-        return Series((np.broadcast_to(series.c[0], motion.failed.shape)[designs, index][:, None],))
-
-    return {
-        name: pose
-        if pose is FIXED
-        else Pose(part(pose.z), part(pose.u), None if pose.theta is None else part(pose.theta))
-        for name, pose in motion.poses.items()
-    }
+    leading = {name: pose.trimmed(0) for name, pose in motion.poses.items()}
+    return poses_at(leading, motion.failed.shape, designs, index)
 
 
 def _apart(motion: Motion, found: Mapping[str, Pose], poses: Mapping[str, Pose]) -> dict[str, Number]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, constant
+from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import DeclaredKeys, NameWording, link_fields, name_problems, only_points, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.loop_terms import LoopTerms
@@ -121,7 +121,7 @@ class Pair(ABC):
         Shape (..., held + 1, 3 members), at the leading coefficient of the poses. By series, unless a kind knows it.
         """
         fixed = tuple(End(*(side.c[0] if isinstance(side, Series) else side for side in end)) for end in ends)
-        still = [_still(pose) for pose in poses]
+        still = [pose.trimmed(0) for pose in poses]
         columns = []
         for k, pose in enumerate(still):
             for moved in _moving(pose):
@@ -190,12 +190,6 @@ def _lines(rows: Number, z: Number) -> list[tuple[Number, Number, Number]]:
 
 def _dot(line: tuple[Number, ...], place: tuple[Number, ...]) -> Number:
     return sum(own * at for own, at in zip(line, place, strict=True))
-
-
-def _still(pose: Pose) -> Pose:
-    """A pose that does not move."""
-    theta = None if pose.theta is None else constant(pose.theta.c[0])
-    return Pose(constant(pose.z.c[0]), constant(pose.u.c[0]), theta)
 
 
 def _moving(pose: Pose) -> Iterator[Pose]:
