@@ -24,14 +24,14 @@ COMPARED = 50
 MOST_BODIES = 6
 
 
-def every_state(solver: GroupSolver, block: Block) -> Number | None:
+def every_state(solver: GroupSolver, block: Block, most: int = MOST_BODIES) -> Number | None:
     """Return all real configurations of a group, or None where they are not known.
 
-    They are (m, designs, 1, width), NaN where a design has fewer.
+    They are (m, designs, 1, width), NaN where a design has fewer. Those of more than `most` bodies are not looked for.
     """
     equations = equations_of(solver)
-    found = known_configurations(solver.group, block, equations.size, MOST_BODIES)
-    if found is None or not found.states.shape[-2]:
+    found = known_configurations(solver.group, block, equations.size, most)
+    if found is None:
         return None
     states = np.moveaxis(equations.state(bodies_at(found.states)), -2, 0)
     placed = states.reshape(len(states), *(1,) * (4 - states.ndim), *states.shape[1:])
@@ -59,7 +59,7 @@ class ClosedStates:
         if self.complete:
             yield next(starts)
         every = every_state(self.solver, self.block)
-        if every is not None:
+        if every is not None and len(every):
             yield from [every[:, 0]] if single else every
             return
         if not self.complete:

@@ -8,9 +8,9 @@ import numpy as np
 
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.group_paths import Followed
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.inputs import Inputs, fit
-from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.structure.four_bars import FourBarLoops, Place
 
 # Twice a triangle's area below this part of the product of two sides is none: both modes close polygons of one area.
@@ -25,19 +25,10 @@ EVEN = 1e-9
 TINY = 1e-300
 
 
-class AtFirstPose(Protocol):
+class AtFirstPose(Followed, Protocol):
     """What chooses the modes: the motion, its approach path, signs so far."""
 
-    solving_order: SolvingOrder
-    given: Inputs
-    approach_path: Inputs
-    at: float
     signs: dict[int, Number]
-
-    def run(
-        self, part: Inputs, order: int, s: Number, designs: Number, upto: int | None = None, on_approach: bool = False
-    ) -> Block:
-        """Solve a block of inputs, up to a group."""
 
 
 def default_sign(tracker: AtFirstPose, k: int, block: Block) -> Number:

@@ -9,10 +9,10 @@ import numpy as np
 from compoundkin.base.arrays import column
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.closed_states import every_state
 from compoundkin.kinematics.group_march import GroupPath
 from compoundkin.kinematics.group_paths import Followed, both_ways
 from compoundkin.kinematics.groups import equations_of
-from compoundkin.kinematics.groups.general import bodies_at, known_configurations
 
 # So many pieces of a branch are looked for, and so many poses of it at most.
 MOST_PIECES = 8
@@ -106,11 +106,9 @@ def kin_at(way: Followed, k: int, home: GroupPath, designs: Number, places: Numb
     if not len(known):
         return count, states
     block = _before(way, k, designs[known], places[known])
-    found = known_configurations(solver.group, block, equations.size)
-    if found is None:
+    every = every_state(solver, block, MOST_BODIES)
+    if every is None:
         return None
-    every = np.moveaxis(equations.state(bodies_at(found.states)), -2, 0)
-    every = np.broadcast_to(every, (len(every), len(known), 1, equations.width))
     side = equations.rates(every, block, 0)[1]
     same = np.broadcast_to(side, every.shape[:-1]) == home.side[designs[known], None]
     fits = np.isfinite(every).all(axis=-1) & same

@@ -82,3 +82,15 @@ def test_motions_next_to_change_points_pass(distance):
     motion = ck.solve(CASES["parallelogram"].mechanism, {"crank": values}, order=3)
     assert motion.regular.all()
     assert ck.verify(motion).passed
+
+
+@pytest.mark.parametrize(
+    "values", [np.pi, np.r_[np.linspace(1.0, np.pi, 31), np.full(5, np.pi), np.linspace(3.2, 5.0, 9)]]
+)
+def test_poses_exactly_at_a_change_point_pass(values):
+    """A single pose, and a motion that rests there: differences beside it have fewer digits than the pose."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ck.errors.ChangePointWarning)
+        motion = ck.solve(CASES["parallelogram"].mechanism, {"crank": values}, order=3)
+    assert np.abs(motion.links["rocker"].angular_velocity - 1.0).max() < 1e-12
+    assert ck.verify(motion).passed
