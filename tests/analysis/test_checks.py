@@ -1,5 +1,6 @@
 """The checks must fail when a motion is wrong: every kind of corruption is caught."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -114,3 +115,42 @@ def test_scale_does_not_matter():
     assert ck.verify(motion).passed
     wrong = corrupted(motion, "coupler", "z", 1, lambda c: c * (1 + 1e-4))
     assert not ck.verify(wrong).passed
+
+
+def test_a_rack_that_fits_at_one_place_of_a_yoke_that_moves_is_found():
+    """Velocities from centres are wrong there: the cause is that nothing keeps the pinion at its distance."""
+    mechanism = ck.Mechanism(
+        "Rack",
+        ck.link("frame", A=(0, 2), Q=(0, 0)),
+        ck.link("yoke", A=0, C=3),
+        ck.link("pinion", C=0, P=1),
+        ck.link("bar", R=(0, 0)),
+        ck.slide("bar", on="frame", at="R", through="Q", angle=0.0),
+        ck.rack("bar", "pinion", through="R", at="C", radius=2.0),
+        ck.drive("bar", values=np.linspace(0.0, 1.0, 5), speed=1.0),
+        ck.drive("yoke", values=np.zeros(5), speed=0.0),
+    )
+    assert ck.verify(ck.solve(mechanism)).passed
+    check = ck.verify(ck.solve(mechanism, speed={"bar": 1.0, "yoke": 0.5}))
+    fit = next(f for f in check.findings if f.name == "fit of racks and wheels")
+    assert not fit.passed
+    assert fit.pair.endswith("its rate")
+    # the axis leaves the line at 3 * 0.5
+    assert 0.1 < fit.value < 1.5
+
+
+@pytest.mark.parametrize("by", [0.0, 1e-7, -1e-9])
+def test_a_motion_through_change_points_passes(by):
+    """Poses that are solved through the double root: their neighbours are, too."""
+
+    def half_turn(angle):
+        return ck.laws.rise(angle, 1.0, "4-5-6-7")
+
+    law = ck.laws.program(half_turn(np.pi + by), ck.laws.dwell(0.5), half_turn(np.pi - by))
+    mechanism = ck.catalog.load_named("parallelogram").replace(ck.drive("crank", law=law))
+    with warnings.catch_warnings(action="ignore", category=ck.errors.ChangePointWarning):
+        motion = ck.solve(mechanism, time=np.linspace(0.0, 2.5, 251), order=3)
+    check = ck.verify(motion)
+    assert check.failed == ()
+    jerk = corrupted(motion, "follower", "u", 3, lambda c: c + 0.1)
+    assert "jerk, differences" in ck.verify(jerk).failed

@@ -39,6 +39,11 @@ def _gaps(v: Sequence[Array], n: Array) -> tuple[Array, Array]:
     return c * (x2 - x1) + s * (y2 - y1), c * (y2 - y1) - s * (x2 - x1)
 
 
+def away_from_line(v: Sequence[Array], n: Array) -> Array:
+    """How far the second link's point is to the left of the first one's line."""
+    return _gaps(v, n)[1]
+
+
 def _slide(v: Sequence[Array], n: Array) -> tuple[Array, ...]:
     return _gaps(v, n)[1] - n[5], np.sin(v[5] - v[2] - n[4] - n[6])
 
@@ -139,6 +144,7 @@ class Equations:
         self.parts = parts.arrays()
         # rows of pairs that count full turns
         self.turning = sorted({row for _, _, rows in parts.of("KLOG") for row in rows})
+        self.parts_of = parts.of
         self.size = self._rows
         self.drawn = self._state(placed)
         self.values = self.residual(self.drawn)[self.count :]

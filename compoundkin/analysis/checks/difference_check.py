@@ -10,9 +10,11 @@ import numpy as np
 
 from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number
+from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import places
+from compoundkin.kinematics.double_roots import rates_at
+from compoundkin.kinematics.inputs import Inputs
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs.contact import as_profiled
 
@@ -32,6 +34,8 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
         return
     step = STEP * _own_time(motion)
     counted = counted & np.isfinite(step) & _before_change_points(motion, step * len(OFFSETS))
+    # a pose at rest stays where it is: what is no number there would be carried on to its neighbours
+    step = np.where(np.isfinite(step), step, 0.0)
     stencils = [_positions(motion, step * j) for j in OFFSETS]
     counted = counted & _smooth(motion, stencils)
     if not counted.any():
@@ -103,7 +107,7 @@ def _largest(motion: Motion, k: int) -> Number:
 def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
     """Return the poses at a time before or after those of the motion.
 
-    The drivers follow their rates.
+    The drivers follow their rates. What is solved through a double root is so beside it, too.
     Rates beyond the motion's order are left out: they do not belong to the series that tells its time scale.
     """
     given = motion.inputs
@@ -114,7 +118,24 @@ def _positions(motion: Motion, time: Number) -> dict[str, Pose]:
             moved = moved + rate * time**k / factorial(k)
         drives[name] = (moved,)
     everywhere = places(slice(0, given.designs), slice(0, given.poses))
-    return dict(motion.block(given.driven(drives), 0, *everywhere).world)
+    moved_inputs = given.driven(drives)
+    found = dict(motion.block(moved_inputs, 0, *everywhere).world)
+    if motion.tracker.expanded is not None:
+        designs, index, poses = rates_at(moved_inputs, motion.tracker, 0)
+        found = {name: _put(pose, poses[name], (designs, index), given) if name in poses else pose
+                 for name, pose in found.items()}  # fmt: skip
+    return found
+
+
+def _put(pose: Pose, other: Pose, at: tuple[Number, Number], given: Inputs) -> Pose:
+    """Return poses with those of another column at some places."""
+
+    def put(series: Series, column: Series) -> Series:
+        values = np.array(np.broadcast_to(series.c[0], (given.designs, given.poses)))
+        values[at] = np.broadcast_to(column.c[0], (len(at[0]), 1))[:, 0]
+        return Series((values,))
+
+    return Pose(put(pose.z, other.z), put(pose.u, other.u))
 
 
 def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:

@@ -47,21 +47,33 @@ def residuals(motion: Motion) -> Iterator[Finding]:
         if motion.structure.redundant:
             relative = {pair.name: _pair(motion, pair, k) / scale for pair in motion.structure.redundant}
             yield worst(motion, f"redundant pairs, {ORDERS[k]}", FITS, relative, counted)
-    fits = dict(_distance_errors(motion))
-    if fits:
-        scale = _scale(motion, 0, motion.failed == 0)
-        closed = motion.failed == 0
-        relative = {_off(name, np.where(closed, gap, 0.0), FITS * scale): gap / scale for name, gap in fits.items()}
-        yield worst(motion, "fit of racks and wheels", FITS, relative, motion.failed == 0)
+    yield from _fit_findings(motion)
 
 
-def _distance_errors(motion: Motion) -> Iterator[tuple[str, Number]]:
+def _fit_findings(motion: Motion) -> Iterator[Finding]:
+    """Yield by how much lengths are off that no pair holds, as they are and as they change."""
+    errors, closed = dict(_distance_errors(motion)), motion.failed == 0
+    if not errors:
+        return
+    scale, parts = _scale(motion, 0, closed), {}
+    for name, error in errors.items():
+        gap = np.where(closed, np.abs(error.c[0]), 0.0)
+        parts[_off(name, gap, FITS * scale)] = gap / scale
+        if motion.order:
+            # that the length is right at one place of several drivers does not keep it right
+            parts[f"{name}, its rate"] = np.where(
+                motion.regular, np.abs(error.derivative(1)) / _scale(motion, 1, motion.regular), 0.0
+            )
+    yield worst(motion, "fit of racks and wheels", FITS, parts, closed)
+
+
+def _distance_errors(motion: Motion) -> Iterator[tuple[str, Series]]:
     """Yield by pair how far a length is off that no pair holds."""
     for name, pair in motion.solving_order.pairs.items():
         poses, counting = tuple(motion.poses[member] for member in pair.members), as_turn_counting(pair)
         error = counting.distance_error(motion.inputs.ends[name], poses) if counting else None
         if error is not None:
-            yield name, np.abs(error.c[0])
+            yield name, error
 
 
 def _off(name: str, gap: Number, limit: Number) -> str:
