@@ -19,7 +19,7 @@ import numpy as np
 from compoundkin.base.bracketing import false_position
 from compoundkin.base.series import Number
 from compoundkin.kinematics.double_roots import EXTRA, TOUCHING, roots_along, slope_is_zero, squares
-from compoundkin.kinematics.searched_ways import BLOCK, NEAR, SearchedWay, searched_ways
+from compoundkin.kinematics.driver_ways import BLOCK, NEAR, SearchedWay, searched_ways
 from compoundkin.kinematics.tracking import Tracker
 
 # The discriminant's rate is searched for its zero so often, to this part of its values at the ends.

@@ -9,10 +9,10 @@ from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.branch import Begin, TrackedBranch
 from compoundkin.kinematics.change_points import pass_through
 from compoundkin.kinematics.double_roots import expanded
+from compoundkin.kinematics.driver_ways import NEAR, near_groups
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.lost_digits import doubtful
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.searched_ways import NEAR, near_groups
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.tracking import Tracker
 
