@@ -21,7 +21,7 @@ def working(what: str, patience: float = PATIENCE) -> Iterator[None]:
     ...     sum(range(3))
     3
     """
-    if not sys.stderr.isatty():
+    if not _is_seen():
         yield
         return
     done = threading.Event()
@@ -32,6 +32,11 @@ def working(what: str, patience: float = PATIENCE) -> Iterator[None]:
     finally:
         done.set()
         ticker.join()
+
+
+def _is_seen() -> bool:
+    """Tell whether somebody sees stderr: it is a terminal, and not closed."""
+    return sys.stderr is not None and sys.stderr.isatty()
 
 
 def _tick(what: str, patience: float, done: threading.Event) -> None:
@@ -59,7 +64,7 @@ def counting(what: str, things: str, patience: float = PATIENCE) -> Iterator[Cal
     update: list[Callable[[int, int], None]] = []
 
     def told(done: int, total: int) -> None:
-        if not update and monotonic() - start >= patience and sys.stderr.isatty():
+        if not update and monotonic() - start >= patience and _is_seen():
             update.append(shown.enter_context(_bar(what, things)))
         for tell in update:
             tell(done, total)

@@ -36,13 +36,13 @@ def guarded(run: Callable[[], Any]) -> NoReturn:
             warnings.showwarning = _warned
             code = run()
     except click.ClickException as error:
-        error.show()
+        _tell(error.show)
         code = BAD_INPUT
     except CompoundkinError as error:
         show(error)
         code = error.exit_code
     except (click.Abort, KeyboardInterrupt):
-        click.echo("Interrupted.", err=True)
+        say("Interrupted.")
         code = INTERRUPTED
     except MemoryError:
         show(CompoundkinError(Problem("", "there is not enough memory for this", "ask for fewer poses at a time")))
@@ -73,17 +73,25 @@ def put(text: str | bytes) -> None:
             rest = rest[sys.stdout.buffer.write(rest) :]
         sys.stdout.flush()
     except BrokenPipeError:
-        _forget_stdout()
+        _forget(sys.stdout)
         raise click.exceptions.Exit(READER_GONE) from None
     except OSError as error:
-        _forget_stdout()
+        _forget(sys.stdout)
         raise NotWritten(Problem("", f"the results cannot be written: {error.strerror or error}")) from None
 
 
 def say(text: str) -> None:
-    """Write a diagnostic line to stderr, if there is one."""
+    """Write a diagnostic line to stderr, if it takes one."""
+    _tell(lambda: click.echo(text, err=True))
+
+
+def _tell(write: Callable[[], None]) -> None:
+    """Write to stderr. Where it is closed or takes no more, the results and the exit code are what is left."""
     if sys.stderr is not None:
-        click.echo(text, err=True)
+        try:
+            write()
+        except OSError:
+            _forget(sys.stderr)
 
 
 def show(error: CompoundkinError) -> None:
@@ -126,6 +134,6 @@ def _red(text: str) -> str:
     return click.style(text, fg="red", bold=True) if has_colour(sys.stderr) else text
 
 
-def _forget_stdout() -> None:
-    """Keep the interpreter from complaining about stdout once more when it ends."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+def _forget(stream: Any) -> None:
+    """Keep the interpreter from complaining about a stream once more when it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

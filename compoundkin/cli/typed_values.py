@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
-from compoundkin.files.worded_numbers import warn_of_radians, worded_rate
+from compoundkin.files.worded_numbers import warn_of_radians, worded_rate, written_end
 from compoundkin.files.written_quantities import MOST_VALUES, rate, spaced
 from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.quantities import degrees
@@ -49,7 +49,7 @@ def of_drivers(structure: Structure, asked: Mapping[str, Any]) -> dict[str, Numb
         shown[name] = _spanned(structure, name, span)
     angles = structure.driven_angles
     for name, v in ((name, v) for name, v in shown.items() if angles[name]):
-        warn_of_radians(f"--drive {name}", float(span.get("start", v[0])), float(span.get("stop", v[-1])))
+        warn_of_radians(f"--drive {name}", v[0], written_end(texts.get(name, span.get("at")), span.get("stop", v[-1])))
     values = {name: np.deg2rad(v) if angles[name] else v for name, v in shown.items()}
     if asked.get("time") is None:
         _of_one_length(structure, values)

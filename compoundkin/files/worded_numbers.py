@@ -45,6 +45,16 @@ def worded_range(value: Any) -> Any:
     return value if found is None else dict(zip(("from", "to", "step"), map(float, found.groups()), strict=True))
 
 
+def written_end(text: str | None, last: float) -> float:
+    """Return the end of ``from:to:step`` as it is written, of which the last value may fall short.
+
+    >>> written_end("0:6.283:0.1", 6.2)
+    6.283
+    """
+    parts = (text or "").split(":")
+    return float(parts[1]) if len(parts) == 3 else last
+
+
 def warn_of_radians(where: str, first: float, last: float) -> None:
     """Warn of degrees that are quarters of a turn in radians.
 

@@ -34,6 +34,8 @@ def test_radians_are_warned_about_in_one_line() -> None:
     assert told.returncode == 0
     assert told.stderr.startswith("Warning: --drive crank: 0 to 6.283 degrees look like radians; write degrees")
     assert len(told.stderr.splitlines()) == 1
+    for option in (("--at", "0:6.283:0.1"), ("--drive", "crank=0:6.283:0.1")):
+        assert run("solve", "six-bar", *option, "--output", "bar.angle").stderr == told.stderr
 
 
 @pytest.mark.parametrize("args", [("solve", "six-bar", "--at", "35"), ("catalog",), ("structure", "six-bar")])
@@ -42,6 +44,22 @@ def test_closed_standard_output_is_told(args: tuple[str, ...]) -> None:
     assert told.returncode == 2
     assert told.stderr.splitlines()[0] == "Error: standard output is closed"
     assert "Traceback" not in run(*args, shell=">&- 2>&-").stderr
+
+
+@pytest.mark.parametrize("shell", ["2>&-", "2>/dev/full"])
+@pytest.mark.parametrize(
+    ("code", "args"),
+    [
+        (0, ("report", "crank-rocker")),
+        (3, ("solve", "triple-rocker", "--at", "0:180:30", "--output", "coupler.angle")),
+        (2, ("report", "no-such")),
+        (2, ("no-such",)),
+    ],
+)
+def test_standard_error_may_be_closed_or_full(code: int, args: tuple[str, ...], shell: str) -> None:
+    told = run(*args, shell=shell)
+    assert told.returncode == code
+    assert bool(told.stdout) == (code != 2)
 
 
 @pytest.mark.parametrize("name", ["-", "/dev/stdout"])
