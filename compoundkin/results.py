@@ -12,6 +12,7 @@ from compoundkin.analysis.checks import Check, Finding
 from compoundkin.analysis.equations import LoopEquations
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
+from compoundkin.kinematics.chosen_modes import GroupMode
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.gaps import Gap
@@ -35,6 +36,7 @@ __all__ = [
     "Finding",
     "Gap",
     "Group",
+    "GroupMode",
     "LinkMotion",
     "LoopEquations",
     "MobilityAnalysis",

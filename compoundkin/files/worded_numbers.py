@@ -46,7 +46,7 @@ def worded_range(value: Any) -> Any:
 
 
 def written_end(text: str | None, last: float) -> float:
-    """Return the end of ``from:to:step`` as it is written, of which the last value may fall short.
+    """Return the end of ``from:to:step`` as written; the last value may fall short.
 
     >>> written_end("0:6.283:0.1", 6.2)
     6.283

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,55 @@ from compoundkin.kinematics.configuration import BETWEEN, ONLY, Configuration, l
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.geometry import vector
+
+# What chose an assembly mode, in words.
+CHOSEN_BY = {
+    "sign": "chosen by sign",
+    "drawing": "nearest to the drawing",
+    "hint": "nearest to the hint",
+    "default": "taken by default",
+    "redundant": "in which the redundant pairs close",
+    "number": "chosen by number",
+    "configuration": "that of the configuration given",
+    "only one": "the only one",
+}
+
+
+@dataclass(frozen=True)
+class GroupMode:
+    """The assembly mode of a group in a motion, and what chose it.
+
+    `sign` is that at the first pose, +1 or -1, an array of them for several designs, None where a group has one mode
+    or its modes have no sign.
+    """
+
+    links: tuple[str, ...]
+    sign: int | Number | None
+    chosen: str
+
+    def __repr__(self) -> str:
+        signs = np.unique(self.sign) if self.sign is not None else ()
+        told = " or ".join(f"{int(sign):+d}" for sign in signs)
+        return f"GroupMode({', '.join(self.links[:2])}: {f'{told}, ' if told else ''}{self.chosen})"
+
+
+def modes_of(
+    solving_order: SolvingOrder,
+    chosen_by: Mapping[int, str],
+    sign: Callable[[int, Number, Number], Number],
+    shape: tuple[int, ...],
+) -> dict[str, GroupMode]:
+    """Return the mode of every group by its name in configurations. Designs are in a shape."""
+    rows = np.arange(int(np.prod(shape)))[:, None]
+    found = {}
+    for solver in solving_order.solvers:
+        signs = None
+        if solver.modes == 2:
+            each = np.broadcast_to(sign(solver.index, rows, np.zeros((1, 1))), rows.shape)
+            signs = each.astype(int).reshape(shape)[()]
+        chosen = CHOSEN_BY.get(chosen_by.get(solver.index, ""), "found")
+        found[label(solving_order.structure, solver.index)] = GroupMode(solver.group.links, signs, chosen)
+    return found
 
 
 def signs_of(

@@ -116,6 +116,8 @@ class PoseGrid(PrintsShort):
 
     def require(self, order: int) -> None:
         """Raise InvalidInput for a derivative that was not solved for."""
+        if isinstance(order, bool) or not isinstance(order, int | np.integer):
+            raise InvalidInput(Problem("order", f"{order!r} is not an order", f"0 to {self.order}"))
         if not 0 <= order <= self.order:
             known = 0 <= order <= HIGHEST_ORDER
             what = OF_POINTS[order] if known else f"derivative {order}"

@@ -14,6 +14,7 @@ from compoundkin.base.display import ShowsPicture, way
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.chosen_modes import GroupMode, modes_of
 from compoundkin.kinematics.error_estimate import errors_of
 from compoundkin.kinematics.inputs import Inputs, PoseGrid, fit
 from compoundkin.kinematics.results import LinkMotion, Named, PairMotion, PointMotion
@@ -150,6 +151,11 @@ class Motion(CopiesFields, ShowsPicture):
         return self.tracker.solving_order
 
     @property
+    def modes(self) -> Mapping[str, GroupMode]:
+        """The assembly mode of every group, by the group's name in configurations."""
+        return modes_of(self.solving_order, self.chosen_by, self.tracker.sign, self.shape[:-1])
+
+    @property
     def chosen_by(self) -> Mapping[int, str]:
         """What chose the mode of each group: `sign`, `drawing`, `hint`, `default` or another."""
         return self.tracker.chosen_by
@@ -192,8 +198,7 @@ class Motion(CopiesFields, ShowsPicture):
         return replace(self, poses={n: FIXED if n == FRAME else mended(p, poses[n]) for n, p in self.poses.items()})
 
     def __repr__(self) -> str:
-        missing = int(np.count_nonzero(self.failed))
-        told = f", {missing} of them not assembled" if missing else ""
+        told = f", {missing} of them not assembled" if (missing := int(np.count_nonzero(self.failed))) else ""
         return f"Motion({self.mechanism.title!r} at {self.shape} poses to order {self.order}{told})"
 
     def _link(self, name: str) -> LinkMotion:
@@ -201,16 +206,11 @@ class Motion(CopiesFields, ShowsPicture):
 
     def _point(self, name: str) -> PointMotion:
         link = self.mechanism.carriers[name][0]
-        return PointMotion(self.grid, self._derivative(link, name), name)
-
-    def _derivative(self, link: str, name: str) -> Any:
-        pose = self.poses[link]
         p = fit(self.shape)(self.mechanism.geometry.points[link][name])
-        return partial(pose.derivative, p)
+        return PointMotion(self.grid, partial(self.poses[link].derivative, p), name)
 
     def _pair(self, name: str) -> PairMotion:
-        pair = self.solving_order.pairs[name]
-        ends = self.inputs.ends[name]
+        pair, ends = self.solving_order.pairs[name], self.inputs.ends[name]
         poses = tuple(self.poses[member] for member in pair.members)
         counted = all(pose.theta is not None for pose in poses)
         return PairMotion(self.grid, pair.coordinate(ends, poses), pair.free_is_angle, counted=counted)

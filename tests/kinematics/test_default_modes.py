@@ -56,6 +56,21 @@ def test_the_area_is_the_larger_one(seed: int) -> None:
     assert default == pytest.approx(max(both))
 
 
+def test_a_motion_says_its_modes() -> None:
+    motion = ck.solve(four_bar(*TEXTBOOK), {"crank": ck.deg(40)})
+    (mode,) = motion.modes.values()
+    assert list(motion.modes) == ["RRR(coupler)"]
+    assert (mode.links, mode.sign, mode.chosen) == (("coupler", "rocker"), -1, "taken by default")
+    assert repr(mode) == "GroupMode(coupler, rocker: -1, taken by default)"
+    (chosen,) = ck.solve(four_bar(*TEXTBOOK), {"crank": ck.deg(40)}, modes={"rocker": 1}).modes.values()
+    assert (chosen.sign, chosen.chosen) == (1, "chosen by sign")
+    several = ck.solve(four_bar(*TEXTBOOK), {"crank": ck.deg([[40.0], [320.0]])}).modes["RRR(coupler)"]
+    assert np.array_equal(several.sign, [-1, 1])
+    third = ck.solve(ck.catalog.load_named("class-iii-six-bar")).modes["RRR-RRR(leg-1)"]
+    assert (third.sign, third.chosen) == (None, "nearest to the drawing")
+    assert ck.solve(ck.catalog.load_named("scotch-yoke")).modes["RPP(block)"].chosen == "the only one"
+
+
 def test_every_design_has_its_own() -> None:
     angles = ck.deg(np.array([40.0, 320.0]))[:, None]
     motion = ck.solve(four_bar(*TEXTBOOK), {"crank": angles})

@@ -2,6 +2,7 @@
 
 import warnings
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -94,3 +95,10 @@ def test_poses_exactly_at_a_change_point_pass(values):
         motion = ck.solve(CASES["parallelogram"].mechanism, {"crank": values}, order=3)
     assert np.abs(motion.links["rocker"].angular_velocity - 1.0).max() < 1e-12
     assert ck.verify(motion).passed
+
+
+@pytest.mark.parametrize("order", ["a", 1.5, None, True, -1, 7])
+def test_an_error_is_asked_for_by_the_order_of_a_derivative(order: Any) -> None:
+    motion = ck.solve(ck.catalog.load_named("crank-rocker"), {"crank": [1.0]})
+    with pytest.raises(ck.errors.InvalidInput):
+        motion.error(order)

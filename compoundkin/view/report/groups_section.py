@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.chosen_modes import CHOSEN_BY
 from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.kinematics.groups import DYADS
 from compoundkin.model.attributes import (
@@ -22,17 +23,6 @@ from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
 from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, StepBlock, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import Wording, counted, listed
-
-# The reasons for an assembly mode that a motion names, in a report's words.
-CHOSEN_BY = {
-    "sign": "chosen by sign",
-    "drawing": "nearest to the drawing",
-    "hint": "nearest to the hint",
-    "default": "taken by default",
-    "redundant": "in which the redundant pairs close",
-    "number": "chosen by number",
-    "configuration": "that of the configuration given",
-}
 
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
