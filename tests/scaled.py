@@ -53,6 +53,8 @@ def _dimensions(pair: Any, factor: float) -> Any:
             yield field.name, value * factor
         elif kind == "two" and field.name == "radii":
             yield field.name, tuple(v * factor for v in value)
+        elif kind == "reach":
+            yield field.name, tuple(end if end is None or isinstance(end, str) else end * factor for end in value)
         elif kind == "profile":
             yield field.name, _profile(value, factor)
 
