@@ -51,7 +51,7 @@ def _dimensions(pair: Any, factor: float) -> Any:
             continue
         if kind in LENGTHS and field.name not in NO_LENGTHS:
             yield field.name, value * factor
-        elif kind == "two" and field.name == "radii":
+        elif kind == "two" and field.name in ("radii", "stroke"):
             yield field.name, tuple(v * factor for v in value)
         elif kind == "reach":
             yield field.name, tuple(end if end is None or isinstance(end, str) else end * factor for end in value)
