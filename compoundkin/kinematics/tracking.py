@@ -14,6 +14,7 @@ from compoundkin.kinematics.approach import approach_path
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.branch import Begin, TrackedBranch, course_of
 from compoundkin.kinematics.chosen_modes import Shown
+from compoundkin.kinematics.configuration import ONLY
 from compoundkin.kinematics.default_modes import default_sign
 from compoundkin.kinematics.first_pose import first_state, letters_shown, nearest_sign
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
@@ -71,9 +72,9 @@ class Tracker(PrintsShort):
 
     def _take_signs(self) -> None:
         """Note the signs of dyads where nothing is drawn or tracked; four-bar loops stand open."""
-        for k in range(len(self.solving_order.solvers)):
+        for k, solver in enumerate(self.solving_order.solvers):
             self.signs[k] = self.fixed.get(k, 1)
-            self.chosen_by[k] = "sign" if k in self.fixed else "default"
+            self.chosen_by[k] = "sign" if k in self.fixed else ONLY if solver.modes == 1 else "default"
         if self.solving_order.four_bars.keys() - self.fixed:
             self.choose(max(self.solving_order.four_bars.keys() - self.fixed))
 
@@ -195,7 +196,7 @@ class _First:
         """Return the mode whose points lie nearest to the drawn ones, and what chose it."""
         tracker, solving_order = self.tracker, self.tracker.solving_order
         if solver.index in tracker.fixed or solver.modes == 1:
-            return tracker.fixed.get(solver.index, 1), "sign" if solver.index in tracker.fixed else "only one"
+            return tracker.fixed.get(solver.index, 1), "sign" if solver.index in tracker.fixed else ONLY
         letters = letters_shown(solving_order, solver, tracker.shown)
         closing = solving_order.closing(solver)
         if not letters and not closing:

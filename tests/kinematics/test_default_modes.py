@@ -129,6 +129,22 @@ def test_other_dyads_have_mode_one() -> None:
     assert ck.solve(five_bar, {"left": 1.5, "right": 1.6}).sign(0, 0) == 1
 
 
+@pytest.mark.parametrize("more", [(), (ck.drawn(B=1, P=1),)], ids=["not drawn", "drawn"])
+def test_a_group_of_one_mode_is_not_chosen_by_anything(more: Any) -> None:
+    yoke = ck.Mechanism(
+        "Scotch yoke",
+        ck.link("frame", A=0),
+        ck.link("crank", A=0, B=1),
+        ck.link("block", B=0),
+        ck.link("yoke", P=0),
+        ck.slide("block", on="yoke", through="P", angle=ck.deg(90)),
+        ck.slide("yoke", on="frame", through="A"),
+        ck.drive("crank"),
+        *more,
+    )
+    assert ck.solve(yoke).chosen_by == {0: "only one"}
+
+
 def platform(order: Any, scale: float = 1.0) -> ck.Mechanism:
     links = [
         ("frame", {"A": 0, "D": 5, "Q": 9 - 6j}),
