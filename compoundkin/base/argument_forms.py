@@ -7,7 +7,7 @@ import inspect
 import os
 import re
 import sys
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Set
 from functools import partial
 from numbers import Integral, Real
 from types import MappingProxyType
@@ -89,7 +89,9 @@ def _is_table(value: object) -> bool:
 
 def _are_all(fits: Test, value: object) -> bool:
     """Tell whether a list holds what it should. What can be read only once is not looked into."""
-    if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
+    # the edges of a graph are a set and a table at once
+    is_table = isinstance(value, Mapping) and not isinstance(value, Set)
+    if isinstance(value, str | bytes) or is_table or not isinstance(value, Iterable):
         return False
     if isinstance(value, np.ndarray) and value.ndim != 1:
         return False
@@ -178,7 +180,7 @@ class Annotation:
 
 
 def _of(form: Form | None) -> str:
-    return "" if form is None else f" of {form.called}s"
+    return "" if form is None else f" of {form.called.removesuffix('s')}s"
 
 
 def _is_anything(value: object) -> bool:

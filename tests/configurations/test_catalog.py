@@ -69,7 +69,7 @@ def test_circuits_of_different_number_are_not_connected() -> None:
         ({"driver": "crnk"}, "did you mean 'crank'"),
         ({"values": {"rod": 1.0}}, "no driver 'rod'"),
         ({"between": (2.0, 1.0)}, "not a range"),
-        ({"between": 3}, "not a range"),
+        ({"between": 3}, "no list of numbers"),
     ],
 )
 def test_wrong_words(words: dict[str, object], text: str) -> None:
