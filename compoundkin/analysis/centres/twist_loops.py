@@ -126,7 +126,9 @@ def _null_vector(matrix: Number) -> tuple[Number, Number]:
     second = padded[..., columns - 2] if columns > 1 else np.ones(s.shape[:-1])
     largest = padded[..., 0] if s.shape[-1] else np.ones(s.shape[:-1])
     gap = np.where(good, second / np.where(largest > 0.0, largest, 1.0), np.nan)
-    return np.where(good[..., None], vh[..., -1, :], np.nan), gap
+    # a frame alone has no twists
+    vector = vh[..., -1, :] if columns else np.zeros((*good.shape, 0))
+    return np.where(good[..., None], vector, np.nan), gap
 
 
 def _along(loops: TwistLoops, bases: list[list[Number]], starts: Number, omega: Number) -> Number:

@@ -116,7 +116,7 @@ class EndedArc(Ended):
         low, high = super().bounds(geometry)
         assert self.reach is not None
         named = any(isinstance(end, str) for end in self.reach)
-        return low, low + np.mod(high - low, TURN) if named else high
+        return low, low + np.mod(high - low, TURN) if named else _onward(low, high)
 
     def inside(self, bounds: tuple[Number, Number], ends: Ends, poses: Poses) -> tuple[Number, Number]:
         """Return how far it is from both ends of the arc. Negative is beyond."""
@@ -132,10 +132,16 @@ class EndedArc(Ended):
             yield Problem(f"{where}.reach", "an arc needs both of its ends", "say where it begins and where it ends")
 
     def _order_problems(self, bounds: tuple[Number, Number], place: str) -> Iterator[Problem]:
+        bounds = bounds[0], _onward(*bounds)
         yield from super()._order_problems(bounds, place)
         if np.any(np.asarray(bounds[1]) - bounds[0] > FULL):
             remedy = "angles are radians in Python, degrees in files; ck.deg makes radians of degrees"
             yield Problem(place, "the arc is more than a full turn", remedy)
+
+
+def _onward(low: Number, high: Number) -> Number:
+    """The end of an arc: counterclockwise of its beginning, so that 200 to 90 degrees goes through zero."""
+    return np.where(np.asarray(high) < low, low + np.mod(high - np.asarray(low), TURN), high)[()]
 
 
 def as_ended(pair: Pair) -> Ended | None:

@@ -54,6 +54,8 @@ def window_on(
     drawn = layered(Painter(scene, first))
     drawn += [shape for other in more for shape in layered(Painter(other, first), grounded=False)]
     points = np.concatenate([corners(drawn), *(first.at(scene.places(letter)) for letter in paths)])
+    # of a frame alone nothing is drawn
+    points = points if len(points) else first.at(np.zeros(1, dtype=complex))
     return fitted(first, np.append(points, _near(points, [complex(first.at(wish)) for wish in wishes])))
 
 

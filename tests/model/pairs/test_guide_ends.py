@@ -287,7 +287,7 @@ def test_a_wrong_reach_is_named(reach: Any, what: str) -> None:
     [
         ((0.1, None), "an arc needs both of its ends"),
         ((60, 120), "radians in Python"),
-        ((2, 1), "must end after it begins"),
+        ((2, 2), "must end after it begins"),
     ],
 )
 def test_a_wrong_reach_of_an_arc_is_named(reach: Any, what: str) -> None:
@@ -328,3 +328,24 @@ def test_stops_are_drawn() -> None:
 
     assert bars(slider_crank(reach=(1.9, 4.1))) == bars(slider_crank(reach=None)) + 2
     assert bars(slider_crank(reach=(None, 4.1))) == bars(slider_crank(reach=None)) + 1
+
+
+def test_an_arc_goes_counterclockwise_through_zero() -> None:
+    """From 200 to 90 degrees is what 90 to 200 degrees leaves out."""
+
+    def assembled(first: float, second: float) -> np.ndarray:
+        on_arc = ck.Mechanism(
+            "Rod on an arc",
+            ck.link("frame", A=0, M=4),
+            ck.link("crank", A=0, B=1),
+            ck.link("rod", B=0, C=3),
+            ck.arc("rod", on="frame", at="C", centre_at="M", radius=2, reach=(ck.deg(first), ck.deg(second))),
+            ck.drive("crank"),
+        )
+        return np.asarray(ck.solve(on_arc).assembled)
+
+    with warnings.catch_warnings(action="ignore", category=ck.errors.UnassembledPoses):
+        assert np.array_equal(assembled(200, 90), ~assembled(90, 200))
+        assert np.array_equal(assembled(200, 90), assembled(200, 450))
+    with pytest.raises(ck.errors.InvalidMechanism, match="no length"):
+        assembled(10, 10)

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 import compoundkin as ck
 from compoundkin.files import shipped_mechanisms
+from compoundkin.model.elements import Link
 from compoundkin.view.notebook import MOST_LINKS
 from compoundkin.view.sketch.label_places import ROOM, text_half
 from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, ShapeGroup, Text, leaves
@@ -351,3 +352,20 @@ def test_a_cam_that_is_touched_from_inside_is_a_ring() -> None:
     rims = [s for s in of(ck.draw(mechanism), "line0") if isinstance(s, Polygon)]
     assert len(rims) == 2
     assert not [s for s in of(ck.draw(mechanism), "plate0") if isinstance(s, Polygon)]
+
+
+@pytest.mark.parametrize("frame", [ck.link("frame", A=0), ck.link("frame", A=0, B=1), ck.link("frame", "A")])
+def test_a_frame_alone_is_shown(frame: Link) -> None:
+    """There is nothing to be drawn of it, and no centre, which is no reason to end with a traceback."""
+    alone = ck.Mechanism("Frame", frame)
+    assert "Frame" in alone._repr_html_()
+    for kind in ("groups", "graph"):
+        assert ck.draw(alone, kind=kind).svg.startswith("<svg")
+    with pytest.raises(ck.errors.NotDetermined):
+        ck.draw(alone, kind="circle")
+    if frame.points["A"] is not None:
+        assert ck.draw(alone).svg.startswith("<svg")
+        assert ck.animate(alone).svg.startswith("<svg")
+        with pytest.raises(ck.errors.NotDetermined):
+            ck.instant_centres(ck.solve(alone))
+        assert "Frame" in ck.report(alone).html()
