@@ -34,7 +34,7 @@ class PassedEnd(NamedTuple):
 class GuideEnds(PrintsShort):
     """The pairs of a structure whose guides have ends.
 
-    They go by the group after which all their links are known. A pose
+    They go by the group after which all their links are known (`known_by`). A pose
     beyond an end fails as one of a group does: as the first failure, by a number above those of the groups.
     """
 
@@ -44,10 +44,12 @@ class GuideEnds(PrintsShort):
         self._groups = len(structure.groups)
         # before all groups, or after the one by which the last of its links is known
         self._after: dict[int, list[tuple[int, Ended]]] = {}
+        self.known_by: list[int] = []
         known = {link: index for index, group in enumerate(structure.groups) for link in group.links if self.pairs}
         for k, pair in enumerate(self.pairs):
             last = max(known.get(name, BEFORE) for name in pair.members)
             self._after.setdefault(last, []).append((k, pair))
+            self.known_by.append(last)
 
     def bounds(self, geometry: Geometry) -> dict[str, Ends]:
         """Return where guides begin and end, as numbers that go with the pairs' sides."""

@@ -99,3 +99,27 @@ def test_nothing_assembled_is_one_answer_everywhere(recwarn):
     assert "checks passed" not in said + made.html()
     assert "nothing could be checked" in made.html()
     assert not [w for w in recwarn if "All-NaN" in str(w.message)]
+
+
+# Two groups, one after the other, and the driver's range in which the first or the second does not close.
+TWO_ROCKERS = (
+    ck.link("frame", A=(0, 0), D=(4, 0), F=(9, 0)),
+    ck.link("coupler", B=0, C=4),
+    ck.link("rocker", D=0, C=2.5),
+    ck.link("rod", C=0, E=4),
+    ck.link("last", F=0, E=1.6),
+    ck.drive("crank"),
+)
+
+
+@pytest.mark.parametrize(("crank", "true"), [(1.0, 2), (3.0, 1)])
+def test_a_gap_that_names_another_group_is_found(crank, true):
+    with pytest.warns(ck.errors.UnassembledPoses):
+        motion = ck.solve(ck.Mechanism("two rockers", ck.link("crank", A=0, B=crank), *TWO_ROCKERS))
+    gap = motion.failed == true
+    assert gap.any()
+    assert motion.assembled.any()
+    assert ck.verify(motion).failed == ()
+    check = ck.verify(replace(motion, failed=np.where(gap, 3 - true, motion.failed)))
+    # the one that is named closes, or one before it does not
+    assert check.failed == (("gaps that can be closed",) if true == 2 else ("groups before gaps",))

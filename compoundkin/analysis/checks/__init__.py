@@ -21,9 +21,10 @@ def verify(motion: Motion) -> Check:
 
     Closure, velocities, accelerations and jerks in the pairs' own equations; velocities from centres, and the
     collinearity of every three; derivatives against differences of positions; each pose as the continuation of the one
-    before it, and gaps as places to which nothing leads; the configuration that is drawn, and the modes that are
-    written. Where rounding leaves fewer digits, next to limit positions, `Motion.error` tells how many are held to. At
-    limit positions themselves, which have no rates, only the position is checked.
+    before it, and gaps as places to which nothing leads: the groups before the one that is named close there, and that
+    one does not; the configuration that is drawn, and the modes that are written. Where rounding leaves fewer digits,
+    next to limit positions, `Motion.error` tells how many are held to. At limit positions themselves, which have no
+    rates, only the position is checked.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, link

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
-from compoundkin.analysis.checks.group_walk import SINGULAR, GroupWalk
+from compoundkin.analysis.checks.group_walk import NEWTON, SINGULAR, GroupWalk, bases, own_equations
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
@@ -45,8 +45,51 @@ def continuation_findings(motion: Motion) -> Iterator[Finding]:
     if np.any(motion.failed):
         beyond = np.zeros(motion.failed.shape)
         for ways in _into_gaps(motion, usable):
-            np.maximum.at(beyond, (ways.designs, ways.end), _walk(motion, ways).follow().astype(float))
+            for number in np.unique(motion.failed[ways.designs, ways.end]):
+                there = motion.failed[ways.designs, ways.end] == number
+                some = Ways(ways.designs[there], ways.begin[there], ways.end[there])
+                arrived = _walk(motion, some, _groups_before(motion, number).walked).follow()
+                np.maximum.at(beyond, (some.designs, some.end), arrived.astype(float))
         yield worst(motion, "gaps that can be closed", 0.0, _by_group(motion, beyond), motion.failed != 0)
+        yield worst(motion, "groups before gaps", SAME, _before_gaps(motion), motion.failed != 0)
+
+
+class _Groups(NamedTuple):
+    """How many groups come before what a gap names, and how many lead to it."""
+
+    before: int
+    walked: int
+
+
+def _groups_before(motion: Motion, number: int) -> _Groups:
+    """Return the groups before what a gap names by its number: a group, or the end of a pair's guide."""
+    count = len(motion.structure.groups)
+    if number <= count:
+        return _Groups(number - 1, number)
+    known = motion.solving_order.guide_ends.known_by[number - count - 1] + 1
+    return _Groups(known, known)
+
+
+def _before_gaps(motion: Motion) -> dict[str, Number]:
+    """Return how far groups are from closing where a gap names one after them, by a link."""
+    before: Number = np.zeros(motion.failed.shape, dtype=int)
+    for number in np.unique(motion.failed[motion.failed != 0]):
+        before[motion.failed == number] = _groups_before(motion, number).before
+    found: dict[str, Number] = {}
+    designs, index = np.nonzero(before)
+    for part in _parts(Ways(designs, index, index)):
+        s, there = part.begin[:, None].astype(float), part.designs[:, None]
+        block = motion.block(motion.inputs.pick(part.designs, s[:, 0]), 0, s, there)
+        for solver in motion.solving_order.solvers:
+            closes = before[part.designs, part.begin] <= solver.index
+            if not closes.all():
+                equations = own_equations(solver, motion.size)
+                state = np.broadcast_to(equations.state(bases(solver, block.world)), (len(s), 1, equations.width))
+                result = equations.newton(state, block, NEWTON)
+                away = np.where(result.closed, result.moved, np.inf)[:, 0]
+                off = found.setdefault(solver.group.links[0], np.zeros(motion.failed.shape))
+                off[part.designs, part.begin] = np.where(closes, 0.0, away)
+    return found
 
 
 def _sharpness(motion: Motion) -> Number:
@@ -83,9 +126,10 @@ def _parts(ways: Ways) -> Iterator[Ways]:
         yield Ways(ways.designs[part], ways.begin[part], ways.end[part])
 
 
-def _walk(motion: Motion, ways: Ways) -> GroupWalk:
+def _walk(motion: Motion, ways: Ways, groups: int | None = None) -> GroupWalk:
     begin, end = (motion.inputs.pick(ways.designs, at.astype(float)) for at in (ways.begin, ways.end))
-    return GroupWalk(motion, begin, end, known_at(motion, ways.designs, ways.begin), len(ways.designs))
+    poses = known_at(motion, ways.designs, ways.begin)
+    return GroupWalk(motion, begin, end, poses, len(ways.designs), groups)
 
 
 def known_at(motion: Motion, designs: Number, index: Number) -> dict[str, Pose]:

@@ -155,10 +155,6 @@ def _away_from_change_points(motion: Motion) -> Number:
     index = np.arange(motion.inputs.poses, dtype=float)
     for found in motion.change_points.values():
         good = good & (np.abs(found[:, :, None] - index).min(axis=1) > 1.0)
-    if motion.tracker.expanded is not None:
-        # the pose is solved through the double root, what is beside it by the plain one, which has lost digits
-        designs, near, _ = motion.tracker.expanded
-        good[designs, near] = False
     return good
 
 

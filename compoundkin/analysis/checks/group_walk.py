@@ -62,16 +62,25 @@ class GroupWalk:
     """Ways of a mechanism, from known poses at one end to what is found.
 
     `begin` and `end` are inputs of columns (ways, 1), `poses` those of the links at the begin. Drivers and dimensions
-    go straight from one end to the other.
+    go straight from one end to the other. All groups go along, or the first `groups` of them.
     """
 
-    def __init__(self, motion: Motion, begin: Inputs, end: Inputs, poses: Mapping[str, Pose], count: int) -> None:
+    def __init__(
+        self,
+        motion: Motion,
+        begin: Inputs,
+        end: Inputs,
+        poses: Mapping[str, Pose],
+        count: int,
+        groups: int | None = None,
+    ) -> None:
         self.order: SolvingOrder = motion.solving_order
+        self.solvers = self.order.solvers[:groups]
         self.begin, self.end, self.count = begin, end, count
-        self.equations = [own_equations(solver, self.order.size) for solver in self.order.solvers]
+        self.equations = [own_equations(solver, self.order.size) for solver in self.solvers]
         self.states = [
-            np.array(np.broadcast_to(equations.state(_bases(solver, poses)), (count, 1, equations.width)))
-            for solver, equations in zip(self.order.solvers, self.equations, strict=True)
+            np.array(np.broadcast_to(equations.state(bases(solver, poses)), (count, 1, equations.width)))
+            for solver, equations in zip(self.solvers, self.equations, strict=True)
         ]
         self.guide_ends = self.order.guide_ends
         self.at = np.zeros(count)
@@ -95,7 +104,7 @@ class GroupWalk:
         Poses are columns without derivatives.
         """
         block = self._block(np.arange(self.count), self.at, 0)
-        for solver, equations, state in zip(self.order.solvers, self.equations, self.states, strict=True):
+        for solver, equations, state in zip(self.solvers, self.equations, self.states, strict=True):
             self._publish(block, solver, equations, state)
             yield solver, block
 
@@ -112,7 +121,7 @@ class GroupWalk:
         self.guide_ends.mask(block, BEFORE)
         powers = h[:, None, None] ** np.arange(ORDER + 1).reshape(-1, 1, 1, 1)
         found = []
-        for solver, equations, series in zip(self.order.solvers, self.equations, self._series, strict=True):
+        for solver, equations, series in zip(self.solvers, self.equations, self._series, strict=True):
             result = equations.newton((series[:, i] * powers).sum(axis=0), block, NEWTON)
             near = result.moved * sharpness(equations, result.state, block) <= SURE
             good = good & result.closed & near & (result.moved <= LONGEST)
@@ -131,9 +140,9 @@ class GroupWalk:
         if not len(i):
             return
         block = self._block(i, self.at[i], ORDER)
-        for k, (solver, equations) in enumerate(zip(self.order.solvers, self.equations, strict=True)):
+        for k, (solver, equations) in enumerate(zip(self.solvers, self.equations, strict=True)):
             self._publish(block, solver, equations, self.states[k][i])
-            bodies = _bases(solver, block.world)
+            bodies = bases(solver, block.world)
             for j in range(ORDER + 1):
                 parts = [v for b in bodies for v in (_at(b.z.c, j).real, _at(b.z.c, j).imag, _at(b.angle.c, j))]
                 self._series[k][j, i] = np.stack(np.broadcast_arrays(np.zeros((len(i), 1)), *parts)[1:], axis=-1)
@@ -154,7 +163,8 @@ def _at(coefficients: tuple[Number, ...], k: int) -> Number:
     return np.asarray(coefficients[k] if k < len(coefficients) else 0.0)
 
 
-def _bases(solver: GroupSolver, poses: Mapping[str, Pose]) -> list[Pose]:
+def bases(solver: GroupSolver, poses: Mapping[str, Pose]) -> list[Pose]:
+    """Return the poses of the base links of a group's bodies."""
     return [poses[body.links[0]] for body in solver.group.bodies]
 
 

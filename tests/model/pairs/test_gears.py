@@ -522,7 +522,7 @@ def test_moving_rack_driven_from_either_end(side: int, drive: str) -> None:
         ck.link("bar", R=0, T=(5, 0)),
         slide,
         ck.rack("bar", "pinion", through="R", at="C", teeth=16, module=0.25, side=side),
-        ck.drive(drive, values=np.linspace(-20, 20, 41), speed=2),
+        ck.drive(drive, values=np.linspace(-19.5, 19.5, 41), speed=2),
     )
     motion = ck.solve(mechanism)
     assert passes(motion)
