@@ -30,6 +30,8 @@ LONGEST = 0.3
 TURNED = 1e-6
 # Squared distances that differ by less than this part of them, or of the squared size, are rounding.
 TIED = 1e-9, 1e-24
+# What is drawn within this part of the size of an outer contact is drawn there; an inner one must be nearer by as much.
+NEARER = 1e-6
 
 Letters = list[tuple[str, str]]
 
@@ -93,6 +95,36 @@ def first_state(
     """
     if number is not None:
         return _numbered(solver, block, number), "number"
+    best, least, by = _nearest_state(solving_order, solver, block, shown)
+    if not np.isfinite(least).any():
+        raise NotAssembled(_unfound(solver))
+    return best, by
+
+
+def shows_inner(solving_order: SolvingOrder, solver: GroupSolver, block: Block, shown: Shown) -> bool:
+    """Tell whether what is shown is nearer to a configuration without a sign than to those with one.
+
+    All groups before are assembled in the block; of several designs it is so for one.
+    """
+    followed, letters = solver.followed(), letters_shown(solving_order, solver, shown)
+    if followed is None or not letters:
+        return False
+    outer: Number = np.inf
+    for sign in (1, -1):
+        trial = block.copy()
+        solver.close(trial, sign)
+        outer = np.fmin(outer, np.sqrt(distance(solving_order, letters, shown, trial)))
+    nearer = NEARER * solving_order.size
+    if np.all(outer < nearer):
+        return False
+    inner = np.sqrt(_nearest_state(solving_order, followed, block, shown)[1])
+    return bool(np.any(inner < outer - nearer))
+
+
+def _nearest_state(
+    solving_order: SolvingOrder, solver: GroupSolver, block: Block, shown: Shown
+) -> tuple[Number, Number, str]:
+    """Return the closed states nearest to what is shown, what this costs (inf where there are none), and the chooser."""
     letters, designs, count = letters_shown(solving_order, solver, shown), block.shape[0], 0
     search = ClosedStates(solving_order, solver, block, shown.points, drawn=bool(letters))
     best, least = np.full((designs, 1, search.equations.width), np.nan), np.full((designs, 1), np.inf)
@@ -111,9 +143,7 @@ def first_state(
         enough = (letters and search.complete and count == 1) or count >= COMPARED
         if enough and np.isfinite(least).all():
             break
-    if not np.isfinite(least).any():
-        raise NotAssembled(_unfound(solver))
-    return best, "drawing" if letters else "default"
+    return best, least, "drawing" if letters else "default"
 
 
 def _numbered(solver: GroupSolver, block: Block, number: int) -> Number:

@@ -118,15 +118,16 @@ class GroupMarch:
         h = np.sign(ahead) * min(abs(ahead), most)
         state, rates, side, self.good = self._step(self.here, h, self.rates, self.side)
         is_good = bool(self.good[self.alive].all())
-        length = abs(h) if is_good or abs(h) > SHORTEST * max(1.0, abs(self.here)) else 0.0
+        is_short = abs(h) <= SHORTEST * max(1.0, abs(self.here))
+        length = 0.0 if is_short and not is_good else abs(h)
         if is_good:
             self._take(self.here + h, state, rates, side)
         self.trials = 0 if is_good and within else self.trials + 1
         near = self._spread(self.state) <= FARTHEST
         if not near[self.alive].all():
             self.good, is_good, length = near, False, 0.0
-        elif self.trials > MOST_TRIALS:
-            # those that hold up the others stay behind
+        elif self.trials > MOST_TRIALS or (is_good and is_short and not within):
+            # near a limit steps vanish in rounding, each of them good: those that hold up the others stay behind
             fast = self.good & (strides > 2.0 * most)
             self.good, is_good, length = fast & ~fast[self.alive].all(), False, 0.0
         return Taken(np.array([length]), np.array([is_good]), np.array([self.goal == len(self.stops)]))

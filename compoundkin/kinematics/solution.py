@@ -91,7 +91,7 @@ def solve(
         signs, shown = signs_of(solving_order, modes), shown_by(solving_order, modes, hint)
         with diagnosing(solving_order.structure):
             tracker = Tracker(solving_order, given, signs, shown)
-        told = without_lost(*settled(solving_order, tracker.given, tracker, order))
+        told = without_lost(*settled(tracker.solving_order, tracker.given, tracker, order))
         motion = replace(told.motion, time=times)
         if solving_order.structure.relaxation:
             check_redundant(motion)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from functools import cached_property
 from typing import Protocol
 
@@ -71,6 +72,15 @@ class SolvingOrder(PrintsShort):
         """The four-bar loops of pins that dyads close, by the indices of these groups."""
         return four_bar_loops(self.structure)
 
+    def following(self, k: int) -> SolvingOrder:
+        """Return it with a group followed that has signs else. Its configurations are others than those with signs."""
+        solver = self.solvers[k].followed()
+        assert solver is not None
+        other = copy(self)
+        other.solvers = (*self.solvers[:k], solver, *self.solvers[k + 1 :])
+        other.__dict__.pop("numbered", None)
+        return other
+
     def start(
         self,
         ends: Mapping[str, Ends],
@@ -126,11 +136,16 @@ class Choice(Protocol):
         """Return about which angle, full turns counted, a link of a group has. It is None where it is not counted."""
 
 
-def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None = None) -> Block:
-    """Assemble the groups one after another, up to one; return the block. Each is in the mode that is chosen."""
+def run(
+    solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None = None, since: int = 0
+) -> Block:
+    """Assemble the groups one after another, from one up to one; return the block.
+
+    Each is in the mode that is chosen.
+    """
     guide_ends = solving_order.guide_ends
     guide_ends.mask(block, BEFORE)
-    for solver in solving_order.solvers[:upto]:
+    for solver in solving_order.solvers[since:upto]:
         solver.close(block, choose.mode(block, solver))
         guide_ends.mask(block, solver.index)
         for link in solver.group.links if solving_order.turning else ():

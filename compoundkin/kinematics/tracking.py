@@ -16,7 +16,7 @@ from compoundkin.kinematics.branch import Begin, TrackedBranch, course_of
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.configuration import ONLY
 from compoundkin.kinematics.default_modes import default_sign
-from compoundkin.kinematics.first_pose import first_state, letters_shown, nearest_sign
+from compoundkin.kinematics.first_pose import first_state, letters_shown, nearest_sign, shows_inner
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
 from compoundkin.kinematics.group_march import GroupPath
 from compoundkin.kinematics.group_paths import track
@@ -123,9 +123,23 @@ class Tracker(PrintsShort):
         self.turns = {}
         first = self.approach_path.cut(slice(None), slice(0, 1))
         block = self.solving_order.start(first.ends, first.series(0), 0, (self.given.designs, 1), NEAREST)
-        run(self.solving_order, block, _First(self), last)
+        begin = 0
+        for k in self._signed_or_followed():
+            run(self.solving_order, block, _First(self), k, begin)
+            begin = k
+            if shows_inner(self.solving_order, self.solving_order.solvers[k], block, self.shown):
+                self.solving_order = self.solving_order.following(k)
+                self.course = course_of(self.solving_order, self.given, self.approach_path)
+        run(self.solving_order, block, _First(self), last, begin)
         if last is not None:
             _First(self).mode(block, self.solving_order.solvers[last])
+
+    def _signed_or_followed(self) -> list[int]:
+        """Return the groups with signs of which a drawing may show a configuration that has none."""
+        if self.begin is not None or not self.shown.points:
+            return []
+        solvers = self.solving_order.solvers
+        return [solver.index for solver in solvers if solver.index not in self.fixed and solver.followed()]
 
 
 @dataclass(frozen=True)

@@ -84,6 +84,10 @@ class GroupSolver(ABC):
         """Whether it may pass between its modes, where its margin is zero."""
         return self.modes == 2 and self.tells_margin
 
+    def followed(self) -> GroupSolver | None:
+        """Return the solver that follows configurations which have no sign here. It is None where there are none."""
+        return None
+
     def margin(self, block: Block) -> Number | None:
         """Return how far it is from its limit position, negative beyond. It is None where it does not say."""
         return block.margins.get(self.index)

@@ -16,6 +16,7 @@ from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver, MountedBody
+from compoundkin.kinematics.groups.general import GeneralSolver
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
 from compoundkin.model.pairs.contact import Profiled, as_profiled
 from compoundkin.model.pairs.contract import Ends, Poses
@@ -31,7 +32,7 @@ HALVINGS = 40
 
 
 class FollowerSolver(GroupSolver):
-    """The solver of a contact with two places at most that count.
+    """The solver of a contact at one of the two outer places, anew at each pose; those between them are followed.
 
     What the modes mean is that of the dyad for a round disc.
 
@@ -50,6 +51,7 @@ class FollowerSolver(GroupSolver):
         self.mounted = MountedBody(lower, higher, group.bodies[0])
         self.pair = higher
         self.own = next(j for j, name in enumerate(higher.members) if name in group.links)
+        self.inner: GeneralSolver | None = None
 
     @classmethod
     def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self | None:
@@ -60,7 +62,13 @@ class FollowerSolver(GroupSolver):
         mount, profiled = as_drivable(lower), as_profiled(higher)
         if not mount or not profiled or not lower.is_simple or lower_equivalent(higher, ends[higher.name]):
             return None
-        return cls(index, group, size, mount, profiled)
+        solver = cls(index, group, size, mount, profiled)
+        solver.inner = GeneralSolver.of(index, group, size, ends)
+        return solver
+
+    def followed(self) -> GroupSolver | None:
+        """Return the solver of the contacts between the two outer ones. They are followed by the pairs' equations."""
+        return self.inner
 
     def close(self, block: Block, mode: Number) -> None:
         """Assemble the group and add its links to what is known."""
