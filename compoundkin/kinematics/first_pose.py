@@ -102,7 +102,7 @@ def first_state(
 
 
 def shows_inner(solving_order: SolvingOrder, solver: GroupSolver, block: Block, shown: Shown) -> bool:
-    """Tell whether what is shown is nearer to a configuration without a sign than to those with one.
+    """Tell whether a configuration without a sign is the nearest to what is shown.
 
     All groups before are assembled in the block; of several designs it is so for one.
     """
@@ -124,7 +124,7 @@ def shows_inner(solving_order: SolvingOrder, solver: GroupSolver, block: Block, 
 def _nearest_state(
     solving_order: SolvingOrder, solver: GroupSolver, block: Block, shown: Shown
 ) -> tuple[Number, Number, str]:
-    """Return the closed states nearest to what is shown, what this costs (inf where there are none), and the chooser."""
+    """Return the closed states nearest to what is shown, what they cost (inf where there are none), and the chooser."""
     letters, designs, count = letters_shown(solving_order, solver, shown), block.shape[0], 0
     search = ClosedStates(solving_order, solver, block, shown.points, drawn=bool(letters))
     best, least = np.full((designs, 1, search.equations.width), np.nan), np.full((designs, 1), np.inf)

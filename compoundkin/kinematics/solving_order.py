@@ -63,6 +63,11 @@ class SolvingOrder(PrintsShort):
         """The indices of the groups whose configurations are numbered."""
         return tuple(solver.index for solver in self.solvers if solver.is_numbered)
 
+    @cached_property
+    def followable(self) -> frozenset[int]:
+        """The groups with signs that have other configurations too, by their indices."""
+        return frozenset(solver.index for solver in self.solvers if solver.followed())
+
     def unit(self, name: str) -> float:
         """Return by how much a driver goes where it goes far. It is a radian, or the mechanism's size."""
         return 1.0 if self.structure.driven_angles[name] else self.size
@@ -73,12 +78,16 @@ class SolvingOrder(PrintsShort):
         return four_bar_loops(self.structure)
 
     def following(self, k: int) -> SolvingOrder:
-        """Return it with a group followed that has signs else. Its configurations are others than those with signs."""
+        """Return it with a group followed that else has signs.
+
+        It is to be in a configuration that has none.
+        """
         solver = self.solvers[k].followed()
         assert solver is not None
         other = copy(self)
         other.solvers = (*self.solvers[:k], solver, *self.solvers[k + 1 :])
-        other.__dict__.pop("numbered", None)
+        for found in ("numbered", "followable"):
+            other.__dict__.pop(found, None)
         return other
 
     def start(
@@ -136,9 +145,7 @@ class Choice(Protocol):
         """Return about which angle, full turns counted, a link of a group has. It is None where it is not counted."""
 
 
-def run(
-    solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None = None, since: int = 0
-) -> Block:
+def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | None = None, since: int = 0) -> Block:
     """Assemble the groups one after another, from one up to one; return the block.
 
     Each is in the mode that is chosen.

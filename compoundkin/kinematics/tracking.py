@@ -123,23 +123,16 @@ class Tracker(PrintsShort):
         self.turns = {}
         first = self.approach_path.cut(slice(None), slice(0, 1))
         block = self.solving_order.start(first.ends, first.series(0), 0, (self.given.designs, 1), NEAREST)
-        begin = 0
-        for k in self._signed_or_followed():
-            run(self.solving_order, block, _First(self), k, begin)
-            begin = k
+        since = 0
+        for k in () if self.begin else sorted(self.solving_order.followable - self.fixed.keys()):
+            run(self.solving_order, block, _First(self), k, since)
+            since = k
             if shows_inner(self.solving_order, self.solving_order.solvers[k], block, self.shown):
                 self.solving_order = self.solving_order.following(k)
                 self.course = course_of(self.solving_order, self.given, self.approach_path)
-        run(self.solving_order, block, _First(self), last, begin)
+        run(self.solving_order, block, _First(self), last, since)
         if last is not None:
             _First(self).mode(block, self.solving_order.solvers[last])
-
-    def _signed_or_followed(self) -> list[int]:
-        """Return the groups with signs of which a drawing may show a configuration that has none."""
-        if self.begin is not None or not self.shown.points:
-            return []
-        solvers = self.solving_order.solvers
-        return [solver.index for solver in solvers if solver.index not in self.fixed and solver.followed()]
 
 
 @dataclass(frozen=True)

@@ -76,9 +76,7 @@ TURNING = [ck.link("follower", H=0, P=ARM)]
 
 
 @pytest.mark.parametrize(("way", "follower"), [(on_slide, SLIDING), (on_arm, TURNING)])
-def test_inner_contacts_are_followed_both_ways(
-    way: Callable[[np.ndarray], np.ndarray], follower: list[object]
-) -> None:
+def test_inner_contacts_are_followed_both_ways(way: Callable[[np.ndarray], np.ndarray], follower: list[object]) -> None:
     """As far as each contact lasts; the two outer ones are solved as ever."""
     drawn = met(way, 0.0)
     assert len(drawn) == 4

@@ -32,9 +32,9 @@ HALVINGS = 40
 
 
 class FollowerSolver(GroupSolver):
-    """The solver of a contact at one of the two outer places, anew at each pose; those between them are followed.
+    """The solver of a contact at either of its two outer places.
 
-    What the modes mean is that of the dyad for a round disc.
+    It is found anew at each pose; contacts between the two are followed by another solver. What the modes mean is that of the dyad for a round disc.
 
     On a slide mode +1 is farthest along the guide. On a pin it is the most clockwise place for a roller or edge; a face
     touches in its own direction, seen from the foot of the pin on it.
