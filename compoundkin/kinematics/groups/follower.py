@@ -34,7 +34,8 @@ HALVINGS = 40
 class FollowerSolver(GroupSolver):
     """The solver of a contact at either of its two outer places.
 
-    It is found anew at each pose; contacts between the two are followed by another solver. What the modes mean is that of the dyad for a round disc.
+    It is found anew at each pose; contacts between the two are followed by another solver. What the
+    modes mean is that of the dyad for a round disc.
 
     On a slide mode +1 is farthest along the guide. On a pin it is the most clockwise place for a roller or edge; a face
     touches in its own direction, seen from the foot of the pin on it.
