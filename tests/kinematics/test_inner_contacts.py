@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -147,6 +148,19 @@ def test_a_written_mode_is_an_outer_contact() -> None:
     assert ck.solve(drawn, values, modes={"follower": 1}).points["P"].position[0] == pytest.approx(outer)
     hinted = ck.solve(wave(Q=0.36j, P=-outer), values, hint={"P": -inner})
     assert hinted.points["P"].position[0] == pytest.approx(-inner)
+
+
+def test_verifying_sees_that_an_inner_contact_is_meant() -> None:
+    """A motion in an outer contact, as if nothing had followed the one drawn, is not where the drawing is."""
+    inner = np.sqrt(1.0 - np.sqrt(1.0 - 0.36))
+    values = {"plate": np.linspace(0.2, 0.5, 13)}
+    followed = ck.solve(wave(Q=0.36j, P=inner), values)
+    assert ck.verify(followed).passed
+    motion = ck.solve(wave(Q=0.36j, P=np.sqrt(1.0 + np.sqrt(1.0 - 0.36))), values)
+    assert ck.verify(motion).passed
+    tracker = motion.tracker
+    tracker.shown = replace(tracker.shown, points={**tracker.shown.points, "P": np.array([[inner + 0j]])})
+    assert [finding.name for finding in ck.verify(motion).findings if not finding.passed] == ["nearest to the drawing"]
 
 
 def test_a_random_drawing_at_an_inner_contact() -> None:

@@ -64,13 +64,15 @@ def _excess(motion: Motion, solver: GroupSolver, block: Block) -> Number:
     def away(trial: Block) -> Number:
         return np.sqrt(distance(motion.solving_order, letters, shown, trial)) / motion.size
 
-    own, every, nearest = away(block), solver.every(block), np.full(block.shape, np.inf)
-    for j in range(every.real.shape[-1]):
-        trial = block.copy()
-        for k, body in enumerate(solver.group.bodies):
-            pose = every.bodies[k]
-            trial.publish(body, Pose(constant(pose.z.c[0][..., j]), constant(pose.u.c[0][..., j])))
-        nearest = np.fmin(nearest, np.where(every.real[..., j], away(trial), np.inf))
+    own, nearest = away(block), np.full(block.shape, np.inf)
+    # those without a sign too, which a follower may have between its outer contacts
+    for every in (one.every(block) for one in (solver, solver.followed()) if one):
+        for j in range(every.real.shape[-1]):
+            trial = block.copy()
+            for k, body in enumerate(solver.group.bodies):
+                pose = every.bodies[k]
+                trial.publish(body, Pose(constant(pose.z.c[0][..., j]), constant(pose.u.c[0][..., j])))
+            nearest = np.fmin(nearest, np.where(every.real[..., j], away(trial), np.inf))
     clear = nearest < (CLEARLY * own if solver.is_numbered else own - NEARER)
     return np.where(clear & (own - nearest > NEARER), own - nearest, 0.0)
 
