@@ -17,6 +17,9 @@ REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "a list of names to plot": (lambda: ck.plot(SIX_BAR, ["G", "bar"]), "one text for each"),
     "a list of kinds": (lambda: ck.draw(SIX_BAR, kind=["groups"]), "is no text; write one text"),
     "vectors switched on": (lambda: ck.draw(SIX_BAR, kind="polygon", vectors=True), "velocity, acceleration"),
+    "a name for the place of a picture": (lambda: ck.draw(SIX_BAR, "coupler"), "'coupler' is not a number"),
+    "a vector in an infinite direction": (lambda: ck.polar(1.0, -float("inf")), "angle: infinite numbers"),
+    "an infinite vector": (lambda: ck.polar(float("inf"), 0.0), "radius: infinite numbers"),
     "vectors of an animation switched on": (lambda: ck.animate(SIX_BAR, vectors=True), "velocity, acceleration"),
 }
 
@@ -32,3 +35,8 @@ def test_it_is_refused_with_a_remedy(case: str) -> None:
 def test_arguments_that_lack_are_told_of_the_word_not_of_its_class(word: str) -> None:
     with pytest.raises(TypeError, match=rf"^{word}\(\): missing a required"):
         getattr(ck, word)()
+
+
+def test_a_word_that_there_is_not_is_told_of_the_function_that_was_called() -> None:
+    with pytest.raises(TypeError, match=r"^with_driver\(\) got an unexpected keyword argument 'x'"):
+        ck.with_driver(SIX_BAR.mechanism, "bar", x=-1)  # type: ignore[call-arg]

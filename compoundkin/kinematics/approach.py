@@ -67,28 +67,35 @@ def _signed(length: Number, values: Number) -> Number:
 
 
 def _nearest(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Number]) -> float:
-    """Return the place, between poses too, whose drivers are nearest to the drawn ones, over all designs."""
-    offs = [_off(solving_order, given, name, value) for name, value in values.items()]
+    """Return the place, between poses too, whose drivers are nearest to the drawn ones, over all designs.
+
+    Of places that are equally near, as the ends of a full turn, it is the one whose values are nearest by themselves.
+    """
     if given.poses == 1:
         return 0.0
     # from each pose to the next the drivers go straight on: the foot of the perpendicular to that line
-    here = [off[:, :-1] for off in offs]
+    here = [_off(solving_order, given, name, value)[:, :-1] for name, value in values.items()]
     steps = [_step(given.drives[name][0]) / solving_order.unit(name) for name in values]
     square = np.broadcast_to(sum(np.sum(step**2, axis=0) for step in steps), given.poses - 1)
     back = sum(np.sum(step * off, axis=0) for step, off in zip(steps, here, strict=True))
     share = np.divide(-back, square, out=np.zeros(given.poses - 1), where=square > 0.0)
     share = np.where(share < CLOSE, 0.0, np.where(share > 1.0 - CLOSE, 1.0, share))
-    total = sum(np.abs(off + share * step) for off, step in zip(here, steps, strict=True))
-    worst = np.max(total, axis=0)
-    # the first and the last pose of a full turn are equally near, but for rounding
-    i = int(np.argmax(worst <= np.min(worst) + CLOSE))
-    return i + float(share[i])
+    counted = [_off(solving_order, given, name, value, turns=True)[:, :-1] for name, value in values.items()]
+    near = np.arange(given.poses - 1)
+    for offs in (here, counted):
+        worst = np.max(sum(np.abs(off + share * step) for off, step in zip(offs, steps, strict=True)), axis=0)[near]
+        # equal but for rounding
+        near = near[worst <= np.min(worst) + CLOSE]
+    return float(near[0] + share[near[0]])
 
 
-def _off(solving_order: SolvingOrder, given: Inputs, name: str, value: Number) -> Number:
-    """Return how far a driver is from where it is drawn, (1 or designs, poses), in radians or parts of the size."""
+def _off(solving_order: SolvingOrder, given: Inputs, name: str, value: Number, turns: bool = False) -> Number:
+    """Return how far a driver is from where it is drawn, with whole turns or without.
+
+    It is (1 or designs, poses), in radians or parts of the size.
+    """
     off = given.drives[name][0] - value
-    if solving_order.structure.driven_angles[name]:
+    if solving_order.structure.driven_angles[name] and not turns:
         off = off - whole_turns(off)
     off = np.atleast_2d(off / solving_order.unit(name))
     return np.broadcast_to(off, (len(off), given.poses))

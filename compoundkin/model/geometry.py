@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort, short
-from compoundkin.base.errors import InvalidMechanism, LikelySlip, Problem, warn
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, LikelySlip, Problem, warn
 from compoundkin.base.given_numbers import planar_numbers, real_numbers
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
@@ -105,13 +105,16 @@ def deg(angle: Any) -> Number:
 def polar(radius: Any, angle: Any) -> Number:
     """Return the planar vector of a length and an angle (radians).
 
-    A complex number or array.
+    A complex number or array. Raises InvalidInput for infinite numbers, which have no place.
 
     >>> polar(2.0, 0.0)
     (2+0j)
     """
-    turned = real_numbers("angle", angle)
-    value = real_numbers("radius", radius) * (np.cos(turned) + 1j * np.sin(turned))
+    length, turned = real_numbers("radius", radius), real_numbers("angle", angle)
+    for where, numbers in (("radius", length), ("angle", turned)):
+        if np.isinf(numbers).any():
+            raise InvalidInput(Problem(where, "infinite numbers give no vector", "give finite ones"))
+    value = length * (np.cos(turned) + 1j * np.sin(turned))
     return complex(value) if value.ndim == 0 else value
 
 

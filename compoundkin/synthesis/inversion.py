@@ -66,12 +66,23 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
 
 @checked
 def with_driver(
-    mechanism: Mechanism, link: str, on: str = FRAME, *, pair: str = "", instead: str = "", **words: Any
+    mechanism: Mechanism,
+    link: str,
+    on: str = FRAME,
+    *,
+    pair: str = "",
+    instead: str = "",
+    values: Any = None,
+    speed: Any = 1.0,
+    acceleration: Any = 0.0,
+    jerk: Any = 0.0,
+    law: Any = None,
+    name: str = "",
 ) -> Mechanism:
     """Return a mechanism driven elsewhere.
 
     `link` on the link `on`, in place of its driver, or of the one called `instead`.
-    `words` are those of `drive`, such as `values`; without values a pin makes a full turn, a slide stays.
+    `values` and what follows are those of `drive`; without values a pin makes a full turn, a slide stays.
     Dimensions and assembly are kept, published numbers are left out.
 
     Raises UnknownName for a link or driver that there is not, InvalidInput where it is not said which driver is meant,
@@ -82,11 +93,12 @@ def with_driver(
     >>> [drive.name for drive in driven.drives]
     ['rocker']
     """
-    for name in (link, on):
-        if name not in mechanism.cylinders:
-            mechanism.link(name)
+    for each in (link, on):
+        if each not in mechanism.cylinders:
+            mechanism.link(each)
     old = _replaced(mechanism, instead)
-    new = drive(link, on=on, pair=pair, **words)
+    rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk}
+    new = drive(link, on=on, pair=pair, values=values, law=law, name=name, **rates)
     kept = [item for item in mechanism.items if not (isinstance(item, Mode | Expectation) or is_driver(item, old))]
     if not any(item.is_drawn for item in mechanism.links.values()):
         kept = [item for item in kept if not isinstance(item, Drawn)]

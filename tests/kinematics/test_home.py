@@ -231,6 +231,18 @@ def test_whichever_place_is_drawn_the_motion_is_the_same(seed: int) -> None:
         assert np.allclose(back.points[letter].position[::-1], at, atol=1e-8, equal_nan=True)
 
 
+@pytest.mark.parametrize("turns", [-1, 0, 1])
+def test_of_both_ends_of_a_full_turn_the_one_with_the_drawn_value_is_the_drawn_pose(turns: int) -> None:
+    """Drawn at an end of a full turn and near a limit: poses of the branch are those beside that end."""
+    drawn = float(np.angle(PLACES["G"] - PLACES["F"]))
+    mechanism = stephenson()
+    degrees = np.rad2deg(drawn) + np.linspace(360.0 * min(turns, 0), 360.0 * max(turns, 0), 73 if turns else 1)
+    motion = quietly(mechanism, {"FG": np.deg2rad(degrees)}, order=0)
+    expected = {-1: 72, 0: 0, 1: 0}[turns]
+    assert motion.tracker.at == expected
+    assert abs(motion.points["B"].position[expected] - PLACES["B"]) < 1e-9
+
+
 # --- where a branch comes back after a gap ----------------------------------------------------------------------
 
 RETURNING = {

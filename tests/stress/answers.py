@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -109,20 +109,33 @@ class Answer:
         good = np.flatnonzero(moved < 1e-3)
         return {float(self.s[at[i]]): Place(float(self.s[at[i]]), x[i], rates[i], float(signs[i])) for i in good}
 
-    def residuals(self, reached: Iterable[int]) -> np.ndarray:
+    def residuals(self, reached: Mapping[int, Place]) -> np.ndarray:
         """The greatest residual of each pose, as the package left it; of pairs that count turns where it is `reached`.
 
         Beyond a gap nobody can say by how many turns a link was turned; drivers are where they are modulo a turn.
         """
         found = np.full(self.s.shape, np.nan)
         at = np.flatnonzero(self.assembled)
-        off = self.branch.residual(self.turned[at], self.s[at])
+        off = self.branch.residual(self._as_reached(reached)[at], self.s[at])
         beyond = np.isin(at, list(reached), invert=True)
         off[np.ix_(beyond, self.equations.turning)] = 0.0
         drivers = self.equations.count + np.flatnonzero(~self.equations.lengths)
         off[:, drivers] -= _turns(off[:, drivers])
         found[at] = np.max(np.abs(off), axis=-1)
         return found
+
+    def _as_reached(self, reached: Mapping[int, Place]) -> np.ndarray:
+        """The unknowns with the turns of counted links as at the nearest reached pose.
+
+        Next to a limit links run so fast that the drawn pose does not tell their turns at the next one.
+        """
+        x = self.turned.copy()
+        known = [k for k in reached if self.assembled[k]]
+        if known:
+            near = min(known, key=lambda k: abs(float(self.s[k])))
+            columns = [3 * self.equations.index[link] + 2 for link in self.counted]
+            x[:, columns] -= _turns(x[near, columns] - reached[near].x[columns])
+        return x
 
 
 def _turns(angle: Any) -> Any:
