@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -66,23 +67,12 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
 
 @checked
 def with_driver(
-    mechanism: Mechanism,
-    link: str,
-    on: str = FRAME,
-    *,
-    pair: str = "",
-    instead: str = "",
-    values: Any = None,
-    speed: Any = 1.0,
-    acceleration: Any = 0.0,
-    jerk: Any = 0.0,
-    law: Any = None,
-    name: str = "",
+    mechanism: Mechanism, link: str, on: str = FRAME, *, pair: str = "", instead: str = "", **words: Any
 ) -> Mechanism:
     """Return a mechanism driven elsewhere.
 
     `link` on the link `on`, in place of its driver, or of the one called `instead`.
-    `values` and what follows are those of `drive`; without values a pin makes a full turn, a slide stays.
+    `words` are those of `drive`, such as `values`; without values a pin makes a full turn, a slide stays.
     Dimensions and assembly are kept, published numbers are left out.
 
     Raises UnknownName for a link or driver that there is not, InvalidInput where it is not said which driver is meant,
@@ -93,12 +83,12 @@ def with_driver(
     >>> [drive.name for drive in driven.drives]
     ['rocker']
     """
-    for each in (link, on):
-        if each not in mechanism.cylinders:
-            mechanism.link(each)
+    for word in words.keys() - signature(drive).parameters:
+        raise TypeError(f"with_driver() got an unexpected keyword argument {word!r}")
+    for name in [name for name in (link, on) if name not in mechanism.cylinders]:
+        mechanism.link(name)
     old = _replaced(mechanism, instead)
-    rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk}
-    new = drive(link, on=on, pair=pair, values=values, law=law, name=name, **rates)
+    new = drive(link, on=on, pair=pair, **words)
     kept = [item for item in mechanism.items if not (isinstance(item, Mode | Expectation) or is_driver(item, old))]
     if not any(item.is_drawn for item in mechanism.links.values()):
         kept = [item for item in kept if not isinstance(item, Drawn)]
@@ -215,8 +205,7 @@ def _clear(motion: Motion, found: Number) -> int:
         if any(len(motion.mechanism.links[name].points) == 1 for name in (item.link, item.on)):
             pair = motion.structure.driven[item.name].pair
             if pair.free_is_angle:
-                # taken for the first pose
-                return int(found[0])
+                return int(found[0])  # taken for the first pose
             # taken to be forward along the guide
             value = np.broadcast_to(motion.pairs[pair.name].value, motion.assembled.shape)
             return int(found[np.argmax(value.reshape(-1, value.shape[-1])[0][found])])

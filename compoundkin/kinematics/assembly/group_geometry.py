@@ -13,6 +13,7 @@ from compoundkin.base.poses import End
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.optional_answers import as_turn_counting
 from compoundkin.structure.parts import Group
 
 # Two points of a body nearer than this part of the size are one pin: rounding of a few additions.
@@ -154,7 +155,8 @@ def from_group(group: Group, block: Block, size: float) -> GroupGeometry:
 
 
 def _connection(pair: Pair, where: dict[str, int], block: Block) -> Connection:
-    if pair.held != 2 or len(pair.members) != 2:
+    # what rolls holds two coordinates too, one of which counts turns
+    if pair.held != 2 or len(pair.members) != 2 or as_turn_counting(pair):
         what = f"all configurations are known for groups of lower pairs only, not with a {pair.title}"
         raise InvalidInput(Problem(pair.name, what))
     first, second = (

@@ -108,3 +108,17 @@ def test_higher_pairs_are_told():
     broken = type(group)(group.bodies, (Higher(),), group.outer, group.name, group.class_, group.order)
     with pytest.raises(InvalidInput, match="lower pairs only"):
         from_group(broken, setting, size)
+
+
+def test_what_rolls_is_neither_pin_nor_slide():
+    """A wheel comes to another place after every turn: motions were sent on to poses that do not close."""
+    rolls = [
+        ck.roll("wheel", on="frame", through="A", toward="D", at="C", radius=1.0),
+        ck.roll_around("wheel", on="frame", centre_at="D", at="C", circle=1.0, radius=1.0),
+    ]
+    for roll in rolls:
+        links = (ck.link("frame", A=0, D=4), ck.link("crank", A=0, B=1), ck.link("rod", B=0, C=3))
+        mechanism = ck.Mechanism("Rolling", *links, ck.link("wheel", C=0, E=0.5), roll, ck.drive("crank"))
+        group, setting, size = attached(mechanism, crank=0.3)
+        with pytest.raises(InvalidInput, match="lower pairs only"):
+            from_group(group, setting, size)
