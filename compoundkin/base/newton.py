@@ -120,7 +120,8 @@ def chord_newton(
         closed = rested & (largest_of(residual) <= stop.closed)
         if not np.any(~closed & np.isfinite(last)):
             break
-    return found, closed
+    # near a singularity steps may dance in rounding until none are left: their digits are what the pose has
+    return found, (last <= stop.converged) & (largest_of(residual) <= stop.closed)
 
 
 def largest_of(values: list[Number]) -> Number:
