@@ -8,7 +8,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Collection, Iterable, Mapping, Set
-from functools import partial
+from functools import cache, partial
 from numbers import Integral, Real
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias, cast
@@ -120,6 +120,7 @@ def is_called(value: object, word: str) -> bool:
     return any(in_words(kind.__name__) == word for kind in type(value).__mro__)
 
 
+@cache
 def in_words(name: str) -> str:
     """Return the name of a class in words."""
     return re.sub("(?<=[a-z])(?=[A-Z])", " ", name).lower()

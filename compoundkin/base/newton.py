@@ -113,11 +113,14 @@ def chord_newton(
             share = np.minimum(1.0, stop.longest / last)
             step = [c * share for c in step]
         found = [v - c for v, c in zip(found, step, strict=True)]
-        residual, invert = system(found)
         # with the matrix of an earlier step the next one is this one's part of the one before: it must be rounding too
         exact = (last**2 <= EXACT * before) | (last >= before)
         rested = rested | ((last <= stop.converged) & exact)
-        closed = rested & (largest_of(residual) <= stop.closed)
+        # a residual that was small enough has become smaller by such a step
+        if rested.all() and np.all(largest_of(residual) <= stop.closed):
+            return found, rested
+        residual, invert = system(found)
+        closed = rested & (largest_of(residual) <= stop.closed) if rested.any() else rested
         if not np.any(~closed & np.isfinite(last)):
             break
     # near a singularity steps may dance in rounding until none are left: their digits are what the pose has

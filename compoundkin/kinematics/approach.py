@@ -76,16 +76,18 @@ def _nearest(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Nu
     # from each pose to the next the drivers go straight on: the foot of the perpendicular to that line
     here = [_off(solving_order, given, name, value)[:, :-1] for name, value in values.items()]
     steps = [_step(given.drives[name][0]) / solving_order.unit(name) for name in values]
-    square = np.broadcast_to(sum(np.sum(step**2, axis=0) for step in steps), given.poses - 1)
-    back = sum(np.sum(step * off, axis=0) for step, off in zip(steps, here, strict=True))
+    square = sum((step**2).sum(axis=0) for step in steps)
+    back = sum((step * off).sum(axis=0) for step, off in zip(steps, here, strict=True))
     share = np.divide(-back, square, out=np.zeros(given.poses - 1), where=square > 0.0)
     share = np.where(share < CLOSE, 0.0, np.where(share > 1.0 - CLOSE, 1.0, share))
-    counted = [_off(solving_order, given, name, value, turns=True)[:, :-1] for name, value in values.items()]
     near = np.arange(given.poses - 1)
-    for offs in (here, counted):
-        worst = np.max(sum(np.abs(off + share * step) for off, step in zip(offs, steps, strict=True)), axis=0)[near]
+    for turns in (False, True):
+        offs = (_off(solving_order, given, name, value, turns)[:, :-1] for name, value in values.items())
+        worst = sum(np.abs(off + share * step) for off, step in zip(offs, steps, strict=True)).max(axis=0)[near]
         # equal but for rounding
-        near = near[worst <= np.min(worst) + CLOSE]
+        near = near[worst <= worst.min() + CLOSE]
+        if len(near) == 1:
+            break
     return float(near[0] + share[near[0]])
 
 
@@ -98,12 +100,12 @@ def _off(solving_order: SolvingOrder, given: Inputs, name: str, value: Number, t
     if solving_order.structure.driven_angles[name] and not turns:
         off = off - whole_turns(off)
     off = np.atleast_2d(off / solving_order.unit(name))
-    return np.broadcast_to(off, (len(off), given.poses))
+    return off if off.shape[1] == given.poses else np.broadcast_to(off, (len(off), given.poses))
 
 
 def first_of(value: Number) -> Number:
     """Return a dimension at the first pose of each design. It is a number, or an array (designs, 1)."""
-    if np.ndim(value) == 0:
+    if isinstance(value, complex | float) or np.ndim(value) == 0:
         return value
     array = np.asarray(value)
     return array[..., :1].reshape(-1, 1)
@@ -153,4 +155,4 @@ def _steps(given: Inputs) -> Iterator[tuple[str, Number]]:
 
 def _step(value: Number) -> Number:
     """Return the steps of a driver's values from pose to pose, (1 or designs, poses - 1). They may be one zero."""
-    return np.diff(value, axis=-1) if np.ndim(value) > 1 and np.shape(value)[-1] > 1 else np.zeros((1, 1))
+    return value[:, 1:] - value[:, :-1] if np.ndim(value) > 1 and value.shape[1] > 1 else np.zeros((1, 1))

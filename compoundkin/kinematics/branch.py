@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.arrays import TURN, whole_turns
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import SPACING, spacings
-from compoundkin.kinematics.group_march import GroupPath
+from compoundkin.kinematics.group_paths import GroupPath
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
 
@@ -78,7 +78,10 @@ class TrackedBranch:
     def seeds(self, k: int, drives: Mapping[str, tuple[Number, ...]], designs: Number, s: Number) -> Number:
         """Return the states of a group at the drivers' values. They are NaN where the branch does not reach."""
         places = self.course.places(drives[self.course.driver][0], designs)
-        found, *others = (self.paths[k].seeds(designs, np.broadcast_to(place, s.shape)) for place in places)
+        found, *others = (
+            self.paths[k].seeds(designs, np.broadcast_to(place, np.broadcast_shapes(np.shape(place), s.shape)))
+            for place in places
+        )
         for other in others:
             found = np.where(np.isnan(found), other, found)
         return found

@@ -5,14 +5,13 @@ Groups with higher pairs, and those of very many bodies, are searched from rando
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.series import Number
-from compoundkin.kinematics.approach import column, first_of
+from compoundkin.kinematics.approach import first_of
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.closed_states import COMPARED, ClosedStates, every_state
@@ -52,9 +51,10 @@ def distance(solving_order: SolvingOrder, letters: Letters, shown: Shown, block:
     for link, letter in letters:
         gap = block.world[link].at(first_of(points[link][letter])).c[0] - first_of(shown.points[letter])
         total = total + np.abs(gap) ** 2
-    for link, count in Counter(link for link, _ in letters).items():
-        if count == 1 and link in shown.poses:
-            gap = block.world[link].u.c[0] - column(shown.poses[link]).u.c[0]
+    links = [link for link, _ in letters if link in shown.poses]
+    for link in links:
+        if links.count(link) == 1:
+            gap = block.world[link].u.c[0] - first_of(shown.poses[link].u.c[0])
             total = total + TURNED * (solving_order.size * np.abs(gap)) ** 2
     return total
 
@@ -79,6 +79,8 @@ def nearest_sign(
     best = np.where(cost[1] < cost[0], -1.0, 1.0)
     if np.any(tied) and not closing:
         best = np.where(tied, default(), best)
+    if best.size == 1:
+        return best.item(), bool(closing) or not tied.item()
     chosen = float(best.flat[0]) if np.all(best == best.flat[0]) else np.atleast_2d(best)
     return chosen, bool(closing) or not np.all(tied)
 

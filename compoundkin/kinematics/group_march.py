@@ -1,9 +1,9 @@
-"""One continuation of a group's state along a way, and what was tracked: the path of the group."""
+"""One continuation of a group's state along a way: a step of its own length for every design."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,129 +36,87 @@ LENGTHS = StepLengths(first=np.inf, longest=np.inf, shortest=0.0, easy=1, most=1
 TERMS = len(MOVES)
 
 
-@dataclass(frozen=True)
-class GroupPath:
-    """The tracked states of one group.
+class Node(NamedTuple):
+    """Where some designs have come to: their indices, places, states and slopes."""
 
-    Its nodes are `s`, the states (designs, nodes, 3 n), with their slopes by s, and the reach (designs, 2) of s within
-    which each design was tracked. `side` (designs,) is the sign of the Jacobian, `returns` are paths after gaps.
-    """
-
+    designs: Number
     s: Number
     states: Number
     slopes: Number
-    reach: Number
-    side: Number
-    returns: tuple[GroupPath, ...] = ()
-
-    def seeds(self, designs: Number, s: Number) -> Number:
-        """Interpolate by cubics for design indices and places `s` (broadcast together): NaN beyond reach."""
-        found = self._seeds(designs, s)
-        for path in self.returns:
-            found = np.where(np.isnan(found), path.seeds(designs, s), found)
-        return found
-
-    def _seeds(self, designs: Number, s: Number) -> Number:
-        low, high = self.reach[designs, 0], self.reach[designs, 1]
-        if len(self.s) == 1:
-            out = self.states[designs, np.zeros(np.shape(s), dtype=int)]
-        else:
-            i = np.clip(np.searchsorted(self.s, s, side="right") - 1, 0, len(self.s) - 2)
-            h = (self.s[i + 1] - self.s[i])[..., None]
-            t = (s - self.s[i])[..., None] / h
-            out = (
-                (1 + 2 * t) * (1 - t) ** 2 * self.states[designs, i]
-                + t * (1 - t) ** 2 * h * self.slopes[designs, i]
-                + t * t * (3 - 2 * t) * self.states[designs, i + 1]
-                - t * t * (1 - t) * h * self.slopes[designs, i + 1]
-            )
-        return np.where(((s >= low) & (s <= high))[..., None], out, np.nan)
 
 
 class GroupMarch:
     """One continuation of a group's state along a way.
 
-    All designs take the same steps, those that meet a limit stay behind. `around(s)` is what surrounds the group at a
-    place, with `TERMS` derivatives by s; no step is longer than `longest`.
+    `around(designs, s)` is what surrounds the group of some designs, each at its own place, with `TERMS` derivatives by
+    s; no step is longer than `longest`.
     """
 
     def __init__(
-        self, equations: GroupEquations, around: Callable[[float], Block], longest: float, state: Number, alive: Number
+        self, equations: GroupEquations, around: Callable[[Number, Number], Block], longest: float, state: Number
     ) -> None:
         self.equations, self.around, self.longest = equations, around, longest
-        self.state, self.origin = state, state
-        self.alive = alive
+        self.state, self.origin = np.array(state), state
+        self.alive = np.isfinite(state).all(axis=(1, 2))
         # which numbers of a state are lengths
         self.lengths = np.arange(equations.width) % 3 < 2
-        self.s: list[float] = []
-        self.states: list[Number] = []
-        self.slopes: list[Number] = []
-        self.reached = np.zeros(len(state))
+        self.rates = [np.full(state.shape, np.nan) for _ in range(TERMS)]
+        self.side = np.full(state.shape[:2], np.nan)
+        # how many sizes the farthest body of each design is from where it started, at least one
+        self.spread = np.ones(len(state))
+        self.trials = np.zeros(len(state), dtype=int)
+        self.nodes: list[Node] = []
 
-    def go(self, stops: Number) -> GroupMarch:
-        """Step from stop to stop. Those that lie within one stride of each other are passed over."""
-        self.here, self.goal, self.stops, self.trials = float(stops[0]), 1, stops, 0
-        self.rates, self.side = self._rates(self.state, self.around(self.here))
-        self.first_side = self.side
-        self._note()
-        self.reached = np.where(self.alive, self.here, np.nan)
-        while self.goal < len(stops) and self.alive.any():
-            # all designs are one path; where it ends, those that are not good any more stay behind
-            if not follow(self._toward_goal, np.ones(1, dtype=bool), LENGTHS).all():
-                self.alive, self.trials = self.alive & self.good, 0
+    def go(self, start: Number, stops: Number) -> GroupMarch:
+        """Step from each design's place to all stops beyond, which are in order.
+
+        Those that lie within one stride of each other are passed over.
+        """
+        self.here, self.reached = np.array(start), np.where(self.alive, start, np.nan)
+        self.sense = 1.0 if stops[-1] >= stops[0] else -1.0
+        self.stops = self.sense * stops
+        self.goal = np.searchsorted(self.stops, self.sense * self.here, side="right")
+        i = np.flatnonzero(self.alive)
+        state = self.state[i]
+        known = self._rates(state, self.around(i, self.here[i])) if len(i) else ([state] * TERMS, state[..., 0])
+        self._take(i, self.here[i], state, *known)
+        self.first_side = self.side[:, 0].copy()
+        there = self.goal == len(stops)
+        self.alive &= there | follow(self._toward_goal, self.alive & ~there, LENGTHS)
         return self
 
-    def _toward_goal(self, _: Number, longest: Number) -> Taken:
-        """Try a step, so long that the prediction is good, to the farthest stop within it if there is one."""
-        strides = self._strides(self.rates)
-        most = min(float(longest[0]), float(np.min(strides[self.alive])), self.longest)
-        within = int(np.searchsorted(np.abs(self.stops[self.goal :] - self.here), most, side="right"))
-        self.goal = min(self.goal + max(within - 1, 0), len(self.stops) - 1)
-        ahead = float(self.stops[self.goal]) - self.here
-        h = np.sign(ahead) * min(abs(ahead), most)
-        state, rates, side, self.good = self._step(self.here, h, self.rates, self.side)
-        is_good = bool(self.good[self.alive].all())
-        is_short = abs(h) <= SHORTEST * max(1.0, abs(self.here))
-        length = 0.0 if is_short and not is_good else abs(h)
-        if is_good:
-            self._take(self.here + h, state, rates, side)
-        self.trials = 0 if is_good and within else self.trials + 1
-        near = self._spread(self.state) <= FARTHEST
-        if not near[self.alive].all():
-            self.good, is_good, length = near, False, 0.0
-        elif self.trials > MOST_TRIALS or (is_good and is_short and not within):
-            # near a limit steps vanish in rounding, each of them good: those that hold up the others stay behind
-            fast = self.good & (strides > 2.0 * most)
-            self.good, is_good, length = fast & ~fast[self.alive].all(), False, 0.0
-        return Taken(np.array([length]), np.array([is_good]), np.array([self.goal == len(self.stops)]))
+    def _toward_goal(self, i: Number, longest: Number) -> Taken:
+        """Try a step of some designs, so long that the prediction is good, to the farthest stop within it."""
+        rates, here = [c[i] for c in self.rates], self.sense * self.here[i]
+        weights = self._weights(i)
+        most = np.minimum(np.minimum(longest, _strides(weights, rates)), self.longest)
+        within = np.searchsorted(self.stops, here + most, side="right") - self.goal[i]
+        self.goal[i] = np.minimum(self.goal[i] + np.maximum(within - 1, 0), len(self.stops) - 1)
+        stop = self.stops[self.goal[i]]
+        length = np.minimum(stop - here, most)
+        place = self.sense * np.where(stop - here <= most, stop, here + most)
+        new, new_rates, new_side, good = self._step(i, weights, rates, self.sense * length, place)
+        self.trials[i] = np.where(good & (within > 0), 0, self.trials[i] + 1)
+        self._take(i[good], place[good], new[good], [c[good] for c in new_rates], new_side[good])
+        self.goal[i] += good & (place == self.sense * stop)
+        arrived = self.goal[i] == len(self.stops)
+        lost = (self.spread[i] > FARTHEST) | (self.trials[i] > MOST_TRIALS)
+        # near a limit steps vanish in rounding, each of them good
+        lost |= ~(good & (within > 0)) & (length <= SHORTEST * np.maximum(1.0, np.abs(here)))
+        return Taken(np.where(lost, 0.0, length), good & ~lost, arrived)
 
-    def _take(self, here: float, state: Number, rates: list[Number], side: Number) -> None:
-        """Go on to a place."""
-        self.here, self.rates, self.side = here, rates, side
-        self.state = np.where(self.alive[:, None, None], state, self.state)
-        self._note()
-        self.reached = np.where(self.alive, self.here, self.reached)
-        self.goal += self.here == self.stops[self.goal]
+    def _take(self, i: Number, place: Number, state: Number, rates: list[Number], side: Number) -> None:
+        """Go on to places."""
+        self.here[i], self.reached[i], self.state[i], self.side[i] = place, place, state, side
+        for known, rate in zip(self.rates, rates, strict=True):
+            known[i] = rate
+        moved = np.abs((state - self.origin[i]) * self.equations.weights * self.lengths)
+        self.spread[i] = np.fmax(moved.max(axis=(1, 2)), 1.0)
+        self.nodes.append(Node(i, place, state[:, 0], rates[0][:, 0]))
 
-    def _strides(self, rates: list[Number]) -> Number:
-        """Return how far the prediction is good, by the farthest move that each of its terms may make."""
-        weights = self._weights(self.state)
-        moves = [np.abs(c * weights).max(axis=(1, 2)) for c in rates]
-        strides = [_root(most, move, k) for k, (most, move) in enumerate(zip(MOVES, moves, strict=True), 1)]
-        # at a limit position states go with the square root of the distance, of which two terms in a row tell
-        distance = np.fmax(_root(moves[0], 4.0 * moves[1], 1), _root(moves[1], 2.0 * moves[2], 1))
-        return np.fmin.reduce([*strides, NEARER * distance])
-
-    def _weights(self, state: Number) -> Number:
+    def _weights(self, i: Number) -> Number:
         """Return the weights of changes of the state: parts of the size, or of how far a body has gone, and radians."""
-        return np.where(
-            self.lengths, self.equations.weights / self._spread(state)[:, None, None], self.equations.weights
-        )
-
-    def _spread(self, state: Number) -> Number:
-        """Return how many sizes the farthest body of each design is from where it started, at least one."""
-        moved = np.abs((state - self.origin) * self.equations.weights * self.lengths)
-        return np.fmax(moved.max(axis=(1, 2)), 1.0)
+        return np.where(self.lengths, self.equations.weights / self.spread[i][:, None, None], self.equations.weights)
 
     def _rates(self, state: Number, block: Block) -> tuple[list[Number], Number]:
         """Return the state's coefficients by s, and on which side of a singularity the configuration is."""
@@ -166,29 +124,31 @@ class GroupMarch:
         return rates, np.broadcast_to(side, state.shape[:2])
 
     def _step(
-        self, here: float, h: float, rates: list[Number], side: Number
+        self, i: Number, weights: Number, rates: list[Number], h: Number, place: Number
     ) -> tuple[Number, list[Number], Number, Number]:
-        """Return one step: the state there, its rates and side, and for which designs it is a neighbour."""
-        guess = self.state + sum(c * h**k for k, c in enumerate(rates, 1))
-        block = self.around(here + h)
+        """Return one step: the states there, their rates and sides, and for which designs it is a neighbour."""
+        state, h = self.state[i], h[:, None, None]
+        guess = state + sum(c * h**k for k, c in enumerate(rates, 1))
+        block = self.around(i, place)
         found = self.equations.newton(guess, block)
-        spread = self._spread(self.state)
-        good = found.closed.reshape(len(self.state)) & (found.moved.reshape(len(self.state)) <= STRAY * spread)
-        state = np.where(good[:, None, None], found.state, self.state)
-        new_rates, new_side = self._rates(state, block)
+        good = found.closed.reshape(len(i)) & (found.moved.reshape(len(i)) <= STRAY * self.spread[i])
+        new = np.where(good[:, None, None], found.state, state)
+        new_rates, new_side = self._rates(new, block)
         # the middle of the step as it will be interpolated, against the prediction
-        between = (self.state + state) / 2.0 + (rates[0] - new_rates[0]) * (h / 8.0)
-        predicted = self.state + sum(c * (h / 2.0) ** k for k, c in enumerate(rates, 1))
-        gaps = (between - predicted, state - self.state)
-        weights = self._weights(self.state)
-        off, moved = (np.abs(gap * weights).max(axis=(1, 2)) for gap in gaps)
+        between = (state + new) / 2.0 + (rates[0] - new_rates[0]) * (h / 8.0)
+        predicted = state + sum(c * (h / 2.0) ** k for k, c in enumerate(rates, 1))
+        off, moved = (np.abs(gap * weights).max(axis=(1, 2)) for gap in (between - predicted, new - state))
         near = off <= BENT * moved + SAME
-        return state, new_rates, new_side, good & near & (new_side == side).reshape(len(self.state))
+        return new, new_rates, new_side, good & near & (new_side == self.side[i])[:, 0]
 
-    def _note(self) -> None:
-        self.s.append(self.here)
-        self.states.append(self.state)
-        self.slopes.append(self.rates[0])
+
+def _strides(weights: Number, rates: list[Number]) -> Number:
+    """Return how far the prediction is good, by the farthest move that each of its terms may make."""
+    moves = [np.abs(c * weights).max(axis=(1, 2)) for c in rates]
+    strides = [_root(most, move, k) for k, (most, move) in enumerate(zip(MOVES, moves, strict=True), 1)]
+    # at a limit position states go with the square root of the distance, of which two terms in a row tell
+    distance = np.fmax(_root(moves[0], 4.0 * moves[1], 1), _root(moves[1], 2.0 * moves[2], 1))
+    return np.fmin.reduce([*strides, NEARER * distance])
 
 
 def _root(most: Number, move: Number, k: int) -> Number:

@@ -10,15 +10,15 @@ from compoundkin.base.arrays import column
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.closed_states import every_state
-from compoundkin.kinematics.group_march import GroupPath
-from compoundkin.kinematics.group_paths import Followed, both_ways
+from compoundkin.kinematics.group_paths import Followed, GroupPath, both_ways
 from compoundkin.kinematics.groups import equations_of
 
 # So many pieces of a branch are looked for, and so many poses of it at most.
 MOST_PIECES = 8
 MOST_POSES = 20_000
-# Every design meets limits of its own, each of some thirty steps for all: of more designs only the branch is followed.
-MOST_DESIGNS = 4
+# All configurations at a pose take half a millisecond: of more designs, with gaps of some eighty poses each, only the
+# branch is followed.
+MOST_DESIGNS = 250
 # All configurations of groups of more bodies take too long to be asked for at every pose.
 MOST_BODIES = 4
 
@@ -48,13 +48,12 @@ def with_returns(way: Followed, k: int, home: GroupPath, period: float = np.inf)
     for _ in range(MOST_PIECES):
         if not todo.any():
             break
-        i = int(np.argmax(todo.sum(axis=0)))
-        rows = todo[:, i]
-        piece = both_ways(way, k, np.where(rows[:, None], kin.states[:, i], np.nan)[:, None], float(kin.places[i]))
+        every, i, rows = np.arange(len(todo)), np.argmax(todo, axis=1), todo.any(axis=1)
+        piece = both_ways(way, k, np.where(rows[:, None], kin.states[every, i], np.nan)[:, None], kin.places[i])
         low, high = piece.reach[:, :1], piece.reach[:, 1:]
         inside = (kin.places >= low) & (kin.places <= high)
         todo = todo & ~inside
-        todo[:, i] = False
+        todo[every, i] = False
         keeps = rows & ~(inside & (kin.count > 1)).any(axis=1)
         for other in (home, *found):
             keeps = keeps & ~_overlaps(piece.reach, other.reach, period)

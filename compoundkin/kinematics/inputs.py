@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import prod
 from typing import Any
 
@@ -49,14 +49,7 @@ class Inputs(PrintsShort):
 
         The drivers' speeds are then the slopes with respect to `s`.
         """
-        return self._interpolated(s, np.floor(s))
-
-    def before(self, s: Number) -> Inputs:
-        """Do as `at`, with the slopes of the way to a pose there."""
-        return self._interpolated(s, np.ceil(s) - 1.0)
-
-    def _interpolated(self, s: Number, start: Number) -> Inputs:
-        i = np.clip(start.astype(int), 0, max(self.poses - 2, 0))
+        i = self._interval(np.floor(s))
         between = self._each(lambda v: _between(v, i, s - i))
         slopes = {k: (between.drives[k][0], _slope(v[0], i)) for k, v in self.drives.items()}
         return replace(between, drives=slopes)
@@ -70,8 +63,24 @@ class Inputs(PrintsShort):
 
     def pick(self, designs: Number, s: Number) -> Inputs:
         """Return one pose of each of the given designs, at its own place `s`. The poses are a column."""
-        i = np.clip(np.floor(s).astype(int), 0, max(self.poses - 2, 0))
+        i = self._interval(np.floor(s))
         return self._each(lambda v: _picked(v, designs, i, s - i))
+
+    def ahead(self, designs: Number, s: Number) -> Inputs:
+        """Do as `pick`. The drivers' speeds are the slopes with respect to `s`, of the way on from there."""
+        return self._sloped(designs, s, self._interval(np.floor(s)))
+
+    def behind(self, designs: Number, s: Number) -> Inputs:
+        """Do as `ahead`, with the slopes of the way to a pose there."""
+        return self._sloped(designs, s, self._interval(np.ceil(s) - 1.0))
+
+    def _interval(self, start: Number) -> Number:
+        return np.clip(start.astype(int), 0, max(self.poses - 2, 0))
+
+    def _sloped(self, designs: Number, s: Number, i: Number) -> Inputs:
+        picked = partial(_picked, designs=designs, i=i, weight=s - i)
+        drives = {name: (picked(v), _picked_slope(v, designs, i)) for name, (v, *_) in self.drives.items()}
+        return replace(self, ends=self._ends(picked), drives=drives)
 
     def driven(self, drives: Mapping[str, tuple[Number, ...]]) -> Inputs:
         """Return the same dimensions with other driver values."""
@@ -97,10 +106,13 @@ class Inputs(PrintsShort):
         return not any(isinstance(v, np.ndarray) for ends in self.ends.values() for end in ends for v in end)
 
     def _each(self, change: Any) -> Inputs:
-        ends = self.ends
-        if not self._rigid:
-            ends = {name: tuple(mapped(end, change) for end in sides) for name, sides in ends.items()}
-        return replace(self, ends=ends, drives={k: tuple(change(v) for v in vs) for k, vs in self.drives.items()})
+        drives = {k: tuple(change(v) for v in vs) for k, vs in self.drives.items()}
+        return replace(self, ends=self._ends(change), drives=drives)
+
+    def _ends(self, change: Any) -> Mapping[str, Ends]:
+        if self._rigid:
+            return self.ends
+        return {name: tuple(mapped(end, change) for end in sides) for name, sides in self.ends.items()}
 
 
 @dataclass(frozen=True, repr=False)
@@ -184,10 +196,21 @@ def _between(value: Number, i: Number, weight: Number) -> Number:
 def _picked(value: Number, designs: Number, i: Number, weight: Number) -> Number:
     if np.ndim(value) == 0:
         return value
-    rows = designs if value.shape[0] > 1 else np.zeros_like(designs)
+    rows = _rows(value, designs)
     if value.shape[1] == 1:
         return value[rows, :1]
     return (value[rows, i] * (1.0 - weight) + value[rows, i + 1] * weight)[:, None]
+
+
+def _picked_slope(value: Number, designs: Number, i: Number) -> Number:
+    if np.ndim(value) == 0 or value.shape[1] == 1:
+        return 0.0
+    rows = _rows(value, designs)
+    return (value[rows, i + 1] - value[rows, i])[:, None]
+
+
+def _rows(value: Number, designs: Number) -> Number:
+    return designs if value.shape[0] > 1 else np.zeros_like(designs)
 
 
 def _slope(value: Number, i: Number) -> Number:

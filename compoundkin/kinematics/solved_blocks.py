@@ -8,7 +8,7 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.branch import Begin, TrackedBranch
 from compoundkin.kinematics.change_points import pass_through
-from compoundkin.kinematics.double_roots import expanded
+from compoundkin.kinematics.double_roots import NEARLY, expanded
 from compoundkin.kinematics.driver_ways import NEAR, near_groups
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.lost_digits import doubtful
@@ -29,14 +29,14 @@ def settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order:
     Return also the poses whose rates may have lost their digits.
     """
     while True:
-        motion, near, where = _run(solving_order, given, tracker, order)
+        motion, near, where, nearly = _run(solving_order, given, tracker, order)
         near |= near_groups(tracker)
         if near and pass_through(tracker, near):
             continue
         if not tracker.lost or not with_branch(tracker):
-            if not near:
+            if not nearly:
                 return motion, where
-            designs, index, poses = expanded(tracker, near, order)
+            designs, index, poses = expanded(tracker, nearly, order)
             where[designs, index] = False
             return motion.mended(designs, index, poses), where
 
@@ -58,10 +58,16 @@ def with_branch(tracker: Tracker) -> bool:
     return True
 
 
-def _run(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, set[int], Number]:
-    """Solve block by block and gather; also the groups near a limit position, and where rates are doubtful."""
+def _run(
+    solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int
+) -> tuple[Motion, set[int], Number, set[int]]:
+    """Solve block by block and gather; also the groups near limit positions, where rates are doubtful, and the nearest.
+
+    The groups nearest to limit positions are those that may need their double root.
+    """
     designs, poses = given.designs, given.poses
     near: set[int] = set()
+    nearly: set[int] = set()
     where = np.zeros((designs, poses), dtype=bool)
     parts = list(blocks(designs, poses, WHOLE if designs * poses <= WHOLE else BLOCK))
     if len(parts) == 1:
@@ -69,7 +75,8 @@ def _run(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: in
         failed = np.broadcast_to(block.failed, (designs, poses))
         near = _near(block)
         where |= doubtful(solving_order, given, block, near)
-        return Motion(solving_order.structure, order, given, dict(block.world), failed, tracker), near, where
+        motion = Motion(solving_order.structure, order, given, dict(block.world), failed, tracker)
+        return motion, near, where, _nearly(block) if near else near
     store = JoinedBlocks(designs, poses)
     for d, m in parts:
         part = given.cut(d, m)
@@ -77,9 +84,14 @@ def _run(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: in
         store.take(block, d, m)
         here = _near(block)
         near |= here
+        nearly |= _nearly(block) if here else here
         where[d, m] |= doubtful(solving_order, part, block, here)
-    return Motion(solving_order.structure, order, given, store.poses(), store.failed, tracker), near, where
+    return Motion(solving_order.structure, order, given, store.poses(), store.failed, tracker), near, where, nearly
 
 
 def _near(block: Block) -> set[int]:
     return {k for k, margin in block.margins.items() if np.any(margin < NEAR)}
+
+
+def _nearly(block: Block) -> set[int]:
+    return {k for k, margin in block.margins.items() if np.any((margin >= 0.0) & (margin < NEARLY))}

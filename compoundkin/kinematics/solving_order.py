@@ -151,13 +151,16 @@ def run(solving_order: SolvingOrder, block: Block, choose: Choice, upto: int | N
     Each is in the mode that is chosen.
     """
     guide_ends = solving_order.guide_ends
-    guide_ends.mask(block, BEFORE)
+    has_ends, turning = bool(guide_ends.pairs), solving_order.turning
+    if has_ends:
+        guide_ends.mask(block, BEFORE)
     for solver in solving_order.solvers[since:upto]:
         solver.close(block, choose.mode(block, solver))
-        guide_ends.mask(block, solver.index)
-        for link in solver.group.links if solving_order.turning else ():
+        if has_ends:
+            guide_ends.mask(block, solver.index)
+        for link in solver.group.links if turning else ():
             pose = block.world[link]
-            near = choose.angle(solver, link) if link in solving_order.turning and pose.theta is None else None
+            near = choose.angle(solver, link) if link in turning and pose.theta is None else None
             if near is not None:
                 block.world[link] = pose.counted(near)
     return block

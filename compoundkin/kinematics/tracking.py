@@ -18,8 +18,7 @@ from compoundkin.kinematics.configuration import ONLY
 from compoundkin.kinematics.default_modes import default_sign
 from compoundkin.kinematics.first_pose import first_state, letters_shown, nearest_sign, shows_inner
 from compoundkin.kinematics.full_turns import Turns, recounted, turns_of
-from compoundkin.kinematics.group_march import GroupPath
-from compoundkin.kinematics.group_paths import track
+from compoundkin.kinematics.group_paths import GroupPath, track
 from compoundkin.kinematics.group_returns import with_returns
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs

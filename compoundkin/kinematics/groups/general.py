@@ -119,11 +119,16 @@ def surroundings(equations: GroupEquations, block: Block) -> tuple[Number, Numbe
 
 
 def _middle(body: Body, group: Group, ends: Mapping[str, Ends]) -> complex:
-    """Return the point of a body in the midst of the pairs on its base. It is in the base's frame."""
+    """Return the point of a body about which its state tells where it is, in its base's frame.
+
+    It is the origin, unless that lies outside the pairs on the base: then it is the midst of these.
+    """
     pairs = (*group.inner, *group.outer)
     sides = [(pair, side) for pair in pairs for side, name in enumerate(pair.members) if name == body.links[0]]
     own = [np.mean(as_series(ends[pair.name][side].point).c[0]) for pair, side in sides]
-    return complex(np.mean(own)) if own else 0j
+    middle = complex(np.mean(own)) if own else 0j
+    # about the origin poses take fewer products, which is what most of the time goes into
+    return 0j if abs(middle) <= max((abs(place - middle) for place in own), default=0.0) else middle
 
 
 def known_configurations(group: Group, block: Block, size: float, most: int = MOST_BODIES) -> Configurations | None:

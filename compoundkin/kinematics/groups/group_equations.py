@@ -70,16 +70,13 @@ class GroupEquations:
         self.kept = tuple(k for k in range(n) if k not in left_out)
         pins = {pin.number for bar in self.bars for pin in bar.pins}
         self.others = tuple(k for k in range(len(pairs)) if k not in pins)
+        # what makes a change of the state a pure number: parts of the size, radians
+        self.weights = np.tile([1.0 / size, 1.0 / size, 1.0], len(self.kept))
 
     @property
     def width(self) -> int:
         """How many numbers a state has."""
         return 3 * len(self.kept)
-
-    @property
-    def weights(self) -> Number:
-        """The weights that make a change of the state a pure number. They are parts of the size, radians."""
-        return np.tile([1.0 / self.size, 1.0 / self.size, 1.0], len(self.kept))
 
     def state(self, bodies: list[Pose]) -> Number:
         """Return the state of all bodies' poses, at their leading coefficients."""
