@@ -76,7 +76,7 @@ def test_one_driver_takes_a_plain_number() -> None:
         ({}, {"speed": 3}, "speed: there are several drivers; give one for each by name"),
         ({}, {"speed": {"uper": 3}}, r"speed\.uper: there is no driver"),
         ({}, {"jerk": {"uper": 3}, "acceleration": {"x": 1}}, r"(?s)acceleration\.x.*jerk\.uper"),
-        ({"upper": "all"}, {}, "upper: 'all' is not a number"),
+        ({"upper": "all"}, {}, "upper: a text is no number"),
         ({"upper": [0, [1]]}, {}, "upper: .* is not a number"),
         ({"upper": [0, np.nan]}, {}, "upper: the value is empty or not finite"),
         ({"upper": []}, {}, "upper: the value is empty or not finite"),

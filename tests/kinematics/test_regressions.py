@@ -105,11 +105,9 @@ GUIDED = (
         ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), radius="10")]),
         ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), radius=None)]),
         ("cams[0].radius", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), radius=1j)]),
-        ("cams[0].inside", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), inside="no")]),
         ("cams[0].profile.middle", [*GUIDED, ck.cam("follower", on="cam", profile=ck.profiles.disc(30, np.nan))]),
         ("arcs[0].radius", [*GUIDED[:3], ck.arc("follower", on="frame", centre_at="A", radius="x"), GUIDED[3]]),
         ("rollings[0].radius", [*GUIDED[:3], ck.roll("follower", on="frame", through="A", radius=None), GUIDED[3]]),
-        ("gears[0].internal", [*WHEELS, ck.gear("one", "two", teeth=(20, 40), internal="no")]),
         ("gears[0].phase", [*WHEELS, ck.gear("one", "two", teeth=(20, 40), phase="30")]),
     ],
 )
@@ -119,18 +117,25 @@ def test_texts_in_place_of_numbers_are_told_by_their_key(where, items):
     assert where in [problem.where for problem in caught.value.problems]
 
 
+def test_texts_in_place_of_flags_are_told_by_their_word():
+    with pytest.raises(ck.errors.InvalidInput, match="inside: .*write True or False"):
+        ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), inside="no")
+    with pytest.raises(ck.errors.InvalidInput, match="internal: .*write True or False"):
+        ck.gear("one", "two", teeth=(20, 40), internal="no")
+
+
 @pytest.mark.parametrize(
-    "make",
+    ("make", "where"),
     [
-        lambda: ck.profiles.disc("x"),
-        lambda: ck.profiles.disc([10, 20]),
-        lambda: ck.profiles.profile(None),
-        lambda: ck.profiles.profile(5),
-        lambda: ck.profiles.formula(np.exp, "a", 1),
+        (lambda: ck.profiles.disc("x"), "radius"),
+        (lambda: ck.profiles.disc([10, 20]), "radius"),
+        (lambda: ck.profiles.profile(None), "profile.points"),
+        (lambda: ck.profiles.profile(5), "profile.points"),
+        (lambda: ck.profiles.formula(np.exp, "a", 1), "low"),
     ],
 )
-def test_what_is_no_profile_is_told(make):
-    with pytest.raises(ck.errors.InvalidMechanism, match="profile"):
+def test_what_is_no_profile_is_told(make, where):
+    with pytest.raises((ck.errors.InvalidMechanism, ck.errors.InvalidInput), match=f"^(1 problem:\n *)?{where}: "):
         make()
 
 
@@ -141,7 +146,7 @@ LIFT = ck.laws.program(ck.laws.rise(20, over=ck.deg(180)), ck.laws.fall(20, over
     ("key", "value"), [("base", None), ("base", True), ("offset", 1j), ("angle", None), ("clockwise", "no")]
 )
 def test_a_cam_cannot_be_made_of_what_is_no_number(key, value):
-    with pytest.raises(ck.errors.InvalidMechanism) as caught:
+    with pytest.raises(ck.errors.InvalidInput) as caught:
         ck.profiles.synthesise(LIFT, **{"base": 60, key: value})
     assert [problem.where for problem in caught.value.problems] == [key]
 

@@ -405,7 +405,6 @@ def test_a_profile_that_crosses_itself_is_refused_with_the_place() -> None:
         ({"at": "Q"}, "cams[0].at", "no point 'Q'"),
         ({"radius": -1.0}, "cams[0].radius", "is not a length"),
         ({"radius": np.nan}, "cams[0].radius", "not finite"),
-        ({"profile": "oval"}, "cams[0].profile", "is no profile"),
         ({"profile": ck.profiles.disc(-3)}, "cams[0].profile.radius", "not a positive length"),
         ({"profile": ck.profiles.profile([0, 1, 1j])}, "cams[0].profile.points", "3 points are too few"),
     ],
@@ -415,6 +414,11 @@ def test_mistakes_in_a_cam_have_a_place(words: dict[str, Any], place: str, what:
     with pytest.raises(ck.errors.InvalidMechanism) as caught:
         cam_and(*slider(), ck.cam(**given), points={"X": 0})
     assert any(p.where == place and what in p.what for p in caught.value.problems), caught.value
+
+
+def test_a_word_is_no_profile() -> None:
+    with pytest.raises(ck.errors.InvalidInput, match="profile: 'oval' is no profile; profiles.disc"):
+        ck.cam("follower", on="cam", profile="oval")  # type: ignore[arg-type]
 
 
 def test_a_larger_group_says_where_its_slot_may_end() -> None:
@@ -438,4 +442,4 @@ def test_a_larger_group_says_where_its_slot_may_end() -> None:
         found = ck.gaps(motion)
     assert motion.assembled[0]
     assert found
-    assert found[-1].reason.endswith("or where R leaves the profile of plate at an end")
+    assert "or where R leaves the profile of plate at an end" in found[-1].reason
