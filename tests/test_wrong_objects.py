@@ -68,6 +68,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "cam": {"link": "a", "on": "b", "at": "A", "profile": ck.profiles.disc(1), "radius": 0.0, "inside": False},
         "circuits": {"mechanism": m, "driver": "crank", "values": None, "between": None, "design": 0},
         "configurations": {"mechanism": m, "values": {"crank": 1.0}},
+        "cylinder": {"link": "a", "point": "A", "to": "b", "at": "B", "stroke": None, "name": "n"},
         "decompose": {"mechanism": m},
         "deg": {"angle": 3.0},
         "draw": {"what": motion, "at": None, "kind": "sketch", "pose": 0, "design": 0, "ghosts": 0, "paths": (),

@@ -118,9 +118,9 @@ def test_texts_in_place_of_numbers_are_told_by_their_key(where, items):
 
 
 def test_texts_in_place_of_flags_are_told_by_their_word():
-    with pytest.raises(ck.errors.InvalidInput, match="inside: .*write True or False"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"inside: .*write True or False"):
         ck.cam("follower", on="cam", profile=ck.profiles.disc(30, 5), inside="no")
-    with pytest.raises(ck.errors.InvalidInput, match="internal: .*write True or False"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"internal: .*write True or False"):
         ck.gear("one", "two", teeth=(20, 40), internal="no")
 
 

@@ -417,7 +417,7 @@ def test_mistakes_in_a_cam_have_a_place(words: dict[str, Any], place: str, what:
 
 
 def test_a_word_is_no_profile() -> None:
-    with pytest.raises(ck.errors.InvalidInput, match="profile: 'oval' is no profile; profiles.disc"):
+    with pytest.raises(ck.errors.InvalidInput, match=r"profile: 'oval' is no profile; profiles\.disc"):
         ck.cam("follower", on="cam", profile="oval")  # type: ignore[arg-type]
 
 
