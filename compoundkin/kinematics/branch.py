@@ -14,6 +14,10 @@ from compoundkin.kinematics.group_paths import GroupPath
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solving_order import SolvingOrder
 
+# Motions are differentiated over places a little beyond their ends too: nearer than this (of a place) the state of the
+# end is near enough for Newton.
+BESIDE = 0.5
+
 
 @dataclass(frozen=True)
 class Begin:
@@ -63,7 +67,9 @@ class Course:
         """Return the places of a driver's values. The nearest to the drawn one comes first."""
         way = value - (self.start if len(self.start) == 1 else self.start[designs[:, 0]])
         if not self.wraps:
-            return (self.at + way / self.step,)
+            place = self.at + way / self.step
+            inside = np.clip(place, 0.0, self.count - 1.0)
+            return (np.where(np.abs(place - inside) < BESIDE, inside, place),)
         way = way - whole_turns(way)
         return tuple(self.at + around / self.step for around in (way, way - np.copysign(TURN, way)))
 

@@ -61,6 +61,12 @@ def test_what_other_seeds_found_is_right(said: str) -> None:
     assert tried(seed, number, small=few).faults == []
 
 
+@pytest.mark.parametrize(("seed", "number"), [(910, 55), (911, 7)])
+def test_motions_that_once_could_not_be_differentiated_are_verified(seed: int, number: int) -> None:
+    """Beyond the end of a motion that came back through a whole turn, and where steps danced in rounding."""
+    assert tried(seed, number, small=True, verified=True).faults == []
+
+
 def test_mutated_files_answer_or_say_what_is_wrong() -> None:
     assert faults(mutated, range(200)) == []
 
