@@ -65,6 +65,9 @@ def newton(
 
 # What a step with the matrix of an earlier one leaves is rounding below this: pure numbers of about one.
 EXACT = 1e-16
+# Steps that dance below this until none are left have converged: near a singularity they are rounding times its inverse
+# distance. At a singularity itself they are greater.
+NOISE = 1e-12
 # Steps that fall more slowly than this need a matrix of their own: near a singularity it changes quickly.
 SLOW = 0.1
 
@@ -123,8 +126,7 @@ def chord_newton(
         closed = rested & (largest_of(residual) <= stop.closed) if rested.any() else rested
         if not np.any(~closed & np.isfinite(last)):
             break
-    # near a singularity steps may dance in rounding until none are left: their digits are what the pose has
-    return found, (last <= stop.converged) & (largest_of(residual) <= stop.closed)
+    return found, (rested | (last <= NOISE)) & (largest_of(residual) <= stop.closed)
 
 
 def largest_of(values: list[Number]) -> Number:

@@ -40,8 +40,8 @@ def four_bar_loops(structure: Structure) -> Mapping[int, FourBarLoops]:
     >>> from compoundkin.structure import decompose
     >>> links = link("frame", "A", "D"), link("crank", "A", "B"), link("coupler", "B", "C"), link("rocker", "C", "D")
     >>> loops = four_bar_loops(decompose(Mechanism("m", *links, drive("crank"))))[0]
-    >>> loops.opposite
-    (Place(link='frame', letter='A'),)
+    >>> [place.letter for place in loops.opposite]
+    ['A']
     """
     before = set(structure.ground.links)
     found: dict[int, FourBarLoops] = {}

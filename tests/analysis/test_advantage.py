@@ -140,7 +140,7 @@ def test_bad_input_says_what_is_wrong() -> None:
         mechanical_advantage(motion, "rocker", "frame")
     with pytest.raises(ck.errors.UnknownName, match="no such point"):
         mechanical_advantage(motion, ForcePort("coupler", "Q", 0.0), "crank")
-    with pytest.raises(ck.errors.InvalidInput, match="output: 3 is no place"):
+    with pytest.raises(ck.errors.InvalidInput, match="output: 3 is no text or torque port"):
         mechanical_advantage(motion, 3, "crank")  # type: ignore[arg-type]
     with pytest.raises(ck.errors.InvalidInput, match=r"output.angle: 'up' is not an angle"):
         mechanical_advantage(motion, ForcePort("coupler", "C", "up"), "crank")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,8 +10,7 @@ from hypothesis import strategies as st
 from compoundkin.base.arrays import TURN, Number, column, entry, row, turns_above, unwrapped, whole_turns, wrapped
 from compoundkin.base.bracketing import bisected, false_position, greatest, least
 from compoundkin.base.continuation import StepLengths, Taken, corrected_across, follow, runge_kutta, tangent
-from compoundkin.base.linear import Inverse
-from compoundkin.base.newton import ChordStop, Rest, chord_newton, gauss_newton, newton
+from compoundkin.base.newton import Rest, gauss_newton, newton
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, constant
 
@@ -218,18 +215,3 @@ def test_the_greatest_value_is_found_between_bounds_or_at_one() -> None:
     low, start, high = np.full(2, -2.0), np.array([-1.9, 1.5]), np.full(2, 2.0)
     assert greatest(rise, (low, start, high), 1e-8, 60) == pytest.approx(np.array([1.0, 0.0]), abs=1e-5)
     assert greatest(rise, (low[:1], low[:1], high[:1] - 1.5), 1e-8, 60) == pytest.approx(0.5)
-
-
-def test_steps_that_dance_in_rounding_have_converged() -> None:
-    """Near a limit chord steps fall by a fraction only, and the last ones are noise."""
-    noise = np.random.default_rng(0)
-
-    def system(x: list[Number]) -> tuple[list[Number], Callable[[], Inverse]]:
-        # a double root but for 1e-9, evaluated with the rounding of its terms
-        value = x[0] ** 2 - 2.0 * x[0] + (1.0 - 1e-9)
-        return [value + 2e-16 * noise.standard_normal()], lambda: Inverse([{0: 2.0 * (x[0] - 1.0)}], 1)
-
-    starts = 1.0 + np.sqrt(1e-9) * np.linspace(1.01, 60.0, 400)
-    for start in starts:
-        found, closed = chord_newton(system, [np.array([start])], [1.0], ChordStop(1e-8, 1e-12, 1e-3, 12))
-        assert bool(closed[0]) == (abs(float(found[0][0]) - 1.0 - np.sqrt(1e-9)) < 1e-8)

@@ -222,7 +222,7 @@ def test_a_check_shows_every_finding_and_which_one_fails(motion: ck.results.Moti
     (table,) = page.tables
     assert [row[0] for row in table[1:]] == [finding.name for finding in check.findings]
     assert {row[-1] for row in table[1:]} == {"pass"}
-    assert f"Checks of {check.poses} poses: all passed" in page.text
+    assert f"Checks of {check.poses} poses: all {len(check.findings)} checks passed" in page.text
 
     first, *others = check.findings
     failed = dataclasses.replace(check, findings=(dataclasses.replace(first, value=0.25), *others))

@@ -9,6 +9,7 @@ from compoundkin.analysis.centres.derivation_steps import BY_RATES, Given
 from compoundkin.analysis.centres.driver_rates import DriverRates, known, pick
 from compoundkin.analysis.centres.evaluation import Evaluation, joining
 from compoundkin.analysis.centres.homogeneous import cross, norm
+from compoundkin.analysis.centres.rate_transport import LINEAR, MOVED
 from compoundkin.base.series import Number
 
 # Where errors are magnified more than this (rounding becomes 1e-11), other lines are tried for the centre.
@@ -97,7 +98,8 @@ class _PoorPoses:
         for c in crossed:
             twist, error = rates.relative(*c)
             length = norm(twist)
-            found = np.where(self._spread(c) > POOR, error / length, np.inf)
+            spread = error / length
+            found = np.where((self._spread(c) > POOR) & (spread < LINEAR / MOVED), spread, np.inf)
             self._take(c, twist / length, known(found), none, none)
 
     def _take(self, c: Couple, point: Number, spread: Number, first: Number, second: Number) -> bool:

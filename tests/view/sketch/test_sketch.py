@@ -273,7 +273,7 @@ def test_unknown_names_are_told() -> None:
         ck.draw(four_bar(), at={"crnk": 1.0})
     with pytest.raises(ck.errors.UnknownName, match="there is no such point"):
         ck.draw(four_bar(), paths="Q")
-    with pytest.raises(ck.errors.InvalidInput, match="no motion and no mechanism"):
+    with pytest.raises(ck.errors.InvalidInput, match="no motion or mechanism"):
         ck.draw("six-bar")
 
 
