@@ -40,7 +40,7 @@ SOMEWHERE = 1.0
 # Starts for a mechanism that is not drawn completely, the first one from what is drawn alone; fewer for a large one,
 # so that all together have no more than so many columns.
 TRIES = 40
-COLUMNS = 4000
+COLUMNS = 1000
 # The design and pose at which a drawing is read.
 FIRST = (0, 0)
 
