@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.cli.test_process import interrupts_heard
+
 ROOT = Path(__file__).parents[2]
 RUN = [sys.executable, "-m", "compoundkin"]
 
@@ -94,7 +96,9 @@ def test_an_ended_film_leaves_nothing_behind(number: signal.Signals, code: int, 
     here.mkdir()
     env = {**os.environ, "TMPDIR": str(temporary), "PYTHONPATH": str(ROOT)}
     words = [*RUN, "animate", "six-bar", "--seconds", "60", "--size", "1200", "-o", "film.mp4"]
-    with subprocess.Popen(words, cwd=here, env=env, stderr=subprocess.PIPE) as process:
+    with interrupts_heard():
+        process = subprocess.Popen(words, cwd=here, env=env, stderr=subprocess.PIPE)
+    with process:
         begun = time.monotonic()
         while not list(temporary.iterdir()) and time.monotonic() - begun < 60.0:
             time.sleep(0.05)
