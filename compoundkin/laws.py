@@ -19,12 +19,15 @@ from compoundkin.model.laws import (
     constant_speed,
     dwell,
     fall,
+    least_time,
     program,
     rise,
+    synchronised,
     time_table,
 )
 
 __all__ = [
     "ConstantAcceleration", "ConstantSpeed", "FunctionLaw", "Law", "Program", "ProgramSegment", "TimeTable",
-    "constant_acceleration", "constant_speed", "dwell", "fall", "program", "rise", "time_table",
+    "constant_acceleration", "constant_speed", "dwell", "fall", "least_time", "program", "rise", "synchronised",
+    "time_table",
 ]  # fmt: skip

@@ -152,14 +152,20 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "laws.ConstantSpeed": {"speed": 1.0, "start": 0.0},
         "laws.FunctionLaw": {"f": np.sin},
         "laws.Program": {"segments": h["program"].segments, "start": 0.0, "repeat": False},
-        "laws.ProgramSegment": {"law": "cycloidal", "over": 1.0, "rise": 1.0},
+        "laws.ProgramSegment": {"law": "least-time", "over": 0.0, "rise": 1.0, "speed": 1.0, "acceleration": 1.0,
+                                "jerk": 1.0},
         "laws.TimeTable": {"times": np.arange(9.0), "values": np.arange(9.0), "degree": 5, "repeat": False},
         "laws.constant_acceleration": {"acceleration": 1.0, "speed": 1.0, "start": 0.0},
         "laws.constant_speed": {"speed": 1.0, "start": 0.0},
         "laws.dwell": {"over": 1.0},
-        "laws.fall": {"amount": 1.0, "over": 1.0, "law": "cycloidal"},
+        "laws.fall": {"amount": 1.0, "over": 1.0, "law": "cycloidal", "speed": None, "acceleration": None,
+                      "jerk": None},
+        "laws.least_time": {"distance": 1.0, "speed": 1.0, "acceleration": 1.0, "jerk": 1.0, "over": None,
+                            "start": 0.0},
         "laws.program": {"start": 0.0, "repeat": False},
-        "laws.rise": {"amount": 1.0, "over": 1.0, "law": "cycloidal"},
+        "laws.rise": {"amount": 1.0, "over": 1.0, "law": "cycloidal", "speed": None, "acceleration": None,
+                      "jerk": None},
+        "laws.synchronised": {},
         "laws.time_table": {"times": range(9), "values": range(9), "degree": 5, "repeat": False},
         "plots.centrodes": {**on, "pose": 0, "design": 0, "every": None, "title": None, "size": None, "on": "frame"},
         "plots.circuits": {"what": m, "driver": "crank", "values": None, "between": None, "design": 0, "title": None,
@@ -188,8 +194,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
 # Arguments without a name: what is given for one of them.
 MORE = {
     "Mechanism": "items", "link": "letters", "mode": "links", "plot": "names", "chains.mechanism_from": "drivers",
-    "laws.program": "segments", "plots.circuits": "names", "plots.hodograph": "names", "plots.paths": "points",
-    "plots.polar": "names",
+    "laws.program": "segments", "laws.synchronised": "programs", "plots.circuits": "names",
+    "plots.hodograph": "names", "plots.paths": "points", "plots.polar": "names",
 }  # fmt: skip
 
 

@@ -14,8 +14,8 @@ from compoundkin.model.attributes import ANGLE
 from compoundkin.model.elements import Drive
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import Law
-from compoundkin.model.laws.cam_laws import LAWS
-from compoundkin.model.laws.motion_programs import Program, ProgramSegment
+from compoundkin.model.laws.motion_programs import Program
+from compoundkin.model.laws.program_segments import LIMITS, NAMES, ProgramSegment
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import KINDS, WRITTEN
 from compoundkin.model.pairs.cylinder import Cylinder
@@ -86,9 +86,10 @@ _PIN_IS_ANGLE = next(kind.free_is_angle for kind in KINDS if not kind.table)
 KIND = "kind"
 # The law whose segments need not say how far they rise.
 DWELL = "dwell"
-RISING = tuple(name for name in LAWS if name != DWELL)
-# The spans of a cam's program are of its rotation.
-SEGMENT = tuple(replace(key, kind="turn") if key.kind == "span" else key for key in ProgramSegment.keys)
+RISING = tuple(name for name in NAMES if name != DWELL)
+# The spans of a cam's program are of its rotation, and limits are rates by that, in radians.
+_OF_CAMS: Mapping[str, Kind] = {"over": "turn", **dict.fromkeys(LIMITS, "number")}
+SEGMENT = tuple(replace(key, kind=_OF_CAMS.get(key.name, key.kind)) for key in ProgramSegment.keys)
 # It is told what repeats by the cam.
 PROGRAM = (
     Key("segments", "turned", "Its dwells, rises and falls over a full turn, one after another.", required=True),

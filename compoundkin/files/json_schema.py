@@ -14,7 +14,7 @@ from compoundkin.files.document import KIND, PROGRAM, SEGMENT
 from compoundkin.model.elements import FRAME
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import WRITTEN as LAWS
-from compoundkin.model.laws.motion_programs import ProgramSegment
+from compoundkin.model.laws.program_segments import ProgramSegment
 from compoundkin.model.profiles import WRITTEN as PROFILES
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"

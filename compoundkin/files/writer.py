@@ -15,7 +15,8 @@ from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.elements import Drive, Expectation, Link
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import FunctionLaw
-from compoundkin.model.laws.motion_programs import Program, ProgramSegment
+from compoundkin.model.laws.motion_programs import Program
+from compoundkin.model.laws.program_segments import ProgramSegment
 from compoundkin.model.mechanism import Mechanism, same
 from compoundkin.model.pairs import WRITTEN
 from compoundkin.model.written import CYLINDERS
@@ -89,9 +90,10 @@ def _tagged(item: Any, angle: bool) -> dict[str, Any]:
 
 
 def _segment(item: ProgramSegment, keys: tuple[Key, ...], angle: bool) -> dict[str, Any]:
-    """Whatever is not a dwell says how far it rises, even by nothing."""
+    """Whatever is not a dwell says how far it rises, even by nothing. The least time follows from its limits."""
     rise = {} if item.law == DWELL else {"rise": exact_numbers.coordinate(item.rise, angle)}
-    return _table(item, keys, angle) | rise
+    said = tuple(key for key in keys if key.name != "over" or not item.is_fastest)
+    return _table(item, said, angle) | rise
 
 
 def _program(item: Program, angle: bool) -> Any:

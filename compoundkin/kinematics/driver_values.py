@@ -145,7 +145,7 @@ def times_of(mechanism: Mechanism, values: Mapping[str, Any] | None, time: Any) 
     They are `time`, else those that the mechanism states, else 73 over the range on which all laws agree. Raises
     InvalidInput for times that are not numbers, and where laws need times that nothing tells.
 
-    >>> from compoundkin.model.laws.motion_programs import program, rise
+    >>> from compoundkin.model.laws import program, rise
     >>> from compoundkin.model.elements import drive, link
     >>> law = program(rise(1.0, over=2.0))
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank", law=law))

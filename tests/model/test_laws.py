@@ -22,7 +22,8 @@ from compoundkin.cli import cli
 from compoundkin.files import dumps, loads, schema
 from compoundkin.model.laws import FunctionLaw, Law
 from compoundkin.model.laws.function_law import differentiated
-from compoundkin.model.laws.motion_programs import Program, program, rise
+from compoundkin.model.laws.motion_programs import Program, program
+from compoundkin.model.laws.program_segments import rise
 from compoundkin.model.laws.time_tables import TimeTable
 from tests.model.test_programs import MOVING, programs
 

@@ -8,7 +8,8 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.model.laws.constant_laws import ConstantAcceleration, ConstantSpeed
 from compoundkin.model.laws.function_law import FunctionLaw
-from compoundkin.model.laws.motion_programs import Program, ProgramSegment, dwell, fall, program, rise
+from compoundkin.model.laws.motion_programs import Program, least_time, program, synchronised
+from compoundkin.model.laws.program_segments import ProgramSegment, dwell, fall, rise
 from compoundkin.model.laws.time_tables import TimeTable
 
 __all__ = [
@@ -25,8 +26,10 @@ __all__ = [
     "constant_speed",
     "dwell",
     "fall",
+    "least_time",
     "program",
     "rise",
+    "synchronised",
     "time_table",
 ]
 

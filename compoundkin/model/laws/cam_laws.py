@@ -101,9 +101,18 @@ def unit_pieces(law: str) -> tuple[PositionPiece, ...]:
     >>> [piece.start for piece in unit_pieces("modified-sine")]
     [0.0, 0.125, 0.875]
     """
+    return integrated(LAWS[law])
+
+
+def integrated(parts: Sequence[AccelerationPiece]) -> tuple[PositionPiece, ...]:
+    """Return the positions that accelerations make, from rest, with a rise of 1.
+
+    >>> [piece.start for piece in integrated((AccelerationPiece(0.5, (1.0,)), AccelerationPiece(0.5, (-1.0,))))]
+    [0.0, 0.5]
+    """
     start = place = speed = 0.0
     pieces = []
-    for part in LAWS[law]:
+    for part in parts:
         piece = _integrated(part, start, place, speed + part.leap)
         start, place, speed = start + part.span, piece.derivative(0, part.span), piece.derivative(1, part.span)
         pieces.append(piece)

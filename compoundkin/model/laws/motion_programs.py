@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, TypeAlias
 
@@ -12,50 +12,15 @@ import numpy as np
 from compoundkin.base.argument_forms import is_finite_real
 from compoundkin.base.arguments import checked
 from compoundkin.base.composition import composed
-from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
-from compoundkin.model.laws.cam_laws import JUMP, LAWS, Discontinuity, PieceTable, PositionPiece, jumps, unit_pieces
+from compoundkin.model.laws.cam_laws import JUMP, Discontinuity, PieceTable, PositionPiece, jumps
+from compoundkin.model.laws.program_segments import LEAST_TIME, ProgramSegment
 
 Array: TypeAlias = np.ndarray[Any, Any]
 
 _WORDS = "write laws.rise(...), laws.fall(...), laws.dwell(...)"
-
-
-@dataclass(frozen=True)
-class ProgramSegment:
-    """A part of a program. A law, the span it takes, and how far it rises (negative: falls; a dwell 0).
-
-    Raises InvalidMechanism for a law that there is not, a span that is not positive, a dwell that rises.
-
-    >>> ProgramSegment("cycloidal", over=2.0, rise=10.0).rise
-    10.0
-    """
-
-    law: str
-    over: float
-    rise: float = 0.0
-
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("law", "name", f"One of {', '.join(LAWS)}.", required=True),
-        Key("over", "span", "The span it takes: seconds, or of a cam's rotation.", required=True),
-        Key("rise", "coordinate", "How far it rises; negative for a fall.", default=0.0),
-    )
-
-    def __post_init__(self) -> None:
-        problems = list(self._problems())
-        if problems:
-            raise InvalidMechanism(problems)
-
-    def _problems(self) -> Iterator[Problem]:
-        if not isinstance(self.law, str) or self.law not in LAWS:
-            yield Problem("segment.law", f"there is no law {self.law!r}", nearest(str(self.law), list(LAWS)))
-        if not is_finite_real(self.over) or self.over <= 0.0:
-            yield Problem("segment.over", f"{self.over!r} is not a span", "give a positive number")
-        if not is_finite_real(self.rise):
-            yield Problem("segment.rise", f"{self.rise!r} is not a finite number")
-        elif isinstance(self.law, str) and self.law == "dwell" and self.rise != 0.0:
-            yield Problem("segment.rise", "a dwell rises by 0", "choose another law, or leave the rise out")
 
 
 @dataclass(frozen=True)
@@ -65,6 +30,7 @@ class Program:
     It maps a coordinate (the rotation of a cam, or time in seconds) to another one, both in the user's units.
     Raises InvalidMechanism for what is not a segment.
 
+    >>> from compoundkin.model.laws.program_segments import dwell, fall, rise
     >>> lift = program(rise(10.0, over=1.0), dwell(0.5), fall(10.0, over=1.0), dwell(0.5))
     >>> [round(c, 9) for c in lift.at(Series((0.5, 1.0))).c]
     [5.0, 20.0]
@@ -142,6 +108,7 @@ class Program:
         (None: if it `repeats`); a period that does not end where it began goes on from there. At a jump
         the derivatives are those behind it, at the very end those before it.
 
+        >>> from compoundkin.model.laws.program_segments import rise
         >>> program(rise(1.0, 2.0, "harmonic")).at(Series((np.array([-1.0, 1.0, 3.0]),))).c[0].round(9).tolist()
         [0.0, 0.5, 1.0]
         """
@@ -161,7 +128,7 @@ class Program:
     def pieces(self) -> tuple[PositionPiece, ...]:
         """Its pieces, from the first to the last."""
         places = zip(self.breaks[:-1].tolist(), self.values[:-1].tolist(), self.segments, strict=True)
-        return tuple(piece.scaled(at, s.over, value, s.rise) for at, value, s in places for piece in unit_pieces(s.law))
+        return tuple(piece.scaled(at, s.over, value, s.rise) for at, value, s in places for piece in s.shape)
 
     @cached_property
     def _table(self) -> PieceTable:
@@ -170,18 +137,24 @@ class Program:
     def discontinuities(self, repeat: bool | None = None) -> tuple[Discontinuity, ...]:
         """Return the places where velocity or acceleration jump, both ends included.
 
+        >>> from compoundkin.model.laws.program_segments import rise
         >>> [(d.place, d.order) for d in program(rise(1.0, over=2.0, law="parabolic")).discontinuities()]
         [(0.0, 2), (1.0, 2), (2.0, 2)]
         """
         goes_on = self.repeats if repeat is None else repeat
-        natural = [max(abs(s.rise) / s.over**order for s in self.segments) for order in (1, 2)]
-        return jumps(self.pieces, self.period, natural, goes_on)
+        return jumps(self.pieces, self.period, [self._natural(order) for order in (1, 2)], goes_on)
+
+    def _natural(self, order: int) -> float:
+        """How great a derivative is: that of the mean speed, or where a piece begins."""
+        mean = max(abs(s.rise) / s.over**order for s in self.segments)
+        return max(mean, *(abs(piece.derivative(order, 0.0)) for piece in self.pieces))
 
 
 @checked
 def program(*segments: ProgramSegment, start: float = 0.0, repeat: bool = False) -> Program:
     """Return a program of dwells, rises and falls.
 
+    >>> from compoundkin.model.laws.program_segments import dwell, rise
     >>> program(dwell(1.0), rise(2.0, over=1.0), start=3.0).values.tolist()
     [3.0, 3.0, 5.0]
     """
@@ -189,30 +162,56 @@ def program(*segments: ProgramSegment, start: float = 0.0, repeat: bool = False)
 
 
 @checked
-def rise(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
-    """Return a rise by an amount over a span.
+def least_time(
+    distance: float,
+    *,
+    speed: float | None = None,
+    acceleration: float | None = None,
+    jerk: float | None = None,
+    over: float | None = None,
+    start: float = 0.0,
+) -> Program:
+    """Return the law that goes a distance in the least time, from rest to rest.
 
-    >>> rise(10.0, over=2.0, law="3-4-5").law
-    '3-4-5'
+    The distance may be negative. Speed, acceleration and jerk (rad/s or length/s, and so on) are the greatest there
+    may be; one left out is not limited, but not acceleration and jerk both. Without `jerk` the speed over time is a
+    trapezoid or triangle, with it the acceleration is continuous: the s-curve of up to seven parts. A time `over`
+    that is longer than the least stretches it.
+
+    Raises InvalidMechanism for limits that are not positive, a distance of 0, a time too short.
+
+    Source: L. Biagiotti, C. Melchiorri, Trajectory Planning for Automatic Machines and Robots, Springer 2008, ch. 3.
+
+    >>> least_time(10.0, speed=5.0, acceleration=10.0).period  # 10 / 5 + 5 / 10
+    2.5
+    >>> least_time(10.0, speed=5.0, acceleration=10.0, jerk=40.0).period  # and 10 / 40
+    2.75
     """
-    return ProgramSegment(law, over, amount)
+    return Program((ProgramSegment(LEAST_TIME, over or 0.0, distance, speed, acceleration, jerk),), start)
 
 
 @checked
-def fall(amount: float, over: float, law: str = "cycloidal") -> ProgramSegment:
-    """Return a fall by an amount over a span: a rise by its opposite.
+def synchronised(*programs: Program) -> tuple[Program, ...]:
+    """Stretch programs in time, so that all take as long as the slowest.
 
-    >>> fall(10.0, over=2.0).rise
-    -10.0
+    Several axes then begin and end together. None gets faster, so that limits are kept. Raises InvalidMechanism
+    where there is none.
+
+    >>> slow, fast = synchronised(least_time(8.0, acceleration=2.0), least_time(1.0, acceleration=2.0))
+    >>> slow.period, fast.period
+    (4.0, 4.0)
     """
-    return ProgramSegment(law, over, -amount)
+    if not programs:
+        raise InvalidMechanism(Problem("programs", "there is none to stretch", "give two or more"))
+    longest = max(one.period for one in programs)
+    return tuple(_stretched(one, longest) for one in programs)
 
 
-@checked
-def dwell(over: float) -> ProgramSegment:
-    """Return a dwell over a span.
-
-    >>> dwell(2.0).law
-    'dwell'
-    """
-    return ProgramSegment("dwell", over)
+def _stretched(one: Program, period: float) -> Program:
+    """Return a program that takes a given time, to the last digit."""
+    if one.period == period:
+        return one
+    spans = [segment.over * (period / one.period) for segment in one.segments]
+    before = float(np.cumsum([0.0, *spans[:-1]])[-1])
+    spans[-1] = period - before
+    return replace(one, segments=tuple(replace(s, over=over) for s, over in zip(one.segments, spans, strict=True)))

@@ -153,7 +153,7 @@ def synthesise(
 
     Source: R. L. Norton, Cam Design and Manufacturing Handbook, 2nd ed., chapter 13.
 
-    >>> from compoundkin.model.laws.motion_programs import dwell, fall, program, rise
+    >>> from compoundkin.model.laws import dwell, fall, program, rise
     >>> quarter = np.pi / 2
     >>> lift = program(dwell(quarter), rise(10, over=quarter), dwell(quarter), fall(10, over=quarter))
     >>> cam = synthesise(lift, base=30, follower="roller", roller=8)

@@ -13,7 +13,8 @@ import numpy as np
 from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY
 from compoundkin.model.laws import ConstantAcceleration, ConstantSpeed, FunctionLaw, Law
-from compoundkin.model.laws.motion_programs import Program, ProgramSegment
+from compoundkin.model.laws.motion_programs import Program
+from compoundkin.model.laws.program_segments import LIMITS, ProgramSegment
 from compoundkin.model.laws.time_tables import TimeTable
 from compoundkin.view.report.report_data import Cell, Column
 
@@ -188,7 +189,13 @@ class Wording:
         if segment.law == "dwell":
             return f"dwell {over}"
         way = "rise" if segment.rise >= 0.0 else "fall"
-        return f"{segment.law} {way} by {self._value(abs(segment.rise))} {over}"
+        return f"{segment.law} {way} by {self._value(abs(segment.rise))} {over}{self._limits(segment)}"
+
+    def _limits(self, segment: ProgramSegment) -> str:
+        """The limits that it keeps, if any."""
+        given = [(getattr(segment, name), order) for order, name in enumerate(LIMITS, 1)]
+        told = [self._rate(value, order) for value, order in given if value is not None]
+        return f" within {listed(told)}" if told else ""
 
     def _jumps(self, law: Program) -> Iterator[str]:
         """A sentence for velocity, one for acceleration, where they jump."""
