@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from compoundkin import chains as chains
     from compoundkin import composing as composing
     from compoundkin import coupler as coupler
+    from compoundkin import dyads as dyads
     from compoundkin import equivalents as equivalents
     from compoundkin import errors as errors
     from compoundkin import laws as laws
@@ -127,7 +128,7 @@ _LATE = {
 
 # The modules that hold all other public names: no rooms, each a list of what rooms have.
 _MODULES = (
-    *("advantage", "cams", "catalog", "chains", "composing", "coupler"),
+    *("advantage", "cams", "catalog", "chains", "composing", "coupler", "dyads"),
     *("equivalents", "errors", "laws", "plots", "profiles", "results"),
 )
 
