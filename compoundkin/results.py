@@ -16,6 +16,7 @@ from compoundkin.kinematics.chosen_modes import GroupMode
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.gaps import Gap
+from compoundkin.kinematics.jacobian import Jacobian
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import Table
 from compoundkin.structure import Group, Structure
@@ -37,6 +38,7 @@ __all__ = [
     "Gap",
     "Group",
     "GroupMode",
+    "Jacobian",
     "LinkMotion",
     "LoopEquations",
     "MobilityAnalysis",

@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.limits import CLIPPED, LimitRule, Root
+from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Body
 
@@ -121,6 +122,26 @@ def poses_at(poses: Mapping[str, Pose], shape: tuple[int, ...], designs: Number,
         return Series(tuple([np.broadcast_to(c, shape)[designs, index][:, None] for c in series.c]))
 
     return {name: pose if pose is FIXED else pose.mapped(some) for name, pose in poses.items()}
+
+
+def with_poses(
+    poses: Mapping[str, Pose], shape: tuple[int, int], order: int, at: tuple[Number, Number], others: Mapping[str, Pose]
+) -> dict[str, Pose]:
+    """Return poses of links with others in their place, at some designs and indices."""
+
+    def put(series: Series, other: Series) -> Series:
+        out = []
+        for k in range(order + 1):
+            full = np.array(np.broadcast_to(series.c[k] if k < len(series.c) else 0.0 * series.c[0], shape))
+            full[at] = np.ravel(other.c[k]) if k < len(other.c) else 0.0
+            out.append(full)
+        return Series(tuple(out))
+
+    def mended(pose: Pose, other: Pose) -> Pose:
+        known = pose.theta is not None and other.theta is not None
+        return Pose(put(pose.z, other.z), put(pose.u, other.u), put(pose.angle, other.angle) if known else None)
+
+    return {name: pose if name == FRAME else mended(pose, others[name]) for name, pose in poses.items()}
 
 
 class JoinedBlocks:

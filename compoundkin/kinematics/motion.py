@@ -11,17 +11,17 @@ import numpy as np
 
 from compoundkin.base.copies import CopiesFields
 from compoundkin.base.display import ShowsPicture, way
-from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.block import Block
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
+from compoundkin.kinematics.block import Block, with_poses
 from compoundkin.kinematics.chosen_modes import GroupMode, modes_of
 from compoundkin.kinematics.error_estimate import errors_of
 from compoundkin.kinematics.inputs import Inputs, PoseGrid, fit
+from compoundkin.kinematics.jacobian import Jacobian, jacobian_of
 from compoundkin.kinematics.results import LinkMotion, Named, PairMotion, PointMotion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.kinematics.table import Table, table_of
 from compoundkin.kinematics.tracking import Tracker
-from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.kinematic_structure import Structure
 
@@ -137,6 +137,21 @@ class Motion(CopiesFields, ShowsPicture):
         """Return the table of these quantities as a pandas DataFrame, angles in radians."""
         return table_of(self, *names).to_pandas()
 
+    def jacobian(self, *outputs: str) -> Jacobian:
+        """Return how fast outputs move at every pose when each driver moves alone.
+
+        It has unit speed. Outputs are places and angles by name, "G" (two rows), "bar.angle", "ram.displacement",
+        else those of the mechanism. Solved, not differenced. Raises UnknownName, InvalidInput for what is a rate.
+
+        >>> from compoundkin.model.elements import drive, link
+        >>> from compoundkin.kinematics import solve
+        >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"), unit="mm")
+        >>> found = solve(crank, {"crank": [0.0]}).jacobian("B", "crank.angle")
+        >>> found, found.matrix.tolist()
+        (Jacobian(B.x, B.y, crank.angle by crank at (1,) poses), [[[0.0], [2.0], [1.0]]])
+        """
+        return jacobian_of(self, *outputs)
+
     def plot(self, *names: str, **options: Any) -> Any:
         """Draw quantities over the driver, the time or any other quantity. `compoundkin.plot` of this motion."""
         return way("plot")(self, *names, **options)
@@ -179,23 +194,8 @@ class Motion(CopiesFields, ShowsPicture):
 
     def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:
         """Return the motion with some poses in the place of what was solved."""
-        if not len(designs):
-            return self
-        shape = (self.inputs.designs, self.inputs.poses)
-
-        def put(series: Series, other: Series) -> Series:
-            out = []
-            for k in range(self.order + 1):
-                full = np.array(np.broadcast_to(series.c[k] if k < len(series.c) else 0.0 * series.c[0], shape))
-                full[designs, index] = np.ravel(other.c[k]) if k < len(other.c) else 0.0
-                out.append(full)
-            return Series(tuple(out))
-
-        def mended(pose: Pose, other: Pose) -> Pose:
-            known = pose.theta is not None and other.theta is not None
-            return Pose(put(pose.z, other.z), put(pose.u, other.u), put(pose.angle, other.angle) if known else None)
-
-        return replace(self, poses={n: FIXED if n == FRAME else mended(p, poses[n]) for n, p in self.poses.items()})
+        put = partial(with_poses, self.poses, self.failed.shape, self.order)
+        return replace(self, poses=put((designs, index), poses)) if len(index) else self
 
     def __repr__(self) -> str:
         told = f", {missing} of them not assembled" if (missing := int(np.count_nonzero(self.failed))) else ""

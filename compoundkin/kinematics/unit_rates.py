@@ -1,0 +1,149 @@
+"""Rates of quantities when each driver alone moves at unit speed: the columns of a Jacobian, in a motion's poses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName
+from compoundkin.base.series import Number
+from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
+from compoundkin.kinematics.double_roots import rates_at
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.quantities import Quantity, quantity, whole_and_part
+from compoundkin.kinematics.table import AtPoses
+from compoundkin.kinematics.tracking import Tracker
+from compoundkin.model.attributes import LENGTH, RATE_OF, order_of, unit_of
+from compoundkin.structure.kinematic_structure import Structure
+
+# Poses that are solved at once.
+BLOCK = 16384
+
+
+class Solved(AtPoses, Protocol):
+    """A solved motion, which can be solved again with other inputs."""
+
+    @property
+    def inputs(self) -> Inputs:
+        """The numbers it was solved for."""
+
+    @property
+    def structure(self) -> Structure:
+        """The structure it was solved by."""
+
+    @property
+    def regular(self) -> Number:
+        """Which poses have finite rates, (designs, poses)."""
+
+    @property
+    def size(self) -> float:
+        """The mechanism's length scale."""
+
+    @property
+    def tracker(self) -> Tracker:
+        """What keeps its configuration."""
+
+    def block(self, part: Inputs, order: int, s: Number, designs: Number) -> Block:
+        """Solve a block of other inputs in its configuration."""
+
+
+class Row(NamedTuple):
+    """A row of a Jacobian. A real quantity, its rate by name, and whether it is a length."""
+
+    name: str
+    rate: str
+    is_length: bool
+
+
+def rows_of(motion: Solved, names: tuple[str, ...]) -> tuple[Row, ...]:
+    """Return the rows of quantities by name, two of a vector. Raises UnknownName, InvalidInput for what has no rate."""
+    wanted = names or tuple(name for name in motion.mechanism.outputs if order_of(name) == 0)
+    if not wanted:
+        raise InvalidInput(Problem("outputs", "nothing is named", 'name some: motion.jacobian("G", "bar.angle")'))
+    return tuple(row for name in wanted for row in _rows(motion, name))
+
+
+def _rows(motion: Solved, name: str) -> tuple[Row, ...]:
+    if order_of(name) if isinstance(name, str) else False:
+        told = "it is a rate itself, and a Jacobian tells the rates of places and angles"
+        raise InvalidInput(Problem(name, told, "name what it is the rate of, such as a point or a link's angle"))
+    whole, part = whole_and_part(motion, name)
+    if whole.is_vector and not part:
+        owner = _split(name)[0]
+        return tuple(_row(motion, f"{owner}.{xy}", whole) for xy in ("x", "y"))
+    if part == LENGTH:
+        raise InvalidInput(Problem(name, "the length of a vector has no rate by name", "name the vector, or its .x"))
+    return (_row(motion, name, whole),)
+
+
+def _row(motion: Solved, name: str, whole: Quantity) -> Row:
+    owner, rest = _split(name)
+    for word in RATE_OF.get(rest, ()):
+        try:
+            quantity(motion, f"{owner}.{word.partition('.')[0]}")
+        except UnknownName:
+            continue
+        except InvalidInput:  # known, but beyond the order that the motion was solved to
+            pass
+        return Row(name, f"{owner}.{word}", whole.dimension == "length")
+    remedy = "name points, their .x and .y, angles of links, displacements of slides"
+    raise InvalidInput(Problem(name, "its rate has no name, so that no driver's share in it can be told", remedy))
+
+
+def _split(name: str) -> tuple[str, str]:
+    """Return the owner and what follows it. A component of a position has two words."""
+    owner, _, word = name.partition(".") if name.count(".") < 2 else _of_two(name)
+    return owner, word
+
+
+def _of_two(name: str) -> tuple[str, str, str]:
+    owner, word, part = name.rsplit(".", 2)
+    return (owner, ".", f"{word}.{part}") if f"{word}.{part}" in RATE_OF else (f"{owner}.{word}", ".", part)
+
+
+def units_of(motion: Solved, rows: tuple[Row, ...]) -> tuple[tuple[str, ...], ...]:
+    """Return the unit of every entry, by rows. It is empty for a plain ratio."""
+    length = motion.mechanism.unit
+
+    def unit(row: Row, driver: str) -> str:
+        over, under = (unit_of(length, "length" if is_length else "angle")
+                       for is_length in (row.is_length, not motion.drives[driver].is_angle))  # fmt: skip
+        return "" if over == under else f"{over}/{under}"
+
+    return tuple(tuple(unit(row, driver) for driver in motion.drives) for row in rows)
+
+
+def matrix_at(motion: Solved, rows: tuple[Row, ...], given: Inputs, s: Number | None = None) -> Number:
+    """Return the Jacobian (..., rows, drivers) at inputs. They are the motion's own, or those at its places `s`."""
+    columns = []
+    for moved in given.drives:
+        alone = given.driven({name: (v[0], float(name == moved)) for name, v in given.drives.items()})
+        unit = _solved(motion, alone, s)
+        columns.append(np.stack([np.asarray(quantity(unit, row.rate).values) for row in rows], axis=-1))
+    return np.stack(columns, axis=-1)
+
+
+def _solved(motion: Solved, given: Inputs, s: Number | None) -> Any:
+    """Return the motion with one driver moving, to order 1."""
+    designs, poses = given.designs, given.poses
+    store = JoinedBlocks(designs, poses)
+    with np.errstate(all="ignore"):
+        for d, m in blocks(designs, poses, BLOCK):
+            at, index = places(d, m)
+            store.take(motion.block(given.cut(d, m), 1, at if s is None else s[None, m], index), d, m)
+    again: Any = motion
+    found = replace(again, order=1, inputs=given, poses=store.poses(), failed=store.failed, time=None)
+    if s is None and len(given.drives) == 1 and motion.tracker.expanded is not None:
+        with np.errstate(all="ignore"):
+            return found.mended(*rates_at(given, motion.tracker, 1))
+    return found
+
+
+def undetermined(motion: Solved) -> Number:
+    """Return the change points where drivers together tell the rates, (designs, poses)."""
+    found = np.zeros(motion.assembled.shape, dtype=bool).reshape(motion.inputs.designs, motion.inputs.poses)
+    if motion.tracker.expanded is not None and len(motion.inputs.drives) > 1:
+        found[motion.tracker.expanded[:2]] = True
+    return found
