@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from compoundkin import equivalents as equivalents
     from compoundkin import errors as errors
     from compoundkin import laws as laws
+    from compoundkin import performance as performance
     from compoundkin import plots as plots
     from compoundkin import profiles as profiles
     from compoundkin import results as results
@@ -129,7 +130,7 @@ _LATE = {
 # The modules that hold all other public names: no rooms, each a list of what rooms have.
 _MODULES = (
     *("advantage", "cams", "catalog", "chains", "composing", "coupler", "dyads"),
-    *("equivalents", "errors", "laws", "plots", "profiles", "results"),
+    *("equivalents", "errors", "laws", "performance", "plots", "profiles", "results"),
 )
 
 # Names of version 0.1 and what is written for them now.

@@ -116,6 +116,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "advantage.mechanical_advantage": {"motion": motion, "output": "rocker", "input": "crank"},
         "cams.cam_analysis": {"motion": h["cam"], "name": "roller/cam"},
         "cams.cam_pairs": {"motion": h["cam"]},
+        "performance.four_bar_code": {"base": 2.0, "input": 1.0, "coupler": 2.5, "output": 2.5},
+        "performance.linkage_types": {"what": m, "design": 0},
         "catalog.load_named": {"name": "six-bar"},
         "catalog.path": {"name": "six-bar"},
         "catalog.resolve": {"name_or_path": "six-bar"},
