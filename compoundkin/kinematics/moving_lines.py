@@ -35,7 +35,7 @@ class MovingPoint(PrintsShort):
     def __post_init__(self) -> None:
         """Read what is given as vectors."""
         for field in fields(self):
-            object.__setattr__(self, field.name, _vectors(field.name, getattr(self, field.name)))
+            object.__setattr__(self, field.name, vectors_of(field.name, getattr(self, field.name)))
         _refuse_infinite(fields(self)[0].name, self.position)
         self.shape  # raises where they do not broadcast  # noqa: B018
 
@@ -134,6 +134,19 @@ def numbers_of(where: str, given: Any) -> Number:
     return float(value) if value.ndim == 0 else value
 
 
+def vectors_of(where: str, given: Any) -> Number:
+    """Return planar vectors, written as complex numbers or (x, y); raises InvalidInput for others.
+
+    >>> vectors_of("point", (1, 2))
+    (1+2j)
+    """
+    try:
+        with np.errstate(invalid="ignore"):  # of infinite numbers
+            return vector(where, given)
+    except InvalidMechanism as error:
+        raise InvalidInput(error.problems) from None
+
+
 def series_of(value: Number, rate: Number, second: Number) -> Series:
     """Return a series to second order; a constant of what rests.
 
@@ -161,13 +174,6 @@ def shape_of(**given: Any) -> tuple[int, ...]:
         told = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
         remedy = "axes of all are the same designs and poses; one of length 1 stands for every place along it"
         raise InvalidInput(Problem("shapes", f"they do not broadcast: {told}", remedy)) from None
-
-
-def _vectors(where: str, given: Any) -> Number:
-    try:
-        return vector(where, given)
-    except InvalidMechanism as error:
-        raise InvalidInput(error.problems) from None
 
 
 def _refuse_infinite(where: str, value: Number) -> None:

@@ -9,6 +9,7 @@ from compoundkin.analysis.coupler.bresse_circles import (
     tangential_circle,
 )
 from compoundkin.analysis.coupler.centrodes import Centrodes, Pole, centrode_curvature, centrodes, pole, pole_velocity
+from compoundkin.analysis.coupler.displacement import Displacement, LinkPosition, displacement, link_position
 from compoundkin.analysis.coupler.path_curvature import (
     PathCurvature,
     StationaryCurvature,
@@ -17,24 +18,31 @@ from compoundkin.analysis.coupler.path_curvature import (
     path_curvature,
     stationary_curvature,
 )
+from compoundkin.analysis.coupler.pole_triangle import PoleTriangle, pole_triangle
 from compoundkin.analysis.coupler.relative_motion import relative_link, relative_point
 
 __all__ = [
     "BresseCircle",
     "CanonicalFrame",
     "Centrodes",
+    "Displacement",
+    "LinkPosition",
     "PathCurvature",
     "Pole",
+    "PoleTriangle",
     "StationaryCurvature",
     "acceleration_pole",
     "canonical_frame",
     "centrode_curvature",
     "centrodes",
     "curvature_rate",
+    "displacement",
     "euler_savary",
     "inflection_circle",
+    "link_position",
     "path_curvature",
     "pole",
+    "pole_triangle",
     "pole_velocity",
     "relative_link",
     "relative_point",

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import LinkMotion, Motion, PointMotion
+from compoundkin.kinematics.moving_lines import vectors_of
 from compoundkin.model.elements import FRAME
-from compoundkin.model.geometry import vector
 
 # Rates come from sums of terms as large as the fastest of the two links and the drivers, each rounded to 1e-16 and
 # carried over the groups of the solving order. What is smaller than this part of that scale is rounding, not motion:
@@ -70,10 +70,7 @@ def place(motion: Motion, link: str, point: Any) -> Number:
         if point not in known:
             raise UnknownName(Problem(point, f"link {link!r} has no such point", nearest(point, list(known))))
         return known[point]
-    try:
-        return vector("point", point)
-    except InvalidMechanism as error:
-        raise InvalidInput(error.problems) from None
+    return vectors_of("point", point)
 
 
 def direction(vector: Number) -> Number:

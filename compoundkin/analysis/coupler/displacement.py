@@ -1,0 +1,127 @@
+"""The displacement of a link from one position to another: a rotation about its pole, or a translation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, UNKNOWN, direction, relative_link
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number, wrapped
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.moving_lines import numbers_of, shape_of, vectors_of
+from compoundkin.model.elements import FRAME
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LinkPosition(PrintsShort):
+    """A position of a link: where one of its points is, and its angle.
+
+    `point` is complex or (x, y), the angle in radians; numbers, or arrays that broadcast. NaN where it is not known.
+    Raises InvalidInput for anything else.
+
+    >>> LinkPosition((3, 4), angle=0.5).point
+    (3+4j)
+    """
+
+    point: Number
+    angle: Number
+
+    def __post_init__(self) -> None:
+        """Read what is given as a vector and a number."""
+        object.__setattr__(self, "point", vectors_of("point", self.point))
+        object.__setattr__(self, "angle", numbers_of("angle", self.angle))
+        shape_of(point=self.point, angle=self.angle)
+        for where, value in (("point", self.point), ("angle", self.angle)):
+            if np.isinf(value).any():
+                raise InvalidInput(Problem(where, "it is infinite", "give finite numbers"))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Displacement(PrintsShort):
+    """The displacement of a link between two positions. Numbers or arrays of their shape.
+
+    `angle` is that of the rotation, between -pi and pi; `translation` the way of the point by which the positions are
+    given; `pole` the one point that comes back to its place. Where the link is only translated (`infinite`) the pole is
+    inf and `direction` the unit vector towards it, up to its sign; elsewhere `direction` is 0. Where the pole is not
+    `defined` both are NaN: the positions are not known, or are one and the same.
+    """
+
+    first: LinkPosition
+    second: LinkPosition
+    angle: Number
+    translation: Number
+    pole: Number
+    direction: Number
+    infinite: Number
+    defined: Number
+
+    def moved(self, points: Any) -> Number:
+        """Return where points of the link are at last, given where at first.
+
+        Complex or (x, y), a number or an array that broadcasts with the positions.
+        """
+        places = vectors_of("points", points)
+        shape_of(points=places, positions=self.angle)
+        return self.second.point + np.exp(1j * self.angle) * (places - self.first.point)
+
+
+@checked
+def link_position(motion: Motion, link: str, at: Any, on: str = FRAME) -> LinkPosition:
+    """Return the position of a link at poses of a motion.
+
+    It is seen from another link. `at` is the index of a pose along the motion, or an array of them; the position is that of the link's origin, of the
+    shape of designs and indices, NaN where it is not assembled. Raises UnknownName for a link that is not there,
+    InvalidInput for an index that is not there or a link seen from itself, NotAssembled where no pose asked for is.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> motion = solve(load_named("crank-rocker"), {"crank": np.deg2rad([0, 30, 60])})
+    >>> round(float(np.rad2deg(link_position(motion, "crank", 2).angle)), 9)
+    60.0
+    """
+    seen = relative_link(motion, link, on)
+    poses = motion.inputs.poses
+    wanted = numbers_of("at", at)
+    index = np.asarray(wanted).astype(int)
+    if not index.size or np.any(index != wanted) or np.any((index < -poses) | (index >= poses)):
+        raise InvalidInput(Problem("at", "it is not the index of a pose", f"0 to {poses - 1}"))
+    angle, point = (np.reshape(value, (*motion.shape[:-1], poses))[..., index]
+                    for value in (seen.angle, np.asarray(seen.origin.position)))  # fmt: skip
+    if np.isnan(angle).all():
+        raise NotAssembled(Problem("at", "the mechanism cannot be assembled there", "gaps() tells where and why"))
+    return LinkPosition(point, angle)
+
+
+@checked
+def displacement(first: LinkPosition, second: LinkPosition) -> Displacement:
+    """Return the displacement of a link from one position to another.
+
+    Both are given by the same point of the link, and seen from the same other link; their arrays broadcast. Raises
+    InvalidInput where they do not. Source: O. Bottema and B. Roth, Theoretical Kinematics (1979), chapter VIII;
+    R. Beyer, Technische Kinematik (1931): the pole is above the middle of a point's way, at half the angle.
+
+    >>> quarter = displacement(LinkPosition((2, 1), 0.0), LinkPosition((1, 2), np.pi / 2))
+    >>> complex(np.round(quarter.pole, 12)), round(float(quarter.angle), 6)
+    ((1+1j), 1.570796)
+    >>> displacement(LinkPosition((0, 0), 1.0), LinkPosition((2, 0), 1.0)).direction
+    np.complex128(1j)
+    """
+    shape = shape_of(first=first.point + first.angle, second=second.point + second.angle)
+    one, two = (np.broadcast_to(position.point, shape) for position in (first, second))
+    angle = np.asarray(wrapped(np.broadcast_to(second.angle - first.angle, shape)))
+    # a rotation that is nothing but rounding
+    angle = np.where(np.abs(angle) <= SMALL, 0.0 * angle, angle)
+    way = two - one
+    at_rest = (angle == 0.0) & (np.abs(way) <= SMALL * (np.abs(one) + np.abs(two)))
+    defined = np.isfinite(way) & np.isfinite(angle) & ~at_rest
+    infinite = defined & (angle == 0.0)
+    with np.errstate(all="ignore"):
+        finite = (one + two) / 2.0 + 0.5j * way / np.tan(angle / 2.0)
+    pole = np.where(infinite, INFINITE, np.where(defined, finite, UNKNOWN))
+    far = np.where(infinite, 1j * direction(way), np.where(defined, 0j, UNKNOWN))
+    return Displacement(first, second, angle[()], way[()], pole[()], far[()], infinite[()], defined[()])
