@@ -74,9 +74,10 @@ class Displacement(PrintsShort):
 def link_position(motion: Motion, link: str, at: Any, on: str = FRAME) -> LinkPosition:
     """Return the position of a link at poses of a motion.
 
-    It is seen from another link. `at` is the index of a pose along the motion, or an array of them; the position is that of the link's origin, of the
-    shape of designs and indices, NaN where it is not assembled. Raises UnknownName for a link that is not there,
-    InvalidInput for an index that is not there or a link seen from itself, NotAssembled where no pose asked for is.
+    It is seen from another link. `at` is the index of a pose along the motion, or an array of them; the position is
+    that of the link's origin, of the shape of designs and indices, NaN where it is not assembled. Raises UnknownName
+    for a link that is not there, InvalidInput for an index that is not there or a link seen from itself, NotAssembled
+    where no pose asked for is.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.kinematics import solve

@@ -17,7 +17,8 @@ from compoundkin.base.display import PrintsShort
 class PoleTriangle(PrintsShort):
     """The displacements from position 1 to 2, 2 to 3, and 3 to 1.
 
-    Their poles are the corners of a triangle. All come in this order, numbers or arrays of the positions' shape, NaN where a pole is not defined.
+    Their poles are the corners of a triangle. All come in this order, numbers or arrays of the positions' shape, NaN
+    where a pole is not defined.
     """
 
     displacements: tuple[Displacement, Displacement, Displacement]
@@ -38,7 +39,8 @@ class PoleTriangle(PrintsShort):
     def corner_angles(self) -> tuple[Number, Number, Number]:
         """The angles at the corners, each half that of the rotation.
 
-        But for half turns: from the side towards the pole before to that towards the pole after, between -pi/2 and pi/2; NaN at infinity.
+        But for half turns: from the side towards the pole before to that towards the pole after, between -pi/2 and
+        pi/2; NaN at infinity.
         """
         one, two, three = self.displacements
         return _corner(one, three, two), _corner(two, one, three), _corner(three, two, one)
@@ -47,7 +49,8 @@ class PoleTriangle(PrintsShort):
     def images(self) -> tuple[Number, Number, Number]:
         """The image poles: the point that comes to P23, in position 1.
 
-        And that of P31 in position 2, that of P12 in position 3. Each is the mirror image of the pole in the opposite side of the triangle; inf where the pole is.
+        And that of P31 in position 2, that of P12 in position 3. Each is the mirror image of the pole in the opposite
+        side of the triangle; inf where the pole is.
         """
         one, two, three = self.displacements
         return _mirrored(two, one, three), _mirrored(three, two, one), _mirrored(one, three, two)
