@@ -39,7 +39,7 @@ class LeastTime:
 
     @cached_property
     def ramp(self) -> float:
-        """The time in which the acceleration grows: that of the first limit it would meet."""
+        """The time in which the acceleration grows, until it meets a limit."""
         unlimited: float = (self.distance / self.jerk / 2.0) ** (1.0 / 3.0)
         return min(self.acceleration / self.jerk if not isinf(self.acceleration) else inf,
                    sqrt(self.speed / self.jerk) if not isinf(self.speed) else inf, unlimited)  # fmt: skip

@@ -171,9 +171,9 @@ def least_time(
     over: float | None = None,
     start: float = 0.0,
 ) -> Program:
-    """Return the law that goes a distance in the least time, from rest to rest.
+    """Return the law that goes a distance in the least time.
 
-    The distance may be negative. Speed, acceleration and jerk (rad/s or length/s, and so on) are the greatest there
+    From rest to rest. The distance may be negative. Speed, acceleration and jerk (rad/s or length/s, and so on) are the greatest there
     may be; one left out is not limited, but not acceleration and jerk both. Without `jerk` the speed over time is a
     trapezoid or triangle, with it the acceleration is continuous: the s-curve of up to seven parts. A time `over`
     that is longer than the least stretches it.
