@@ -192,6 +192,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "plots.phase": {"motion": motion, "name": "rocker.angle", "rate": None, "every": None, "designs": (),
                         "title": None, "size": None},
         "plots.polar": {"motion": motion, "around": None, "designs": (), "title": None, "size": None},
+        "plots.timing_chart": {"what": m, "over": None, "title": None, "size": None},
         "profiles.DiscProfile": {"radius": 1.0, "middle": 0j},
         "profiles.FormulaProfile": {"function": np.exp, "low": 0.0, "high": 1.0, "closed": False},
         "profiles.PointsProfile": {"points": (0j, 1 + 0j, 1j, 1 + 2j), "closed": True},

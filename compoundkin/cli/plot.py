@@ -15,6 +15,7 @@ from compoundkin.cli.solve import explained
 
 if TYPE_CHECKING:
     from compoundkin.kinematics import Motion
+    from compoundkin.model.mechanism import Mechanism
     from compoundkin.structure import Structure
     from compoundkin.view.plot import Plot
 
@@ -30,6 +31,12 @@ OF_MOTIONS = {
     "modes": "--mode",
 }
 
+# What is not drawn of a motion, and what to say instead.
+UNSOLVED = {
+    "--circuits": "the range of the driver: --from and --to; where others stand: --drive NAME=VALUE",
+    "--timing": "the range is that of the laws, or of the mechanism's times",
+}
+
 
 @click.command(
     epilog="""\b
@@ -40,6 +47,7 @@ Examples:
   compoundkin plot jansen-leg foot --path --every 5 -o foot.pdf
   compoundkin plot elliptic-trammel --centrodes rod frame -o centrodes.png
   compoundkin plot triple-rocker rocker.angle --circuits -o circuits.svg
+  compoundkin plot disc-cam-roller-program --timing -o timing.svg
 """
 )
 @mechanism_argument
@@ -59,6 +67,13 @@ Examples:
     multiple=True,
     help="Every branch of all circuits over the driver. Other drivers stand where --drive NAME=VALUE says.",
 )
+@click.option(
+    "--timing",
+    "kinds",
+    flag_value="timing_chart",
+    multiple=True,
+    help="When drivers with laws, or cams made for programs, rise, fall and dwell.",
+)
 @click.option("--driver", metavar="NAME", help="With --circuits: the driver that moves, where there are several.")
 @click.option("--every", type=click.IntRange(1), metavar="POSES", help="Distance of the marks along curves in a plane.")
 @click.option("--title", help="Instead of the mechanism's own.")
@@ -76,6 +91,9 @@ def command(file: str, quantities: tuple[str, ...], path: str | None, **asked: A
         form_of("plot", path)
     require_matplotlib()
     _fitting(asked)
+    if "timing_chart" in asked["kinds"]:
+        _put(_timing(loaded(file), (*quantities, *asked["outputs"]), asked), path)
+        return 0
     structure = decompose(loaded(file))
     names = (*quantities, *asked["outputs"])
     if "circuits" in asked["kinds"]:
@@ -98,21 +116,20 @@ def _fitting(asked: Mapping[str, Any]) -> None:
     """Raise InvalidInput for options that do not go together."""
     from compoundkin.base.errors import InvalidInput, Problem
 
-    called = {"paths": "path"}
+    called = {"paths": "path", "timing_chart": "timing"}
     kinds = [f"--{called.get(kind, kind)}" for kind in asked["kinds"]] + ["--centrodes"] * bool(asked["centrodes"])
     if len(kinds) > 1:
         raise InvalidInput(Problem(" ".join(kinds), "a plot is of one kind", "leave all but one out"))
     for option in ("against", "together"):
         if kinds and asked[option]:
             raise InvalidInput(Problem(f"--{option}", f"it does not go with {kinds[0]}", "leave one of them out"))
-    if asked["every"] and kinds in ([], ["--polar"], ["--circuits"]):
+    if asked["every"] and kinds in ([], ["--polar"], ["--circuits"], ["--timing"]):
         raise InvalidInput(Problem("--every", "it marks curves in a plane", "give --path, --phase or --hodograph too"))
     if asked["driver"] and kinds != ["--circuits"]:
         raise InvalidInput(Problem("--driver", "it tells which driver --circuits follow", "give --circuits too"))
-    unfit = [key for key in OF_MOTIONS if asked[key] not in (None, ())] if kinds == ["--circuits"] else []
+    unfit = [key for key in OF_MOTIONS if asked[key] not in (None, ())] if (kinds or [""])[0] in UNSOLVED else []
     if unfit:
-        remedy = "the range of the driver: --from and --to; where others stand: --drive NAME=VALUE"
-        raise InvalidInput(Problem(OF_MOTIONS[unfit[0]], "it does not go with --circuits", remedy))
+        raise InvalidInput(Problem(OF_MOTIONS[unfit[0]], f"it does not go with {kinds[0]}", UNSOLVED[kinds[0]]))
 
 
 def _order(asked: Mapping[str, Any], names: tuple[str, ...]) -> int:
@@ -148,6 +165,18 @@ def _drawn(motion: Motion, names: tuple[str, ...], asked: Mapping[str, Any]) -> 
     draw: Any = getattr(plot, kind)
     picture: Plot = draw(motion, *names, every=every, title=title)
     return picture
+
+
+def _timing(mechanism: Mechanism, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:
+    from compoundkin.base.errors import InvalidInput, Problem
+    from compoundkin.view import plot
+
+    if names:
+        raise InvalidInput(Problem(names[0], "a timing chart takes no quantities", "leave it out"))
+    ranges = {"--from": asked["start"], "--to": asked["stop"], "--drive": asked["drives"] or None}
+    for option in (option for option, given in ranges.items() if given is not None):
+        raise InvalidInput(Problem(option, "it does not go with --timing", UNSOLVED["--timing"]))
+    return plot.timing_chart(mechanism, title=asked["title"])
 
 
 def _of_circuits(structure: Structure, names: tuple[str, ...], asked: Mapping[str, Any]) -> Plot:

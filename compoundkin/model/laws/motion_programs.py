@@ -173,10 +173,10 @@ def least_time(
 ) -> Program:
     """Return the law that goes a distance in the least time.
 
-    From rest to rest. The distance may be negative. Speed, acceleration and jerk (rad/s or length/s, and so on) are the greatest there
-    may be; one left out is not limited, but not acceleration and jerk both. Without `jerk` the speed over time is a
-    trapezoid or triangle, with it the acceleration is continuous: the s-curve of up to seven parts. A time `over`
-    that is longer than the least stretches it.
+    From rest to rest; the distance may be negative. Speed, acceleration and jerk (rad/s or length/s, and so on) are the
+    greatest there may be; one left out is not limited, but not acceleration and jerk both. Without `jerk` the speed
+    over time is a trapezoid or triangle, with it the acceleration is continuous: the s-curve of up to seven parts. A
+    time `over` that is longer than the least stretches it.
 
     Raises InvalidMechanism for limits that are not positive, a distance of 0, a time too short.
 
