@@ -147,8 +147,20 @@ def _solved(tracker: Tracker, given: Inputs, order: int) -> tuple[Mapping[str, P
     end = np.full(len(designs), tracker.approach_path.poses - 1)
     for way in (DriverValues(tracker, tracker.approach_path).onward(designs, end)[0], np.ones_like(onward)):
         onward = np.where(np.any(onward != 0.0, axis=-1, keepdims=True), onward, way)
-    course = straight_way(tracker, given.pick(designs, index.astype(float)), onward)
-    spots = np.nextafter(index.astype(float), index + sense)[:, None], designs[:, None], False
+    s = np.nextafter(index.astype(float), index + sense)
+    return solved_near(tracker, given.pick(designs, index.astype(float)), order, (s, designs), groups, onward)
+
+
+def solved_near(
+    tracker: Tracker, part: Inputs, order: int, at: tuple[Number, Number], groups: Iterable[int], onward: Number
+) -> tuple[Mapping[str, Pose], Number]:
+    """Return the poses of a column of inputs.
+
+    Return also which of them are near change points and known. They are at places along the motion and of designs `at`;
+    `onward` are the steps, in pure numbers, by which the drivers go on from there.
+    """
+    course = straight_way(tracker, part, onward)
+    spots = at[0][:, None], at[1][:, None], False
     roots, near = roots_along(tracker, course.part, spots, groups, onward)
     block = tracker.run(course.part, order + EXTRA + 2 * len(roots), *spots[:2], roots=roots)
     gone = rates(course.gone, order)

@@ -94,7 +94,7 @@ def _place(motion: Motion, design: int, values: dict[str, float], good: int, bad
 
 
 @dataclass(frozen=True)
-class Extreme:
+class MarkedExtreme:
     """A highest or lowest value `y` of a curve, with its `x`."""
 
     x: float
@@ -104,7 +104,7 @@ class Extreme:
 
 def extremes(
     x: Number, y: Number, grows: bool = False, scale: float = 0.0, vector: Number | None = None
-) -> tuple[Extreme, ...]:
+) -> tuple[MarkedExtreme, ...]:
     """Return the highest and lowest value of a curve. It is 1-D, NaN where there is none; a constant has none.
 
     Between poses they are interpolated by five poses, or three. With `grows` a value next to a gap is none, for there a
@@ -124,7 +124,7 @@ def extremes(
     for sign in (1.0, -1.0):
         up = np.where(known, sign * y, -np.inf)
         if not (grows and _next_to(~known)[np.argmax(up)]):
-            found.append(Extreme(*_best(_Curve(t, x, of), up, sign), sign > 0))
+            found.append(MarkedExtreme(*_best(_Curve(t, x, of), up, sign), sign > 0))
     return tuple(found)
 
 

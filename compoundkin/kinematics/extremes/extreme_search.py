@@ -1,0 +1,209 @@
+"""The search for the least and the greatest values of quantities along a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.kinematics.extremes.measures import ROUNDING, Measure, values_at_poses
+from compoundkin.kinematics.extremes.offers import BOTH, SIGNS, Offers, Peaks, best_of
+from compoundkin.kinematics.extremes.stretches import Stretches
+from compoundkin.kinematics.extremes.windows import FINE, SAMPLES, Windows, sampled, solved, vertices
+from compoundkin.kinematics.motion import Motion
+
+# What a curve may rise beyond a pose, in second differences there. The vertex of a parabola whose middle sample is the
+# highest adds an eighth.
+MOST_ADDED = 0.5
+# Peaks nearer to each other than this part of the range are equally high: the first is taken.
+ALIKE = 1e-9
+# A window is narrowed so often at most: to 1e-8 of a stretch, at a kink or where only rounding is left.
+NARROWINGS = 14
+# So near to a limit position (in the square root of the distance) rates are compared; where they grow so many times,
+# they grow without limit.
+NEAR_LIMIT, GROWTH = np.array([1e-3, 1e-4]), 3.0
+
+
+class _Items(NamedTuple):
+    """Windows in which a quantity is searched in one sense: quantity, sign, stretch, and from where to where in t."""
+
+    m: Number
+    s: Number
+    which: Number
+    low: Number
+    high: Number
+
+    def some(self, index: Number) -> _Items:
+        """Return some of them."""
+        return _Items(*(v[index] for v in self))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ExtremeSearch(PrintsShort):
+    """What is searched: quantities over groups of the smooth stretches of a motion.
+
+    `group` (n,) is in order.
+    """
+
+    motion: Motion
+    measures: tuple[Measure, ...]
+    stretches: Stretches
+    group: Number
+    count: int
+
+    def peaks(self) -> Peaks:
+        """Return the least and the greatest values."""
+        if not self.measures or not len(self.stretches):
+            nothing = np.full((len(self.measures), len(SIGNS), self.count), np.nan)
+            return Peaks(nothing, nothing, nothing[:, 0])
+        which = np.flatnonzero(self._candidates.any(axis=(0, 1)))
+        s = self.stretches
+        offers = [self._offered(self.ends, np.stack([s.low, s.high], axis=-1), np.arange(len(s)))]
+        if len(which):
+            offers += self._looked_at(which)
+        return best_of([*offers, *self._without_limit()], self._slack)
+
+    @cached_property
+    def values(self) -> Number:
+        """The values at all poses, (quantities, designs, poses)."""
+        return values_at_poses(self.motion, self.measures)
+
+    @cached_property
+    def ends(self) -> Number:
+        """The values at the ends of stretches that are poses, (quantities, stretches, 2)."""
+        return self._at_ends(self.values)
+
+    def _at_ends(self, values: Number) -> Number:
+        s = self.stretches
+        return np.stack([np.where(at >= 0, values[:, s.design, at], np.nan) for at in (s.first, s.last)], axis=-1)
+
+    @cached_property
+    def _candidates(self) -> Number:
+        """The stretches that may have the greatest value, (quantities, 2, stretches)."""
+        high, low = (BOTH * self.ends[:, None]).max(axis=-1), (BOTH * self.ends[:, None]).min(axis=-1)
+        best, slack = self._by_group(high)[..., self.group], self._slack[:, None, self.group]
+        bound = high + self._added[:, None]
+        # a stretch that is level with the best is part of a plateau
+        level = (bound <= best + slack) & (low >= best - slack)
+        return np.isnan(bound) | ((bound >= best) & ~level & ~self._constant(best, slack))
+
+    @staticmethod
+    def _constant(best: Number, slack: Number) -> Number:
+        """Return what varies by no more than rounding, (quantities, 1, ...), from both greatest values."""
+        return best.sum(axis=1, keepdims=True) <= slack
+
+    @property
+    def _added(self) -> Number:
+        """How far stretches may rise beyond their ends, (quantities, stretches); not known where an end is no pose."""
+        bend = np.abs(np.diff(self.values, 2, axis=-1))
+        if not bend.shape[-1]:
+            return np.full(self.ends.shape[:2], np.nan)
+        bend = np.concatenate([bend[..., :1], bend, bend[..., -1:]], axis=-1)
+        return MOST_ADDED * np.fmax(*np.moveaxis(self._at_ends(bend), -1, 0))
+
+    @cached_property
+    def _slack(self) -> Number:
+        """What is rounding of the values, (quantities, groups)."""
+        largest = self._by_group(np.fmax.reduce(np.abs(self.ends), axis=-1))
+        return ROUNDING * np.maximum(largest, np.array([one.scale for one in self.measures])[:, None])
+
+    def _by_group(self, rows: Number) -> Number:
+        """Return the greatest of rows (..., stretches) in each group, -inf where nothing is known."""
+        starts = np.flatnonzero(np.append(True, np.diff(self.group) != 0))
+        out = np.full((*rows.shape[:-1], self.count), -np.inf)
+        found = np.fmax.reduceat(rows, starts, axis=-1)
+        out[..., self.group[starts]] = np.where(np.isnan(found), -np.inf, found)
+        return out
+
+    def _kinds(self, m: Number, s: Number, which: Number) -> Number:
+        return (m * len(SIGNS) + s) * self.count + self.group[which]
+
+    def _offered(self, values: Number, places: Number, which: Number) -> Offers:
+        """Offer values (quantities, stretches, k) at places (stretches, k) in both senses."""
+        signed = BOTH * values[:, None]
+        m, s, w, _ = np.indices(signed.shape)
+        places = np.broadcast_to(places, signed.shape)
+        return Offers(self._kinds(m, s, which[w]).ravel(), signed.ravel(), places.ravel())
+
+    def _looked_at(self, which: Number) -> Iterator[Offers]:
+        """Offer what windows over whole stretches show, and the vertices of their peaks."""
+        whole = np.ones(len(which))
+        windows = sampled(self.motion, self.measures, self.stretches, which, -whole, whole)
+        yield self._offered(windows.values, windows.places, which)
+        m, s, index = self._peaked(windows)
+        items = _Items(m, s, which[index], -whole[index], whole[index])
+        vertex = []
+        for _ in range(NARROWINGS):
+            good = windows.trusted[m, index]
+            vertex.append(self._vertices(windows, items, index, good))
+            items = self._narrowed(windows, items.some(~good), index[~good])
+            if not len(items.m):
+                break
+            windows = sampled(self.motion, self.measures, self.stretches, *items[2:])
+            m, index = items.m, np.arange(len(items.m))
+            yield self._of_items(items, windows.values[m, index], windows.places)
+        items, t = (_Items(*map(np.concatenate, zip(*(one for one, _ in vertex), strict=True))),
+                    np.concatenate([t for _, t in vertex]))  # fmt: skip
+        places = self.stretches.places(t[:, None], items.which)[:, 0]
+        if len(places):
+            found = solved(self.motion, self.measures, self.stretches.design[items.which], places)
+            offered = self._of_items(items, found[items.m, np.arange(len(places))][:, None], places[:, None])
+            yield offered._replace(is_vertex=True)
+
+    def _peaked(self, windows: Windows) -> tuple[Number, Number, Number]:
+        """Return the windows that hold the greatest values, or may: quantities, signs, windows."""
+        samples = np.fmax.reduce(BOTH * windows.values[:, None], axis=-1)
+        high = np.fmax((BOTH * windows.fine[:, None]).max(axis=-1), samples)
+        rows = np.full((*high.shape[:2], len(self.stretches)), -np.inf)
+        rows[..., windows.which] = high
+        group = self.group[windows.which]
+        best = self._by_group(np.fmax(rows, (BOTH * self.ends[:, None]).max(axis=-1)))[..., group]
+        varies = ~self._constant(best, self._slack[:, None, group])
+        m, s, w = np.nonzero(varies & (high >= best - ALIKE * windows.span[:, None, None]))
+        _, earliest = np.unique(self._kinds(m, s, windows.which[w]), return_index=True)
+        chosen = varies & ~windows.trusted[:, None] & (high + windows.doubt[:, None] >= best)
+        chosen[m[earliest], s[earliest], w[earliest]] = True
+        return np.nonzero(chosen)  # type: ignore[return-value]
+
+    @staticmethod
+    def _vertices(windows: Windows, items: _Items, index: Number, good: Number) -> tuple[_Items, Number]:
+        """Return the items whose windows are trusted, and the t of the vertices there."""
+        some, index = items.some(good), index[good]
+        signed = SIGNS[some.s][:, None] * windows.fine[some.m, index]
+        inside = vertices(windows.polynomials[some.m, index], FINE[np.argmax(signed, axis=-1)])
+        return some, windows.t(inside, index)
+
+    @staticmethod
+    def _narrowed(windows: Windows, items: _Items, index: Number) -> _Items:
+        """Return items narrowed to the samples beside their greatest one."""
+        signed = SIGNS[items.s][:, None] * windows.values[items.m, index]
+        k = np.argmax(np.where(np.isnan(signed), -np.inf, signed), axis=-1)
+        ends = (SAMPLES[np.clip(k + step, 0, len(SAMPLES) - 1)] for step in (-1, 1))
+        return items._replace(**dict(zip(("low", "high"), (windows.t(end, index) for end in ends), strict=True)))
+
+    def _of_items(self, items: _Items, values: Number, places: Number) -> Offers:
+        """Offer values (n, k) of items."""
+        kind = np.broadcast_to(self._kinds(items.m, items.s, items.which)[:, None], values.shape)
+        return Offers(kind.ravel(), (SIGNS[items.s][:, None] * values).ravel(), places.ravel())
+
+    def _without_limit(self) -> Iterator[Offers]:
+        """Offer infinity where rates grow without limit next to a limit position."""
+        which, end = np.nonzero(self.stretches.limits)
+        rates = np.array([one.order > 0 for one in self.measures], dtype=bool)
+        if not len(which) or not rates.any():
+            return
+        t = np.where(end[:, None] == 1, 1.0 - 2.0 * NEAR_LIMIT, 2.0 * NEAR_LIMIT - 1.0)
+        places = self.stretches.places(t, which)
+        found = solved(self.motion, self.measures, np.repeat(self.stretches.design[which], 2), places.ravel())
+        first, second = np.moveaxis(found.reshape(len(self.measures), -1, 2), -1, 0)
+        m, k = np.nonzero(
+            rates[:, None] & (np.abs(second) > GROWTH * np.abs(first) + self._slack[:, self.group[which]])
+        )
+        at = np.where(end == 1, self.stretches.high[which], self.stretches.low[which])[k]
+        sign = (second[m, k] > 0).astype(int)
+        yield Offers(self._kinds(m, sign, which[k]), np.full(len(k), np.inf), at, is_vertex=True)

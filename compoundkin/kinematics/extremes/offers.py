@@ -1,0 +1,60 @@
+"""Values that may be the greatest or the least, and the best of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.series import Number
+
+# The least values are the greatest of the opposite.
+SIGNS = np.array([-1.0, 1.0])
+BOTH = SIGNS[:, None, None]
+
+
+class Peaks(NamedTuple):
+    """The least and greatest values of quantities, (quantities, 2, groups), with their places.
+
+    Groups are designs, or assembled pieces. Values are NaN where nothing is known, infinite where they grow without
+    limit. `slack` (quantities, groups) is what rounding makes of one value.
+    """
+
+    value: Number
+    place: Number
+    slack: Number
+
+
+class Offers(NamedTuple):
+    """Values that may be the greatest of their kind, times their sign.
+
+    `kind` is quantity, sign and group in one number.
+    """
+
+    kind: Number
+    value: Number
+    place: Number
+    is_vertex: bool = False
+
+
+def best_of(offers: Sequence[Offers], slack: Number) -> Peaks:
+    """Return the greatest value of each kind, and where it is first taken.
+
+    Vertices come before poses. `slack` (quantities, groups) is what rounding makes of one value.
+    """
+    shape = len(slack), len(SIGNS), slack.shape[1]
+    best = np.full(np.prod(shape), -np.inf)
+    for one in offers:
+        np.fmax.at(best, one.kind, one.value)
+    least = best - np.repeat(slack[:, None], len(SIGNS), axis=1).ravel()
+    place = np.full(best.shape, np.inf)
+    for among in ([one for one in offers if one.is_vertex], offers):
+        first = np.full(best.shape, np.inf)
+        for one in among:
+            near = one.value >= least[one.kind]
+            np.fmin.at(first, one.kind[near], one.place[near])
+        place = np.where(np.isfinite(place), place, first)
+    known = np.isfinite(place)
+    value = np.where(known, np.broadcast_to(BOTH[:, 0], shape).ravel() * best, np.nan)
+    return Peaks(value.reshape(shape), np.where(known, place, np.nan).reshape(shape), slack)

@@ -1,0 +1,67 @@
+"""Places along a motion, with what the drivers and the time are there; and which motions are closed cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.kinematics.extremes.inputs_between import inputs_between, times_between
+from compoundkin.kinematics.motion import Motion
+
+# First and last poses nearer than this (in parts of the size, or radians) are one: the motion is a closed cycle.
+CLOSED = 1e-9
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Places(PrintsShort):
+    """Places along a motion, each of a design.
+
+    `place` counts poses from 0, is fractional between them, and NaN for none.
+    """
+
+    motion: Motion = field(repr=False)
+    design: Number
+    place: Number
+
+    @cached_property
+    def drives(self) -> Mapping[str, Number]:
+        """The drivers' values there, radians or lengths."""
+        part = inputs_between(self.motion, *self._known)
+        return {name: self._spread(values[0]) for name, values in part.drives.items()}
+
+    @cached_property
+    def time(self) -> Number | None:
+        """The times there; None for a motion that is not in time."""
+        return None if self.motion.time is None else self._spread(times_between(self.motion, *self._known))
+
+    @property
+    def _known(self) -> tuple[Number, Number]:
+        good = np.isfinite(self.place)
+        return self.design[good], self.place[good]
+
+    def _spread(self, values: Number) -> Number:
+        good = np.isfinite(self.place)
+        out = np.full(self.place.shape, np.nan)
+        out[good] = np.broadcast_to(np.reshape(values, (-1,)), np.shape(self.place[good]))
+        return out
+
+    def some(self, which: Number) -> Places:
+        """Return some of the places."""
+        return Places(self.motion, self.design[which], self.place[which])
+
+
+def closed_cycles(motion: Motion) -> Number:
+    """Tell which designs end where they began, (designs,)."""
+    shape = motion.inputs.designs, motion.inputs.poses
+    good = np.broadcast_to(motion.failed == 0, shape)
+    closed: Number = good[:, 0] & good[:, -1] & (shape[1] > 2)
+    for pose in motion.poses.values():
+        for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
+            value = np.broadcast_to(series.c[0], shape)
+            closed = closed & (np.abs(value[:, -1] - value[:, 0]) <= CLOSED * size)
+    return closed

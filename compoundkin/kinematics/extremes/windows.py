@@ -1,0 +1,141 @@
+"""Quantities sampled in windows of smooth stretches, and the polynomials through the samples."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.kinematics.extremes.measures import ROUNDING, Measure
+from compoundkin.kinematics.extremes.motion_between import between
+from compoundkin.kinematics.extremes.stretches import Stretches
+from compoundkin.kinematics.motion import Motion
+
+# Samples inside of a window, at Chebyshev's points, and its ends besides. Over five degrees of a crank the polynomial
+# of degree seven is right to some twelve digits.
+INNER = 8
+INSIDE = -np.cos((np.arange(INNER) + 0.5) * np.pi / INNER)
+SAMPLES = np.array([-1.0, *INSIDE, 1.0])
+FIT = np.linalg.inv(chebyshev.chebvander(INSIDE, INNER - 1))
+# The polynomials are first looked at so finely, and then followed by Newton's method.
+FINE = np.linspace(-1.0, 1.0, 65)
+AT_FINE = chebyshev.chebvander(FINE, INNER - 1).T
+NEWTON = 6
+# A polynomial that is off by less than this part of the quantity's range is trusted.
+TRUSTED = 1e-10
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Windows(PrintsShort):
+    """Windows of stretches with samples of quantities.
+
+    They go from `low` to `high` in the stretches' own t. `values` (quantities, windows, samples) are NaN where there
+    are none.
+    """
+
+    which: Number
+    low: Number
+    high: Number
+    places: Number
+    values: Number
+    measures: tuple[Measure, ...]
+
+    def t(self, inside: Number, index: Number) -> Number:
+        """Return the stretches' t at a place from -1 to 1 in some windows."""
+        low, high = self.low[index], self.high[index]
+        return np.where(inside >= 1.0, high, low + (1.0 + inside) * 0.5 * (high - low))
+
+    @cached_property
+    def squared(self) -> Number:
+        """Which quantities are lengths, whose squares are smooth, as a column."""
+        return np.array([one.squared for one in self.measures], dtype=bool)[:, None, None]
+
+    @cached_property
+    def smooth_values(self) -> Number:
+        """The values, or their squares."""
+        return np.where(self.squared, self.values**2, self.values)
+
+    @cached_property
+    def polynomials(self) -> Number:
+        """The coefficients of the polynomials through the inner samples, (quantities, windows, degrees)."""
+        return self.smooth_values[..., 1:-1] @ FIT.T
+
+    @cached_property
+    def fine(self) -> Number:
+        """The polynomials' values at `FINE`, as quantities are: roots where squares are smooth."""
+        return self.unsquared(self.polynomials @ AT_FINE, self.squared)
+
+    @staticmethod
+    def unsquared(values: Number, squared: Number) -> Number:
+        """Return lengths from their squares, other values as they are."""
+        return np.where(squared, np.sqrt(np.maximum(values, 0.0)), values)
+
+    @cached_property
+    def span(self) -> Number:
+        """How much each quantity varies over all samples, (quantities,)."""
+        return _span(self.values)
+
+    @cached_property
+    def trusted(self) -> Number:
+        """Whose polynomials are right to all digits that matter, (quantities, windows)."""
+        largest = np.fmax.reduce(np.abs(self.smooth_values), axis=(1, 2))
+        allowed = TRUSTED * _span(self.smooth_values) + ROUNDING * largest
+        return self._off <= allowed[:, None]
+
+    @cached_property
+    def doubt(self) -> Number:
+        """About how far the polynomials are off, (quantities, windows)."""
+        return self.unsquared(self._off, self.squared[..., 0])
+
+    @cached_property
+    def _off(self) -> Number:
+        """About how far the polynomials are off, in values or their squares."""
+        ends = self.polynomials @ chebyshev.chebvander(np.array([-1.0, 1.0]), INNER - 1).T
+        off = np.nan_to_num(np.abs(ends - self.smooth_values[..., [0, -1]]), nan=0.0, posinf=0.0)
+        return np.maximum(off.max(axis=-1), np.abs(self.polynomials[..., -1]))
+
+
+def _span(values: Number) -> Number:
+    finite = np.where(np.isfinite(values), values, np.nan)
+    return np.nan_to_num(np.fmax.reduce(finite, axis=(1, 2)) - np.fmin.reduce(finite, axis=(1, 2)))
+
+
+def sampled(
+    motion: Motion, measures: Sequence[Measure], stretches: Stretches, which: Number, low: Number, high: Number
+) -> Windows:
+    """Return windows of stretches with their samples, all solved at once."""
+    t = np.where(SAMPLES >= 1.0, high[:, None], low[:, None] + (1.0 + SAMPLES) * 0.5 * (high - low)[:, None])
+    places = stretches.places(t, which)
+    values = solved(motion, measures, np.repeat(stretches.design[which], len(SAMPLES)), places.ravel())
+    values = values.reshape(len(measures), *places.shape)
+    # rates next to a limit position grow without limit, or are not known there
+    ends = (t == -1.0) & stretches.limits[which, :1], (t == 1.0) & stretches.limits[which, 1:]
+    rates = np.array([one.order > 0 for one in measures], dtype=bool)[:, None, None]
+    values = np.where(rates & (ends[0] | ends[1]), np.nan, values)
+    return Windows(which, low, high, places, values, tuple(measures))
+
+
+def solved(motion: Motion, measures: Sequence[Measure], designs: Number, places: Number) -> Number:
+    """Return the values of quantities at places along a motion, (quantities, n)."""
+    order = max((one.order for one in measures), default=0)
+    there = between(motion, designs, places, order)
+    with np.errstate(all="ignore"):
+        return np.array([one.at_poses(there)[0] for one in measures])
+
+
+def vertices(polynomials: Number, start: Number) -> Number:
+    """Return where polynomials (n, degrees) are extreme, near `start`."""
+    first = chebyshev.chebder(polynomials.T)
+    second = chebyshev.chebder(first)
+    t = start
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON):
+            step = chebyshev.chebval(t, first, tensor=False) / chebyshev.chebval(t, second, tensor=False)
+            spacing = FINE[1] - FINE[0]
+            t = np.clip(np.where(np.isfinite(step), t - step, t), start - spacing, start + spacing)
+    return np.clip(t, -1.0, 1.0)

@@ -1,0 +1,168 @@
+"""The search for the zeros of quantities along a motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from compoundkin.base.bracketing import false_position
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.kinematics.extremes.measures import ROUNDING, Measure, values_at_poses
+from compoundkin.kinematics.extremes.stretches import Stretches
+from compoundkin.kinematics.extremes.windows import SAMPLES, Windows, sampled
+from compoundkin.kinematics.motion import Motion
+
+# A value that is less than this many second differences from zero may have two zeros beside it.
+NEAR_ZERO = 0.5
+# A bracket is narrowed so often at most: to 1e-13 of a stretch.
+NARROWINGS = 14
+# Zeros of polynomials are found to this part of the window, in so many trials at most.
+FLAT, TRIALS = 1e-14, 60
+
+
+class FoundZeros(NamedTuple):
+    """The zeros of a quantity, (n,).
+
+    Each has its design and place, and the place until which it stays zero. `sense` is +1 where it then grows, -1 where
+    it falls, 0 where it has one sign on both sides, or ends there.
+    """
+
+    design: Number
+    place: Number
+    until: Number
+    sense: Number
+
+
+class _Samples(NamedTuple):
+    """All that is known of a quantity along a motion, in order: stretch, t in it, sign."""
+
+    which: Number
+    t: Number
+    place: Number
+    sign: Number
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ZeroSearch(PrintsShort):
+    """What is searched for zeros: a quantity over the smooth stretches of a motion."""
+
+    motion: Motion
+    measure: Measure
+    stretches: Stretches
+
+    def zeros(self) -> FoundZeros:
+        """Return the zeros, in order along each design."""
+        if not len(self.stretches):
+            return FoundZeros(*[np.empty(0)] * 4)
+        samples = self._samples()
+        rows = [*self._of_runs(samples), *self._of_brackets(samples)]
+        design, place, until, sense = np.array(rows, dtype=float).reshape(-1, 4).T
+        order = np.lexsort((place, design))
+        return FoundZeros(design[order].astype(int), place[order], until[order], sense[order])
+
+    @cached_property
+    def _values(self) -> Number:
+        return values_at_poses(self.motion, (self.measure,))[0]
+
+    @cached_property
+    def _ends(self) -> Number:
+        return self._at_ends(self._values)
+
+    def _at_ends(self, values: Number) -> Number:
+        s = self.stretches
+        return np.stack([np.where(at >= 0, values[s.design, at], np.nan) for at in (s.first, s.last)], axis=-1)
+
+    @cached_property
+    def _tiny(self) -> float:
+        largest = np.max(np.abs(self._values), initial=0.0, where=np.isfinite(self._values))
+        return ROUNDING * max(float(largest), self.measure.scale)
+
+    def _candidates(self) -> Number:
+        """Return the stretches that may have zeros inside."""
+        ends = self._ends
+        bend = np.abs(np.diff(self._values, 2, axis=-1))
+        bend = np.pad(bend, ((0, 0), (1, 1)), mode="edge") if bend.shape[-1] else np.inf + 0.0 * self._values
+        near = np.abs(ends).min(axis=-1) <= NEAR_ZERO * np.fmax(*self._at_ends(bend).T)
+        zero = np.abs(ends).max(axis=-1) <= self._tiny
+        return np.isnan(ends).any(axis=-1) | (ends[:, 0] * ends[:, 1] < 0) | (near & ~zero)
+
+    def _samples(self) -> _Samples:
+        """Return what is known at poses and in windows."""
+        which = np.flatnonzero(self._candidates())
+        plain = np.setdiff1d(np.arange(len(self.stretches)), which)
+        rows = [np.stack([np.repeat(plain, 2), np.tile([-1.0, 1.0], len(plain)), self._ends[plain].ravel()])]
+        if len(which):
+            values = self._windows(which, -np.ones(len(which)), np.ones(len(which))).values[0]
+            # poses themselves are right also where rates are only known there
+            values[:, [0, -1]] = np.where(np.isnan(self._ends[which]), values[:, [0, -1]], self._ends[which])
+            rows.append(np.stack([np.repeat(which, len(SAMPLES)), np.tile(SAMPLES, len(which)), values.ravel()]))
+        found = np.concatenate(rows, axis=1)
+        found = found[:, np.isfinite(found[2])]
+        stretch, t, value = found[:, np.lexsort((found[1], found[0]))]
+        index = stretch.astype(int)
+        sign = np.where(np.abs(value) <= self._tiny, 0.0, np.sign(value))
+        return _Samples(index, t, self.stretches.places(t[:, None], index)[:, 0], sign)
+
+    def _windows(self, which: Number, low: Number, high: Number) -> Windows:
+        return sampled(self.motion, (self.measure,), self.stretches, which, low, high)
+
+    def _of_runs(self, samples: _Samples) -> list[tuple[float, ...]]:
+        """Return the zeros at samples, and where the quantity stays zero."""
+        piece = self.stretches.piece[samples.which]
+        zero = samples.sign == 0
+        same = np.append(False, (piece[1:] == piece[:-1]) & zero[1:] & zero[:-1])
+        first = np.flatnonzero(zero & ~same)
+        last = np.flatnonzero(zero & ~np.append(same[1:], False))
+        found: list[tuple[float, ...]] = []
+        for a, b in zip(first.tolist(), last.tolist(), strict=True):
+            before = samples.sign[a - 1] if a and piece[a - 1] == piece[a] else 0.0
+            after = samples.sign[b + 1] if b + 1 < len(piece) and piece[b + 1] == piece[b] else 0.0
+            sense = after if before * after < 0 else 0.0
+            found.append((float(self.stretches.design[samples.which[a]]), samples.place[a], samples.place[b], sense))
+        return found
+
+    def _of_brackets(self, samples: _Samples) -> list[tuple[float, ...]]:
+        """Return the zeros between two samples."""
+        piece, sign = self.stretches.piece[samples.which], samples.sign
+        k = np.flatnonzero((sign[:-1] * sign[1:] < 0) & (piece[:-1] == piece[1:]))
+        inside = samples.which[k] == samples.which[k + 1]
+        # at a jump from one sign to the other it is zero on neither side
+        place = 0.5 * (samples.place[k] + samples.place[k + 1])
+        within = k[inside]
+        place[inside] = self._narrowed(samples.which[within], samples.t[within], samples.t[within + 1])
+        design = self.stretches.design[samples.which[k]]
+        return list(zip(design, place, place, sign[k + 1], strict=True))
+
+    def _narrowed(self, which: Number, low: Number, high: Number) -> Number:
+        """Return the places of zeros between t on stretches."""
+        t, going = 0.5 * (low + high), np.arange(len(which))
+        for _ in range(NARROWINGS if len(which) else 0):
+            windows = self._windows(which[going], low[going], high[going])
+            values = windows.values[0]
+            good = windows.trusted[0] & np.isfinite(values[:, 1:-1]).all(axis=-1)
+            t[going[good]] = windows.t(_root(windows, good), np.flatnonzero(good))
+            k = np.argmax(values[:, :-1] * values[:, 1:] <= 0, axis=-1)
+            index = np.arange(len(going))
+            low[going], high[going] = windows.t(SAMPLES[k], index), windows.t(SAMPLES[k + 1], index)
+            t[going[~good]] = 0.5 * (low + high)[going[~good]]
+            going = going[~good]
+            if not len(going):
+                break
+        return self.stretches.places(t[:, None], which)[:, 0]
+
+
+def _root(windows: Windows, good: Number) -> Number:
+    """Return the zeros of trusted polynomials of opposite signs at their ends, from -1 to 1."""
+    c = windows.polynomials[0, good].T
+    ends = chebyshev.chebval(np.array([[-1.0], [1.0]]), c[:, None], tensor=False)
+    with np.errstate(all="ignore"):
+        found = false_position(
+            lambda part: chebyshev.chebval(2.0 * part - 1.0, c, tensor=False),
+            np.ones(c.shape[1]), ends[0], ends[1], FLAT, TRIALS,
+        ) if c.shape[1] else np.empty(0)  # fmt: skip
+    return np.clip(2.0 * np.nan_to_num(found, nan=0.5) - 1.0, -1.0, 1.0)
