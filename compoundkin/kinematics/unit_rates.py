@@ -115,6 +115,13 @@ def units_of(motion: Solved, rows: tuple[Row, ...]) -> tuple[tuple[str, ...], ..
     return tuple(tuple(unit(row, driver) for driver in motion.drives) for row in rows)
 
 
+def moved_alone(motion: Solved, driver: str) -> Any:
+    """Return the motion with one driver moving at unit speed, the others at rest, to order 1."""
+    given = motion.inputs
+    drives = {name: (v[0], float(name == driver)) for name, v in given.drives.items()}
+    return _solved(motion, given.driven(drives), None)
+
+
 def matrix_at(motion: Solved, rows: tuple[Row, ...], given: Inputs, s: Number | None = None) -> Number:
     """Return the Jacobian (..., rows, drivers) at inputs. They are the motion's own, or those at its places `s`."""
     columns = []

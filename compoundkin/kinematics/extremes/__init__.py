@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from compoundkin.kinematics.extremes.extremes_of_motion import Extreme, Extremes, extremes
+from compoundkin.kinematics.extremes.dead_points import DeadPoints, dead_points, driver_dead_points
+from compoundkin.kinematics.extremes.extremes_of_motion import Extreme, Extremes, Pieces, extremes, pieces
 from compoundkin.kinematics.extremes.measures import Measure
 from compoundkin.kinematics.extremes.motion_between import MotionBetween, between
 from compoundkin.kinematics.extremes.places import Places, closed_cycles
 from compoundkin.kinematics.extremes.zeros_of_motion import Zeros, zeros
 
 __all__ = [
+    "DeadPoints",
     "Extreme",
     "Extremes",
     "Measure",
     "MotionBetween",
+    "Pieces",
     "Places",
     "Zeros",
     "between",
     "closed_cycles",
+    "dead_points",
+    "driver_dead_points",
     "extremes",
+    "pieces",
     "zeros",
 ]

@@ -47,7 +47,7 @@ class _Items(NamedTuple):
 class ExtremeSearch(PrintsShort):
     """What is searched: quantities over groups of the smooth stretches of a motion.
 
-    `group` (n,) is in order.
+    `group` (n,) numbers them from 0.
     """
 
     motion: Motion
@@ -114,10 +114,12 @@ class ExtremeSearch(PrintsShort):
 
     def _by_group(self, rows: Number) -> Number:
         """Return the greatest of rows (..., stretches) in each group, -inf where nothing is known."""
-        starts = np.flatnonzero(np.append(True, np.diff(self.group) != 0))
+        in_order = np.argsort(self.group, kind="stable")
+        group = self.group[in_order]
+        starts = np.flatnonzero(np.append(True, np.diff(group) != 0))
         out = np.full((*rows.shape[:-1], self.count), -np.inf)
-        found = np.fmax.reduceat(rows, starts, axis=-1)
-        out[..., self.group[starts]] = np.where(np.isnan(found), -np.inf, found)
+        found = np.fmax.reduceat(rows[..., in_order], starts, axis=-1)
+        out[..., group[starts]] = np.where(np.isnan(found), -np.inf, found)
         return out
 
     def _kinds(self, m: Number, s: Number, which: Number) -> Number:

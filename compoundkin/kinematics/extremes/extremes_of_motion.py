@@ -12,7 +12,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.extreme_search import ExtremeSearch
 from compoundkin.kinematics.extremes.measures import Measure, measures_of
-from compoundkin.kinematics.extremes.places import Places
+from compoundkin.kinematics.extremes.places import Places, closed_cycles
 from compoundkin.kinematics.extremes.stretches import Stretches, stretches_of
 from compoundkin.kinematics.motion import Motion
 
@@ -46,14 +46,28 @@ class Extremes(PrintsShort):
         return self.greatest.value - self.least.value
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Pieces(PrintsShort):
+    """The assembled pieces of a motion, in order along each design; arrays (n,).
+
+    Each goes from `begin` to `end`; `limits` (n, 2) tells at which ends it stops being assembled. A piece that goes on
+    through the end of a closed cycle begins after its end.
+    """
+
+    begin: Places
+    end: Places
+    limits: Number
+
+
 @checked
-def extremes(motion: Motion, *quantities: str | Measure) -> tuple[Extremes, ...]:
+def extremes(motion: Motion, *quantities: str | Measure, by_piece: bool = False) -> tuple[Extremes, ...]:
     """Return the least and greatest values of quantities, between the poses too.
 
-    Names are those of `quantity` that mean numbers ("G.velocity.length", "bar.angle"); arrays are of shape (designs,).
-    They are found by solving again, so that they do not depend on the poses; where a derivative jumps the values on
-    both sides count, and next to a limit position rates may grow without limit. Raises UnknownName for names that the
-    motion does not have, InvalidInput for vectors and a motion of a single pose.
+    Names are those of `quantity` that mean numbers ("G.velocity.length", "bar.angle"); arrays are of shape (designs,),
+    or ``by_piece`` of shape (pieces,), one for each of `pieces`. They are found by solving again, so that they do not
+    depend on the poses; where a derivative jumps the values on both sides count, and next to a limit position rates may
+    grow without limit. Raises UnknownName for names that the motion does not have, InvalidInput for vectors and a
+    motion of a single pose.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> from compoundkin.kinematics import solve
@@ -61,14 +75,57 @@ def extremes(motion: Motion, *quantities: str | Measure) -> tuple[Extremes, ...]
     >>> found.greatest.value.round(6), np.rad2deg(found.greatest.at.drives["crank"]).round(6)
     (array([158.745079]), array([352.819244]))
     """
-    stretches = _held(motion)
-    return _extremes(motion, quantities, stretches, stretches.design, np.arange(motion.inputs.designs))
+    _hold(motion)
+    stretches = stretches_of(motion)
+    group, designs = stretches.design, np.arange(motion.inputs.designs)
+    if by_piece:
+        group, first, _ = _piece_groups(motion)
+        designs = stretches.design[first]
+    return _extremes(motion, quantities, stretches, group, designs)
 
 
-def _held(motion: Motion) -> Stretches:
+@checked
+def pieces(motion: Motion) -> Pieces:
+    """Return the assembled pieces of a motion. Raises InvalidInput for a single pose.
+
+    >>> import warnings
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> with warnings.catch_warnings(action="ignore"):
+    ...     motion = solve(load_named("triple-rocker"), np.deg2rad(np.arange(0.0, 361.0, 5.0)))
+    >>> found = pieces(motion)  # one piece, through the end of the cycle
+    >>> np.rad2deg([found.begin.drives["driver"], found.end.drives["driver"]]).round(4).tolist()
+    [[271.0232], [88.9768]]
+    """
+    _hold(motion)
+    stretches, (_, first, last) = stretches_of(motion), _piece_groups(motion)
+    begin, end = (Places(motion, stretches.design[k], at[k])
+                  for k, at in ((first, stretches.low), (last, stretches.high)))  # fmt: skip
+    return Pieces(begin, end, np.stack([stretches.limits[first, 0], stretches.limits[last, 1]], axis=-1))
+
+
+def _piece_groups(motion: Motion) -> tuple[Number, Number, Number]:
+    """Return the number of the piece of each stretch, and the first and the last stretch of each piece.
+
+    The first piece of a closed cycle goes on from its last one.
+    """
+    s = stretches_of(motion)
+    group, closed = s.piece.copy(), closed_cycles(motion)
+    first, last = (
+        np.flatnonzero(np.diff(s.piece, prepend=-1) if k == 0 else np.diff(s.piece, append=-1)) for k in (0, 1)
+    )
+    for design in np.flatnonzero(closed):
+        mine = np.flatnonzero(s.design[first] == design)
+        if len(mine) > 1:
+            group[group == mine[-1]] = mine[0]
+            first[mine[0]] = first[mine[-1]]
+    kept = np.unique(group)
+    return np.searchsorted(kept, group), first[kept], last[kept]
+
+
+def _hold(motion: Motion) -> None:
     if motion.inputs.poses < 2:
         raise InvalidInput(Problem("motion", "a single pose has no extremes", "solve it at several values of a driver"))
-    return stretches_of(motion)
 
 
 def _extremes(

@@ -60,7 +60,7 @@ def measure_of(motion: Motion, name: str) -> Measure:
         values = quantity(at, whole.name).values
         return PARTS[part](values) if part else values
 
-    return Measure(name, whole.unit, whole.order, of, is_length, scale, whole.dimension)
+    return Measure(name, whole.unit, max(order_of(name), whole.order), of, is_length, scale, whole.dimension)
 
 
 def measures_of(motion: Motion, asked: Sequence[str | Measure]) -> tuple[Measure, ...]:

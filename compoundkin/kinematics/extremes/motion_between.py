@@ -126,6 +126,8 @@ def between(
     """
     designs, places = np.broadcast_arrays(np.atleast_1d(designs).astype(int), np.atleast_1d(places).astype(float))
     _hold(motion, designs, places)
+    if not len(places):
+        return _of_no_place(between(motion, 0, 0.0, order, by_place))
     order = motion.order if order is None else order
     with np.errstate(all="ignore"):
         part = inputs_between(motion, designs, places, order, by_place)
@@ -134,6 +136,19 @@ def between(
     own = {f.name: getattr(motion, f.name) for f in fields(Motion)}
     own |= {"order": order, "inputs": _laid(part, len(places)), "poses": poses, "failed": failed, "time": time}
     return MotionBetween(**own, whole=motion, designs=designs, places=places)
+
+
+def _of_no_place(one: MotionBetween) -> MotionBetween:
+    """Return a motion at one place without it."""
+
+    def nothing(series: Series) -> Series:
+        return Series(tuple([c[:, :0] if np.ndim(c) else c for c in series.c]))
+
+    poses = {name: pose if pose is FIXED else pose.mapped(nothing) for name, pose in one.poses.items()}
+    inputs = one.inputs.cut(slice(None), slice(0, 0)).of_poses(0)
+    time = None if one.time is None else one.time[:0]
+    own = {"inputs": inputs, "poses": poses, "failed": one.failed[:, :0], "time": time}
+    return replace(one, **own, designs=one.designs[:0], places=one.places[:0])
 
 
 def _hold(motion: Motion, designs: Number, places: Number) -> None:

@@ -61,6 +61,12 @@ def stretches_of(motion: Motion) -> Stretches:
     return found
 
 
+def share_stretches(motion: Motion, other: Motion) -> Motion:
+    """Return another motion through the same poses, which need not be divided again."""
+    other.__dict__["_stretches"] = stretches_of(motion)
+    return other
+
+
 def _found(motion: Motion) -> Stretches:
     good = np.broadcast_to(motion.failed == 0, (motion.inputs.designs, motion.inputs.poses))
     design, k = np.nonzero(good[:, :-1] & good[:, 1:])
