@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from compoundkin import composing as composing
     from compoundkin import coupler as coupler
     from compoundkin import dyads as dyads
+    from compoundkin import equations as equations
     from compoundkin import equivalents as equivalents
     from compoundkin import errors as errors
     from compoundkin import laws as laws
@@ -130,7 +131,7 @@ _LATE = {
 # The modules that hold all other public names: no rooms, each a list of what rooms have.
 _MODULES = (
     *("advantage", "cams", "catalog", "chains", "composing", "coupler", "dyads"),
-    *("equivalents", "errors", "laws", "performance", "plots", "profiles", "results"),
+    *("equations", "equivalents", "errors", "laws", "performance", "plots", "profiles", "results"),
 )
 
 # Names of version 0.1 and what is written for them now.

@@ -34,6 +34,7 @@ def at_hand() -> dict[str, Any]:
         "place": ck.coupler.LinkPosition((0, 0), 1.0),
         "line": ck.dyads.MovingLine((0, 0), 1.0),
         "joints": ck.chains.Joints(("a", "b", "c"), (ck.chains.Joint((0, 1)), ck.chains.Joint((1, 2)))),
+        "loop": ck.loop_equations(bar).loops[0],
         "program": ck.laws.program(ck.laws.rise(1, over=2)),
     }
 
@@ -86,7 +87,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "instant_centres": {"motion": motion},
         "link": {"name": "a", "A": 0},
         "load": {"path": str(ck.catalog.path("six-bar"))},
-        "loop_equations": {"mechanism": m},
+        "loop_equations": {"mechanism": m, "order": 2},
         "mobility_analysis": {"mechanism": m, "poses": None},
         "mode": {"sign": 1},
         "page": {"what": motion, "outputs": (), "design": 0},
@@ -164,6 +165,10 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "dyads.rpr": {"a": (0, 0), "b": (2, 0), "offset": 0.0, "mode": 1},
         "dyads.rrp": {"a": (0, 0), "guide": h["line"], "length": 2.0, "offset": 0.0, "mode": 1},
         "dyads.rrr": {"a": (0, 0), "b": (2, 0), "first_length": 2.0, "second_length": 2.0, "mode": 1},
+        "equations.freudenstein": {"mechanism": m},
+        "equations.latex": {"equation": h["loop"]},
+        "equations.newton_iterations": {"mechanism": m, "values": {"crank": 1.0}, "start": None},
+        "equations.text": {"equation": h["loop"]},
         "equivalents.equivalent_linkage": {"motion": h["cam"], "at": 0},
         "laws.ConstantAcceleration": {"acceleration": 1.0, "speed": 1.0, "start": 0.0},
         "laws.ConstantSpeed": {"speed": 1.0, "start": 0.0},

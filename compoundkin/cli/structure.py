@@ -2,10 +2,29 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import click
 
+from compoundkin.cli.drive_options import AT, pose_options
 from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
-from compoundkin.cli.shell import say
+from compoundkin.cli.shell import NOT_ASSEMBLED, say
+
+if TYPE_CHECKING:
+    from compoundkin.kinematics import Motion
+    from compoundkin.structure import Structure
+    from compoundkin.view.report.report_data import Section
+
+# The options that ask for more of the equations, by the names of their values; all but the first ask for a pose.
+OF_EQUATIONS = {
+    "order": "--order",
+    "at": "--at",
+    "newton": "--newton",
+    "estimates": "--estimate",
+    "speeds": "--speed",
+    "modes": "--mode",
+    "design": "--design",
+}
 
 
 @click.command(
@@ -15,16 +34,26 @@ Examples:
   compoundkin structure linkage.toml --format markdown
   compoundkin structure stephenson-ii --alternatives
   compoundkin structure slider-crank --equations -o loops.md
+  compoundkin structure slider-crank --equations --order 2 --at 35
+  compoundkin structure four-bar-norton --equations --at 40 --newton
 """
 )
 @mechanism_argument
 @click.option("--alternatives", is_flag=True, help="Add every other choice of frame and driver, and what it gives.")
 @click.option("--equations", is_flag=True, help="Add the vector-loop equations; as LaTeX in Markdown and JSON.")
+@click.option("--order", type=click.IntRange(0, 2), default=0, metavar="ORDER",
+              help="With --equations: 1 adds the equations of velocities, 2 of accelerations.")  # fmt: skip
+@AT
+@pose_options
+@click.option("--newton", is_flag=True, help="With --equations: add Newton's iterations of the pose.")
+@click.option("--estimate", "estimates", multiple=True, metavar="NAME=VALUE",
+              help="Where they start: an unknown, degrees or length; as drawn if left out.")  # fmt: skip
 @report_options
-def command(file: str, alternatives: bool, equations: bool, form: str | None, path: str | None) -> int:
+def command(file: str, alternatives: bool, equations: bool, form: str | None, path: str | None, **asked: Any) -> int:
     """Take a mechanism apart: links, pairs, mobility, loops, Assur groups in solving order.
 
-    Nothing is solved. What keeps a mechanism from being solved is named with its remedies (exit code 2).
+    Nothing is solved, unless equations are asked for in numbers. What keeps a mechanism from being solved is named with
+    its remedies (exit code 2); exit code 3: the pose cannot be assembled.
     """
     from dataclasses import replace
 
@@ -32,19 +61,80 @@ def command(file: str, alternatives: bool, equations: bool, form: str | None, pa
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
 
+    _hold_together(equations, asked)
     with working("taking the mechanism apart"):
         structure = decompose(loaded(file))
         made = report(structure)
+    code = 0
     if equations:
-        from compoundkin.view.report.loop_sections import equations_section
-
-        made = replace(made, sections=(*made.sections, equations_section(structure)))
+        sections, code = _equations(structure, asked)
+        made = replace(made, sections=(*made.sections, *sections))
     if alternatives:
         from compoundkin.view.report.atlas_sections import alternatives_section
 
         made = replace(made, sections=(*made.sections, alternatives_section(structure)))
     put_report(made, form, path)
-    return unsolvable(len(structure.faults)) if structure.faults else 0
+    return unsolvable(len(structure.faults)) if structure.faults else code
+
+
+def _hold_together(equations: bool, asked: dict[str, Any]) -> None:
+    """Raise InvalidInput for options that need others."""
+    from compoundkin.base.errors import InvalidInput, Problem
+
+    given = [option for name, option in OF_EQUATIONS.items() if asked[name]]
+    if given and not equations:
+        raise InvalidInput(Problem(given[0], "it goes with the equations", "add --equations"))
+    if asked["estimates"] and not asked["newton"]:
+        raise InvalidInput(Problem("--estimate", "nothing is estimated without iterations", "add --newton"))
+
+
+def _equations(structure: Structure, asked: dict[str, Any]) -> tuple[list[Section], int]:
+    """The sections of the equations, and the exit code."""
+    from compoundkin.analysis.equations import loop_equations
+    from compoundkin.view.report.loop_sections import written_section
+    from compoundkin.view.report.rate_sections import constants_section, rates_section
+
+    found = loop_equations(structure, asked["order"])
+    sections = [written_section(found), constants_section(found), rates_section(found) if found.rates else None]
+    code = 0
+    if any(asked[name] for name in OF_EQUATIONS if name != "order") and not structure.faults:
+        from compoundkin.view.report.pose_numbers_section import pose_section
+
+        driven, motion = _solved(structure, asked)
+        sections.append(pose_section(found, motion, asked["design"]))
+        if asked["newton"]:
+            sections.append(_newton(structure, driven, motion, asked["estimates"]))
+        code = 0 if motion.assembled.all() else NOT_ASSEMBLED
+    return [section for section in sections if section is not None], code
+
+
+def _solved(structure: Structure, asked: dict[str, Any]) -> tuple[dict[str, float], Motion]:
+    """The values of the drivers at the pose, and the motion there."""
+    from compoundkin.cli import typed_values
+    from compoundkin.cli.drive_options import solved_at
+
+    driven = typed_values.of_pose(structure, asked["at"])
+    rates = {"speeds": asked["speeds"], "accelerations": (), "outputs": (), "modes": asked["modes"]}
+    return driven, solved_at(structure, driven, {**rates, "order": max(asked["order"], 1)})
+
+
+def _newton(structure: Structure, driven: dict[str, float], motion: Motion, estimates: tuple[str, ...]) -> Section:
+    """The section on Newton's iterations."""
+    import numpy as np
+
+    from compoundkin.analysis.equations import loop_equations
+    from compoundkin.analysis.equations.newton_iterations import newton_iterations
+    from compoundkin.analysis.equations.pose_values import pose_values
+    from compoundkin.cli.typed_estimates import of_unknowns
+    from compoundkin.view.report.newton_section import newton_section
+
+    unknowns = loop_equations(structure).system.unknowns
+    start = of_unknowns({own.key: own.is_angle for own in unknowns}, estimates)
+    values = {**{name: float(np.ravel(one.value)[0]) for name, one in motion.drives.items()}, **driven}
+    solved = {key: float(np.ravel(value)[0]) for key, value in pose_values(motion).items()}
+    found = newton_iterations(structure, values, start)
+    mechanism = structure.mechanism
+    return newton_section(found, mechanism.unit, mechanism.geometry.size, solved if motion.assembled.all() else None)
 
 
 def unsolvable(faults: int) -> int:

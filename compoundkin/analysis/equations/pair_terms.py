@@ -11,17 +11,8 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.loop_terms import (
-    Auxiliary,
-    Implicit,
-    LoopTerms,
-    Sum,
-    Unknown,
-    Vector,
-    angle_of,
-    difference,
-    direction,
-)
+from compoundkin.model.pairs.loop_terms import Auxiliary, Implicit, LoopTerms
+from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
 from compoundkin.model.pairs.optional_answers import Equivalent, lower_equivalent
 
 
@@ -98,8 +89,8 @@ def _by_closure(pair: Pair, ends: Ends) -> LoopTerms:
     driven = (Unknown("direction" if pair.free_is_angle else "displacement", pair.name),) if pair.held == 2 else ()
     points = tuple(_place(end) for end in ends)
     equations = tuple(
-        Implicit(pair.name, k, pair.members, points, function, (across,) if is_crossed else (), result)
-        for k, (function, result) in enumerate(_functions(pair, ends, driven), 1)
+        Implicit(pair.name, k, pair.members, points, function, (across,) if is_crossed else (), result, is_angle)
+        for k, (function, result, is_angle) in enumerate(_functions(pair, ends, driven), 1)
     )
     arms, unknowns = (across, (*driven, x, y)) if is_crossed else ((), driven)
     return LoopTerms(points[:2], (f"{pair.name}'", pair.name), arms, unknowns, equations, is_crossed)
@@ -107,14 +98,14 @@ def _by_closure(pair: Pair, ends: Ends) -> LoopTerms:
 
 def _functions(
     pair: Pair, ends: Ends, driven: tuple[Unknown, ...]
-) -> Iterator[tuple[Callable[[tuple[Pose, ...]], Number], Unknown | None]]:
-    """What the pair holds, as functions of poses; and the coordinate where a driver may give it."""
+) -> Iterator[tuple[Callable[[tuple[Pose, ...]], Series], Unknown | None, bool]]:
+    """What the pair holds, as functions of poses, and whether it is an angle; the coordinate where it may be driven."""
 
-    def residual(k: int) -> Callable[[tuple[Pose, ...]], Number]:
-        return lambda poses: pair.closure(ends, poses)[k].c[0]
+    def residual(k: int) -> Callable[[tuple[Pose, ...]], Series]:
+        return lambda poses: pair.closure(ends, poses)[k]
 
-    yield from ((residual(k), None) for k in range(pair.held))
-    yield from ((lambda poses: pair.coordinate(ends, poses).c[0], unknown) for unknown in driven)
+    yield from ((residual(k), None, k in pair.held_angles) for k in range(pair.held))
+    yield from ((lambda poses: pair.coordinate(ends, poses), unknown, pair.free_is_angle) for unknown in driven)
 
 
 def shortest_way(pairs: Sequence[Pair], start: str, end: str) -> tuple[list[str], list[Pair]]:

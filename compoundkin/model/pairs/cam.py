@@ -19,7 +19,8 @@ from compoundkin.model.pairs.arc import ArcSlot
 from compoundkin.model.pairs.contact import THINNED, Profiled, Touch, centre_of_curvature, row
 from compoundkin.model.pairs.contact_search import Freedom, crossings_on_way, path_of
 from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.loop_terms import Curved, LoopTerms, Unknown, angle_of
+from compoundkin.model.pairs.loop_terms import LoopTerms
+from compoundkin.model.pairs.loop_vectors import Curved, Sum, Unknown, angle_of
 from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
@@ -148,9 +149,9 @@ class Cam(Profiled):
         if self.profile.circle is not None:
             return None
         free, on, curve = Unknown("parameter", self.name), angle_of(self.on), self.curve
-        away = ends[1].measure * self.outward
-        contact = Curved(f"profile({free.key})", lambda values: curve.at(values[free.key]).c[0], on)
-        normal = Curved(f"normal({free.key})", lambda values: away * curve.normal(values[free.key]).c[0], on)
+        away, parameter = ends[1].measure * self.outward, Sum(0.0, ((1.0, free),))
+        contact = Curved(f"profile({free.key})", curve.at, parameter, on)
+        normal = Curved(f"normal({free.key})", lambda s: away * curve.normal(s), parameter, on)
         arms = (contact, normal) if np.any(away != 0.0) else (contact,)
         return LoopTerms((ends[0].point, ends[1].point), (f"origin of {self.on}", self.at), arms, (free,))
 

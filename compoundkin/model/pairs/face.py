@@ -18,16 +18,16 @@ from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import THINNED, Profiled, Touch, centre_of_curvature, row
 from compoundkin.model.pairs.contact_search import Freedom, path_of, tangents_on_way
 from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.loop_terms import (
+from compoundkin.model.pairs.loop_terms import LoopTerms
+from compoundkin.model.pairs.loop_vectors import (
     Curved,
-    LoopTerms,
     Sum,
     Unknown,
-    Values,
     Vector,
     angle_of,
     difference,
     direction,
+    turned,
 )
 from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
@@ -137,10 +137,10 @@ class Face(Profiled):
         along = angle_of(self.link).plus(direction(ends[1]))
         toward = difference(on, along)
 
-        def touched(values: Values) -> Number:
-            return curve.at(curve.support(np.exp(1j * toward.at(values)) * side).c[0]).c[0]
+        def touched(angle: Series | Number) -> Series:
+            return curve.at(curve.support(turned(angle, side)))
 
-        arms = Curved(f"contact({self.name})", touched, on), Vector("", Sum(0.0, ((1.0, free),)), along, -1)
+        arms = Curved(f"contact({self.name})", touched, toward, on), Vector("", Sum(0.0, ((1.0, free),)), along, -1)
         return LoopTerms((ends[0].point, ends[1].point), (f"origin of {self.on}", self.at), arms, (free,))
 
     def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:

@@ -15,7 +15,8 @@ from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
-from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
+from compoundkin.model.pairs.loop_vectors import angle_of, difference
 from compoundkin.model.pairs.optional_answers import DrawnPair, Osculation, Replaceable, TurnCounting, as_drivable
 from compoundkin.model.pairs.wheel_sizes import Sizes, Two, size_problems, two_of, wheel_problems
 

@@ -16,16 +16,8 @@ from compoundkin.model.fields import NameWording, link_key, point_key, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
 from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
-from compoundkin.model.pairs.loop_terms import (
-    Auxiliary,
-    LoopTerms,
-    Sum,
-    Unknown,
-    Vector,
-    angle_of,
-    difference,
-    direction,
-)
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
+from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
 from compoundkin.model.pairs.optional_answers import DrawnPair, Drivable, Orienting
 from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 

@@ -14,7 +14,8 @@ from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Pair, Poses, table
 from compoundkin.model.pairs.gear import UNCOUNTED
-from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms, angle_of, difference, direction
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
+from compoundkin.model.pairs.loop_vectors import angle_of, difference, direction
 from compoundkin.model.pairs.pitch_line import OnLine
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.wheel_sizes import FITS, radius_problems

@@ -14,16 +14,8 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Poses, table
-from compoundkin.model.pairs.loop_terms import (
-    Auxiliary,
-    LoopTerms,
-    Sum,
-    Unknown,
-    Vector,
-    angle_of,
-    difference,
-    direction,
-)
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
+from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
 from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.model.pairs.pitch_line import OnLine
 from compoundkin.model.pairs.wheel_sizes import radius_problems

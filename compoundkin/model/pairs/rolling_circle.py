@@ -15,16 +15,8 @@ from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
-from compoundkin.model.pairs.loop_terms import (
-    Auxiliary,
-    LoopTerms,
-    Sum,
-    Unknown,
-    Vector,
-    angle_of,
-    difference,
-    direction,
-)
+from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
+from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
 from compoundkin.model.pairs.optional_answers import DrawnPair, Drivable, TurnCounting
 from compoundkin.model.pairs.symbols import Mark, Wheel
 from compoundkin.model.pairs.wheel_sizes import radius_problems

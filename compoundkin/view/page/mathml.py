@@ -1,7 +1,8 @@
 r"""Formulas as MathML, from the LaTeX that reports write them in: a small part of it, and nothing of it unread.
 
 The part is letters, numbers, brackets, commas, `_`, `^`, `\theta`, `\varphi`, `\circ`, `\text{...}`, `\overline{...}`,
-`\operatorname{...}`, `\left` and `\right`.
+`\operatorname{...}`, `\left` and `\right`, `\sin` and `\cos`, `\dot` and `\ddot`, `\prime`, `\partial`, "/", and
+matrices in brackets (`bmatrix`).
 Source: W3C, MathML Core.
 """
 
@@ -12,8 +13,14 @@ from collections.abc import Iterator
 
 from compoundkin.view.page.markup import safe
 
-LETTERS = {r"\theta": "θ", r"\varphi": "φ"}
+LETTERS = {r"\theta": "θ", r"\varphi": "φ", r"\partial": "∂"}
 SIGNS = {"-": "−", "+": "+", "=": "=", ",": ","}
+OTHER_SIGNS = {"/": "/", r"\prime": "′"}
+# Functions, whose names stand upright; dots over a letter.
+FUNCTIONS = {r"\sin": "sin", r"\cos": "cos"}
+DOTS = {r"\dot": "˙", r"\ddot": "¨"}
+# What ends an entry and a row of a matrix.
+NEXT, ROW = "&", r"\\"
 _TOKEN = re.compile(r"\s+|\\[a-zA-Z]+|\\.|\d+(?:\.\d+)?(?:e[+-]?\d+)?|.", re.DOTALL)
 _WORDS = (r"\text", r"\operatorname")
 
@@ -100,7 +107,35 @@ class _Reader:
             return self.group().replace("<mtext>", '<mtext class="over">')
         if token in (r"\left", r"\right"):
             return self.bracket(self.next())
+        if token in DOTS:
+            return f'<mover accent="true">{self.group()}<mo>{DOTS[token]}</mo></mover>'
+        if token == r"\begin":
+            return self.matrix()
         return self.bracket(token) if token in "()[]" else _simple(token)
+
+    def matrix(self) -> str:
+        """Return a matrix in brackets, row by row."""
+        if self.words() != "bmatrix":
+            raise Unread("no matrix")
+        self.depth += 1
+        rows: list[list[list[str]]] = [[[]]]
+        while self.peek() != r"\end":
+            if self.peek() == NEXT:
+                rows[-1].append([])
+            elif self.peek() == ROW:
+                rows.append([[]])
+            else:
+                atom = self.atom()
+                rows[-1][-1] += [self.with_scripts(atom)] if atom else []
+                continue
+            self.next()
+        self.next()
+        if self.words() != "bmatrix":
+            raise Unread("no end of a matrix")
+        self.depth -= 1
+        cells = ("".join(f"<mtd>{''.join(cell)}</mtd>" for cell in row) for row in rows)
+        table = "".join(f"<mtr>{row}</mtr>" for row in cells)
+        return f"<mrow><mo>[</mo><mtable>{table}</mtable><mo>]</mo></mrow>"
 
     def bracket(self, token: str) -> str:
         if token not in "()[]":
@@ -127,6 +162,10 @@ class _Reader:
 def _simple(token: str) -> str:
     if token in SIGNS:
         return f"<mo>{SIGNS[token]}</mo>"
+    if token in OTHER_SIGNS:
+        return f"<mo>{OTHER_SIGNS[token]}</mo>"
+    if token in FUNCTIONS:
+        return f'<mi>{FUNCTIONS[token]}</mi><mspace width="0.17em"></mspace>'
     if token in LETTERS:
         return f"<mi>{LETTERS[token]}</mi>"
     if token == r"\circ":

@@ -26,6 +26,7 @@ _MEANING = {
     "parameter": "parameter of the profile at the contact",
     "x": "way across the pair in x of its first link",
     "y": "way across the pair in y of its first link",
+    "given": "value of the driver",
 }
 
 
@@ -127,7 +128,12 @@ def _verdict(count: EquationCount) -> tuple[Block, ...]:
 
 def equations_section(structure: Structure) -> Section:
     """Return the loop equations, the auxiliary ones and those of the drivers. What is unknown, what is known."""
-    return Section("equations", "Vector-loop equations", tuple(_blocks(loop_equations(structure))))
+    return written_section(loop_equations(structure))
+
+
+def written_section(found: LoopEquations) -> Section:
+    """Return the same of equations that are known already."""
+    return Section("equations", "Vector-loop equations", tuple(_blocks(found)))
 
 
 def _blocks(found: LoopEquations) -> Iterator[Block]:

@@ -83,3 +83,25 @@ def test_what_only_its_closure_says_is_written_as_a_function(oldham: Any) -> Non
     else:
         assert keys[-2:] == ["s(tray/frame (x))", "s(tray/frame (y))"]
         assert text(own) == "tray - 11.4592 deg = 0"
+
+
+def test_rates_of_an_oldham_pair_follow_from_its_closure(oldham: Any) -> None:
+    motion = ck.solve(tray(oldham), {"crank": ck.deg([10, 90, 200])}, speed=2, acceleration=3)
+    equations = loop_equations(motion.structure, order=2)
+    first, second = equations.velocity.at(motion), equations.acceleration.at(motion)
+    across = motion.points["C"]
+    for found, moved in ((first, across.velocity), (second, across.acceleration)):
+        for own in found.unknowns:
+            if own.kind == "angle":
+                assert np.max(np.abs(found.rate(own.key))) < 1e-12, own.key  # the tray does not turn
+            else:
+                along_x = own.kind == "x" or own.owner.endswith("(x)")
+                assert np.allclose(found.rate(own.key), moved.real if along_x else moved.imag, rtol=1e-12)
+    written = [entry for row in equations.velocity.matrix.entries for entry in row if not entry.is_zero]
+    for own in (*written, *(one for row in equations.acceleration.right_side.entries for one in row)):
+        assert mathml(own.latex)
+    if equations.system.rows[-1].function is not None:
+        assert equations.velocity.rows[-1].startswith(
+            "dF1[tray/frame]/d(tray) tray' + dF1[tray/frame]/d(x(tray/frame))"
+        )
+        assert equations.acceleration.rows[-1].endswith("= -F1''[tray/frame]")

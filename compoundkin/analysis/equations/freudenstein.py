@@ -1,0 +1,123 @@
+"""Freudenstein's equation of four-bar loops, and its like for slider-cranks, with their constants.
+
+Sources: F. Freudenstein, Approximate synthesis of four-bar linkages, Trans. ASME 77 (1955) 853-861; R. L. Norton,
+Design of Machinery, section 4.5; R. S. Hartenberg and J. Denavit, Kinematic Synthesis of Linkages, chapter 10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from compoundkin.analysis.equations.loop_constants import STRAIGHT, FourBarConstants, SliderCrankConstants
+from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
+from compoundkin.analysis.equations.reduced_system import resolved
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import wrapped
+from compoundkin.base.series import Number
+from compoundkin.model.elements import FRAME
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs.loop_vectors import Sum, Term, Unknown, Vector
+from compoundkin.structure import Loop, Structure
+
+# The letter of pairs that are pins.
+PIN = "R"
+
+
+@checked
+def freudenstein(mechanism: Mechanism | Structure) -> tuple[FourBarConstants | SliderCrankConstants, ...]:
+    """Return Freudenstein's equation of every loop that has one.
+
+    These are the four-bars of pins on the frame, and slider-cranks whose guide is on it.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> (found,) = freudenstein(load_named("four-bar-norton"))
+    >>> {name: round(float(value), 4) for name, value in found.constants.items()}
+    {'K1': 2.5, 'K2': 1.25, 'K3': 0.5625, 'K4': 0.8333, 'K5': -2.0417}
+    >>> found.text[0]
+    'K1 cos(rocker) - K2 cos(crank) + K3 = cos(crank - rocker)'
+    """
+    equations = loop_equations(mechanism)
+    return tuple(constants_of(equations))
+
+
+def constants_of(equations: LoopEquations) -> Iterator[FourBarConstants | SliderCrankConstants]:
+    """Return those of all loops of equations that are known already."""
+    for loop in equations.loops:
+        terms = list(resolved(loop.terms, equations.system.sums))
+        found = _four_bar(loop.loop, terms, equations) or _slider_crank(loop.loop, terms, equations)
+        if found is not None:
+            yield found
+
+
+def _four_bar(loop: Loop, terms: Sequence[Term], equations: LoopEquations) -> FourBarConstants | None:
+    """Of three vectors that turn, one after another, and the frame's."""
+    still, moving = _around(terms)
+    if len(moving) != 3 or any(own.length.parts for own in still):
+        return None
+    base = -sum((own.at({}) for own in still), 0j)
+    if not np.all(np.abs(base) > 0.0):
+        return None
+    one, two, three = moving
+    given = equations.system.given
+    if _owner(three) in given and _owner(one) not in given:
+        base, one, two, three = -base, three.reversed(), two.reversed(), one.reversed()
+    first, second, third = (_direction(own, base) for own in (one, two, three.reversed()))
+    lengths = dict(zip("abc", (own.length.constant for own in (one, two, three)), strict=True))
+    return FourBarConstants(loop, {**lengths, "d": np.abs(base)}, (first, second, third))
+
+
+def _slider_crank(loop: Loop, terms: Sequence[Term], equations: LoopEquations) -> SliderCrankConstants | None:
+    """Of a crank on the frame, a rod, and a displacement in a fixed direction."""
+    still, moving = _around(terms)
+    sliding = [own for own in still if own.length.parts]
+    pinned = {name for pair in equations.structure.pairs if pair.code == PIN and FRAME in pair.members
+              for name in pair.members}  # fmt: skip
+    cranks = [own for own in moving if _owner(own).owner in pinned]
+    if len(moving) != 2 or len(sliding) != 1 or len(cranks) != 1:
+        return None
+    is_first = cranks[0] is moving[0]
+    crank, rod = moving if is_first else (moving[1].reversed(), moving[0].reversed())
+    # crank and rod lead from the frame to the block; the rest of the loop leads back, or out as well
+    outward = -1.0 if is_first else 1.0
+    along = outward * sliding[0].sign * np.exp(1j * sliding[0].angle.constant)
+    rest = outward * sum((own.at({}) for own in still if not own.length.parts), 0j) / along
+    a = crank.length.constant
+    lengths = {"a": a, "b": rod.length.constant, "e": _rounded(np.imag(rest), a)}
+    x = sliding[0].length.plus(_rounded(np.real(rest), a))
+    return SliderCrankConstants(loop, lengths, _direction(crank, along), x)
+
+
+def _around(terms: Sequence[Term]) -> tuple[list[Vector], list[Vector]]:
+    """Vectors that do not turn, and those that do, in the order in which they follow; none where there are others."""
+    vectors = [own for own in terms if isinstance(own, Vector)]
+    still = [not own.angle.parts for own in vectors]
+    turning = [own for own in vectors if own.angle.parts]
+    if len(vectors) < len(terms) or all(still) or not any(still) or not all(map(_turns, turning)):
+        return [], []
+    # begin behind the last of those that stand still
+    start = next(k for k in range(len(still)) if still[k] and not still[(k + 1) % len(still)]) + 1
+    order = [vectors[(k + start) % len(vectors)] for k in range(len(vectors))]
+    distinct = len({_owner(own) for own in turning}) == len(turning)
+    return [own for own in order if not own.angle.parts], [own for own in order if own.angle.parts] if distinct else []
+
+
+def _turns(own: Vector) -> bool:
+    """Whether a vector of known length has one unknown as its angle."""
+    parts = own.angle.parts
+    return not own.length.parts and len(parts) == 1 and bool(np.all(parts[0][0] == 1.0))
+
+
+def _owner(own: Vector) -> Unknown:
+    return own.angle.parts[0][1]
+
+
+def _direction(own: Vector, base: Number) -> Sum:
+    """The angle of a vector, counted from a base."""
+    constant = wrapped(own.angle.constant + (np.pi if own.sign < 0 else 0.0) - np.angle(base))
+    return Sum(np.where(np.abs(constant) < STRAIGHT, 0.0, constant)[()], own.angle.parts)
+
+
+def _rounded(length: Number, size: Number) -> Number:
+    return np.where(np.abs(length) < STRAIGHT * size, 0.0, length)[()]

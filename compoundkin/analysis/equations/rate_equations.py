@@ -1,0 +1,158 @@
+"""The equations of velocities and accelerations: one matrix, two right-hand sides; in symbols and with numbers.
+
+Sources: P. E. Nikravesh, Computer-Aided Analysis of Mechanical Systems, section 3.2; R. L. Norton, Design of Machinery,
+sections 6.7 and 7.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.analysis.equations.expressions import Expression, total
+from compoundkin.analysis.equations.factors import Rate
+from compoundkin.analysis.equations.pose_values import given_values, pose_values
+from compoundkin.analysis.equations.rate_solution import RateSolution, Scales, solution_of
+from compoundkin.analysis.equations.reduced_system import ReducedSystem
+from compoundkin.analysis.equations.row_derivatives import bend, slope
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Values
+from compoundkin.structure import Structure
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SymbolArray(PrintsShort):
+    """A matrix of expressions, or a column of them: rows of entries.
+
+    >>> from compoundkin.analysis.equations import loop_equations
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> found = loop_equations(load_named("slider-crank"), order=2).acceleration
+    >>> found.right_side.entries[0][0].text
+    "OA sin(crank) crank'' + OA crank'^2 cos(crank) + AB rod'^2 cos(rod)"
+    """
+
+    entries: tuple[tuple[Expression, ...], ...]
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """Each row's entries as text, but those that are zero."""
+        return tuple(
+            ", ".join(f"[{k}] {one.text}" for k, one in enumerate(row, 1) if not one.is_zero) for row in self.entries
+        )
+
+    @property
+    def text(self) -> str:
+        """Written as text, a line for each row, in columns."""
+        rows = [[entry.text for entry in row] for row in self.entries]
+        wide = [max(len(row[k].lstrip("-")) for row in rows) for k in range(len(rows[0]))] if rows else []
+        signed = [[f"{'-' if one.startswith('-') else ' '}{one.lstrip('-')}" for one in row] for row in rows]
+        lines = ["  ".join(one.ljust(wide[k] + 1) for k, one in enumerate(row)) for row in signed]
+        return "\n".join(f"[ {line} ]" for line in lines)
+
+    @property
+    def latex(self) -> str:
+        """Written as LaTeX."""
+        rows = r" \\ ".join(" & ".join(entry.latex for entry in row) for row in self.entries)
+        return rf"\begin{{bmatrix}} {rows} \end{{bmatrix}}"
+
+    def at(self, values: Values) -> Number:
+        """Return the numbers, (..., rows, columns). Those of unknowns and rates go by their keys."""
+        numbers = [[entry.at(values) for entry in row] for row in self.entries]
+        shape = np.broadcast_shapes(*(np.shape(one) for row in numbers for one in row))
+        return np.stack([np.stack([np.broadcast_to(one, shape) for one in row], axis=-1) for row in numbers], axis=-2)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RateEquations(PrintsShort):
+    """The equations of velocities or accelerations, a matrix times the unknown rates.
+
+    `order` is 1 or 2. `unknowns` are the coordinates whose rates are unknown, in the order of the columns; `names` are
+    those of the rows.
+    """
+
+    structure: Structure
+    system: ReducedSystem
+    order: int
+    matrix: SymbolArray
+    right_side: SymbolArray
+
+    @property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """The coordinates whose rates are unknown, a column of the matrix each."""
+        return self.system.unknowns
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What each row is: a loop's x or y, a pair, a driver."""
+        return tuple(row.name for row in self.system.rows)
+
+    @property
+    def is_square(self) -> bool:
+        """Whether there are as many rows as unknowns."""
+        return len(self.system.rows) == len(self.unknowns)
+
+    @property
+    def scales(self) -> Scales:
+        """What makes pure numbers of rows and columns."""
+        return self.system.scales(self.structure.mechanism.geometry.size)
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """The equations one by one, as text."""
+        return tuple(
+            f"{_row(self.system.unknowns, row, self.order).text} = {right.text}"
+            for row, (right,) in zip(self.matrix.entries, self.right_side.entries, strict=True)
+        )
+
+    def at(self, motion: Motion) -> RateSolution:
+        """Return matrix, right-hand side and solution in numbers, at all poses of a motion.
+
+        Arrays are of the motion's shape, with axes for rows and columns at the end; NaN where a pose is not assembled.
+        Raises InvalidInput for a motion that was not solved to the order of the equations.
+
+        >>> from compoundkin.analysis.equations import loop_equations
+        >>> from compoundkin.files.shipped_mechanisms import load_named
+        >>> from compoundkin.kinematics import solve
+        >>> m = load_named("slider-crank")
+        >>> found = loop_equations(m, order=1).velocity.at(solve(m, {"crank": [np.pi / 2]}, speed=2.0))
+        >>> found.solution.round(12).tolist()
+        [[-0.0, -0.24]]
+        """
+        motion.grid.require(self.order)
+        values = pose_values(motion)
+        for order in range(1, self.order + 1):
+            values.update(given_values(motion, self.system, order))
+        return self._solved(motion, values)
+
+    def _solved(self, motion: Motion, values: Mapping[str, Number]) -> RateSolution:
+        found = {**values}
+        if self.order == 2:
+            slower = rate_equations(self.structure, self.system, 1)._solved(motion, values)
+            found.update({own.rate_key(1): slower.solution[..., k] for k, own in enumerate(self.unknowns)})
+        shape = motion.shape
+        matrix, right = self.matrix.at(found), self.right_side.at(found)[..., 0]
+        matrix = np.broadcast_to(matrix, (*shape, *matrix.shape[-2:]))
+        return solution_of(self.unknowns, matrix, np.broadcast_to(right, matrix.shape[:-1]), self.scales)
+
+
+def rate_equations(structure: Structure, system: ReducedSystem, order: int) -> RateEquations:
+    """Return the equations of velocities or accelerations of a system of rows.
+
+    What is known goes to the right: the rates of given unknowns, and for accelerations the second derivative that is
+    left where all rates are constant.
+    """
+    matrix = tuple(tuple(slope(row, unknown) for unknown in system.unknowns) for row in system.rows)
+    right = []
+    for row in system.rows:
+        known = [slope(row, own).times(-1.0, Rate(Sum(0.0, ((1.0, own),)), order)) for own in system.given]
+        right.append((total(*known, *([bend(row).times(-1.0)] if order == 2 else [])),))
+    return RateEquations(structure, system, order, SymbolArray(matrix), SymbolArray(tuple(right)))
+
+
+def _row(unknowns: Sequence[Unknown], row: Sequence[Expression], order: int) -> Expression:
+    pairs = zip(unknowns, row, strict=True)
+    return total(*(entry.times(1.0, Rate(Sum(0.0, ((1.0, own),)), order)) for own, entry in pairs))

@@ -1,0 +1,117 @@
+"""The equations of velocities and accelerations in numbers, at one pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.analysis.equations import LoopEquations, RateSolution, Unknown
+from compoundkin.analysis.equations.pose_values import given_values, pose_values
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.quantities import degrees
+from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_of
+from compoundkin.view.report.motion_report import gap_sentence, gaps_of
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.wording import listed, number
+
+
+@dataclass(frozen=True, eq=False)
+class PoseNumbers:
+    """The equations in numbers, at the first pose of a design of a motion."""
+
+    found: LoopEquations
+    motion: Motion
+    design: int = 0
+
+    @cached_property
+    def sample(self) -> Sample:
+        """The design."""
+        return Sample(self.motion, self.design)
+
+    @cached_property
+    def solutions(self) -> tuple[RateSolution, ...]:
+        """The solutions of all orders asked for."""
+        return tuple(rates.at(self.motion) for rates in self.found.rates)
+
+    def at(self, values: Any, axes: int = 0) -> Any:
+        """Return what an array holds at the pose. It may have some axes more than the motion."""
+        array = np.asarray(values)
+        more = array.shape[array.ndim - axes :]
+        return np.broadcast_to(array, (*self.motion.shape, *more)).reshape(-1, self.sample.poses, *more)[self.design, 0]
+
+
+def pose_section(found: LoopEquations, motion: Motion, design: int = 0) -> Section:
+    """Return matrix, right-hand sides and solution at the first pose of a design."""
+    pose = PoseNumbers(found, motion, design)
+    drivers = [f"{one.name} = {number(float(one.values[0]))} {one.unit}" for one in pose.sample.drivers]
+    return Section("pose", f"Numbers at {listed(drivers)}" if drivers else "Numbers", tuple(_numbers(pose)))
+
+
+def _numbers(pose: PoseNumbers) -> Iterator[Block]:
+    if not pose.sample.assembled[0]:
+        reasons = [gap_sentence(pose.sample, gap) for gap in gaps_of(pose.sample)]
+        yield Alert(" ".join(reasons) or "The pose cannot be assembled.", "choose a pose within reach")
+        return
+    if pose.solutions and pose.found.system.unknowns:
+        yield _matrix_table(pose)
+        yield from _verdict(pose.solutions[0], pose)
+    yield _values_table(pose)
+
+
+def _matrix_table(pose: PoseNumbers) -> TableBlock:
+    sides = [pose.at(own.right_side, 1) for own in pose.solutions]
+    matrix = pose.at(pose.solutions[0].matrix, 2)
+    floor = 1e-12 * float(np.max(np.abs(matrix), initial=0.0))
+    columns = [Column(own.key, style="each", floor=floor) for own in pose.found.system.unknowns]
+    right = [Column(name, style="each", follows=True) for name, _ in zip("bc", sides, strict=False)]
+    rows: list[tuple[Cell, ...]] = []
+    for k, row in enumerate(pose.found.system.rows):
+        rows.append((row.name, *(float(v) for v in (*matrix[k], *(side[k] for side in sides)))))
+    return TableBlock((Column("row of A"), *columns, *right), tuple(rows), keys=1)
+
+
+def _verdict(first: RateSolution, pose: PoseNumbers) -> Iterator[Block]:
+    rows, columns = np.shape(first.matrix)[-2:]
+    condition = f"condition {number(float(pose.at(first.condition)))}, lengths in parts of the mechanism's size"
+    if rows == columns:
+        yield Paragraph(f"Determinant {number(float(pose.at(first.determinant)))}, {condition}.")
+    else:
+        more = "more rows than unknowns: where they agree, each follows from the others"
+        yield Paragraph(f"{rows} rows for {columns} unknowns, {condition}; {more}.")
+    if pose.at(first.singular):
+        yield Alert("The matrix is singular: a limit position or change point, where rates are not determined.")
+
+
+def _values_table(pose: PoseNumbers) -> TableBlock:
+    """All unknowns and what is given, with their values and rates."""
+    system, unit = pose.found.system, pose.found.structure.mechanism.unit
+    values = pose_values(pose.motion)
+    for order in range(len(pose.solutions) + 1):
+        values.update(given_values(pose.motion, system, order))
+    rows = []
+    for own in (*system.unknowns, *system.given):
+        shown = float(pose.at(values[own.key]))
+        cells: list[Cell] = [own.key, float(degrees(shown)) if own.is_angle else shown, coordinate_unit(own, unit, 0)]
+        for order, solution in enumerate(pose.solutions, 1):
+            key = own.rate_key(order)
+            rate = values[key] if key in values else solution.rate(own.key)
+            cells += [float(pose.at(rate)), coordinate_unit(own, unit, order)]
+        rows.append((*cells, "given" if own in system.given else ""))
+    columns = [Column("coordinate"), Column("value", style="each"), Column("unit", follows=True)]
+    for name in (VELOCITY, ACCELERATION)[: len(pose.solutions)]:
+        columns += [Column(name, style="each"), Column("unit", follows=True)]
+    return TableBlock((*columns, Column("")), tuple(rows), keys=1)
+
+
+def coordinate_unit(own: Unknown, unit: str, order: int) -> str:
+    """Return the unit in which a coordinate is shown, or a rate of it."""
+    if own.kind == "parameter":
+        return ""
+    if own.is_length:
+        return unit_of(unit, "length", order)
+    return unit_of("", "angle", order) if order else DEGREES
