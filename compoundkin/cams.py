@@ -1,4 +1,4 @@
-"""What is asked of cams in motion: pressure angles, radii of curvature, sliding.
+"""Cams in motion: pressure angles, radii of curvature, sliding; the mechanism of a made cam.
 
 >>> import compoundkin as ck
 >>> ck.cams.cam_pairs(ck.solve(ck.catalog.load_named("disc-cam-offset-roller")))
@@ -8,5 +8,6 @@
 from __future__ import annotations
 
 from compoundkin.analysis.cam_analysis import CamAnalysis, cam_analysis, cam_pairs
+from compoundkin.model.cam_mechanisms import cam_mechanism
 
-__all__ = ["CamAnalysis", "cam_analysis", "cam_pairs"]
+__all__ = ["CamAnalysis", "cam_analysis", "cam_mechanism", "cam_pairs"]

@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from compoundkin.model.profiles import (
     DiscProfile,
+    DoubleCam,
     FormulaProfile,
     PointsProfile,
     Profile,
     Synthesised,
+    conjugate,
+    constant_breadth,
     disc,
     formula,
     profile,
@@ -20,6 +23,6 @@ from compoundkin.model.profiles import (
 )
 
 __all__ = [
-    "DiscProfile", "FormulaProfile", "PointsProfile", "Profile", "Synthesised",
-    "disc", "formula", "profile", "synthesise",
+    "DiscProfile", "DoubleCam", "FormulaProfile", "PointsProfile", "Profile", "Synthesised",
+    "conjugate", "constant_breadth", "disc", "formula", "profile", "synthesise",
 ]  # fmt: skip

@@ -84,6 +84,8 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "centres": lambda: ck.draw(SIX_BAR, AT, centres=True),
     "circle": lambda: ck.draw(SIX_BAR, kind="circle"),
     "velocities": lambda: ck.draw(SIX_BAR, AT, kind="polygon"),
+    "conjugate-cams": lambda: ck.draw(load_named("conjugate-cams"), ck.deg(60)),
+    "constant-breadth-yoke": lambda: ck.draw(load_named("constant-breadth-yoke"), ck.deg(60)),
     "accelerations": lambda: ck.draw(SIX_BAR, AT, kind="polygon", vectors="acceleration"),
 }
 

@@ -36,6 +36,7 @@ def at_hand() -> dict[str, Any]:
         "joints": ck.chains.Joints(("a", "b", "c"), (ck.chains.Joint((0, 1)), ck.chains.Joint((1, 2)))),
         "loop": ck.loop_equations(bar).loops[0],
         "program": ck.laws.program(ck.laws.rise(1, over=2)),
+        "wave": ck.laws.program(ck.laws.rise(1, over=math.pi), ck.laws.fall(1, over=math.pi)),
     }
 
 
@@ -117,6 +118,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "advantage.TorquePort": {"link": "a", "on": "frame"},
         "advantage.mechanical_advantage": {"motion": motion, "output": "rocker", "input": "crank"},
         "cams.cam_analysis": {"motion": h["cam"], "name": "roller/cam"},
+        "cams.cam_mechanism": {"cams": ck.profiles.constant_breadth(h["wave"], base=20.0), "title": "", "unit": ""},
         "cams.cam_pairs": {"motion": h["cam"]},
         "performance.four_bar_code": {"base": 2.0, "input": 1.0, "coupler": 2.5, "output": 2.5},
         "performance.linkage_types": {"what": m, "design": 0},
@@ -198,6 +200,14 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                         "title": None, "size": None},
         "plots.polar": {"motion": motion, "around": None, "designs": (), "title": None, "size": None},
         "plots.timing_chart": {"what": m, "over": None, "title": None, "size": None},
+        "profiles.DoubleCam": {"first": ck.profiles.synthesise(h["wave"], base=20.0),
+                               "second": ck.profiles.synthesise(h["wave"], base=20.0)},
+        "profiles.conjugate": {"program": h["wave"], "base": 20.0, "second_base": None, "follower": "roller",
+                               "roller": 2.0, "second_roller": None, "offset": 0.0, "angle": 0.0, "pivot": 40.0,
+                               "arm": 40.0, "second_arm": None, "face": 0.0, "second_face": None, "side": 1,
+                               "clockwise": False, "start": 0.0},
+        "profiles.constant_breadth": {"program": h["wave"], "base": 20.0, "follower": "flat", "roller": 0.0,
+                                      "angle": 0.0, "clockwise": False, "start": 0.0},
         "profiles.DiscProfile": {"radius": 1.0, "middle": 0j},
         "profiles.FormulaProfile": {"function": np.exp, "low": 0.0, "high": 1.0, "closed": False},
         "profiles.PointsProfile": {"points": (0j, 1 + 0j, 1j, 1 + 2j), "closed": True},

@@ -33,6 +33,8 @@ MADE_BY: Mapping[str, str] = MappingProxyType(
         "Joints": "write chains.Joints(links, joints)",
         "Coloured": "write chains.Coloured(colours, masks)",
         "Profile": "profiles.disc(), profiles.profile() and others make one",
+        "Synthesised": "profiles.synthesise() makes one",
+        "DoubleCam": "profiles.conjugate() and profiles.constant_breadth() make them",
         "Program": "laws.program() makes one",
         "ProgramSegment": "laws.rise(), laws.fall() and laws.dwell() make them",
         "ForcePort": "write advantage.ForcePort(link, point, angle) or advantage.TorquePort(link)",

@@ -4,6 +4,7 @@ Coordinates are those of the link that carries the profile. What they have in co
 """
 
 from compoundkin.model.profiles.contract import Profile, side_of
+from compoundkin.model.profiles.double_cams import DoubleCam, conjugate, constant_breadth
 from compoundkin.model.profiles.given_profiles import DiscProfile, FormulaProfile, PointsProfile, disc, formula, profile
 from compoundkin.model.profiles.synthesised import Synthesised, synthesise
 
@@ -13,6 +14,6 @@ KINDS: tuple[type[Profile], ...] = (DiscProfile, PointsProfile, FormulaProfile, 
 WRITTEN: dict[str, type[Profile]] = {kind.kind: kind for kind in KINDS if kind.keys}
 
 __all__ = [
-    "KINDS", "WRITTEN", "DiscProfile", "FormulaProfile", "PointsProfile", "Profile", "Synthesised",
-    "disc", "formula", "profile", "side_of", "synthesise",
+    "KINDS", "WRITTEN", "DiscProfile", "DoubleCam", "FormulaProfile", "PointsProfile", "Profile", "Synthesised",
+    "conjugate", "constant_breadth", "disc", "formula", "profile", "side_of", "synthesise",
 ]  # fmt: skip

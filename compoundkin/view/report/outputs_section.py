@@ -200,7 +200,7 @@ def equivalent_section(sample: Sample) -> Section | None:
     text = (
         f"Pins and slides that give the same velocities and accelerations at pose {int(regular[0])}, and there only: a"
         " bar between the centres of curvature, or a block on a straight profile. "
-        f"Its groups: {listed(groups) or 'none'}."
+        f"Its groups: {listed(groups) if groups else 'none'}."
     )
     return Section("equivalent", "Equivalent linkage", (Paragraph(text), TableBlock(columns, rows)))
 
