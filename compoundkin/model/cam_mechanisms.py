@@ -35,7 +35,9 @@ def cam_mechanism(cams: Synthesised | DoubleCam, *, title: str = "", unit: str =
     """
     both = cams if isinstance(cams, DoubleCam) else DoubleCam(cams, cams)
     items = [*_links(both, double=both is cams), *_pairs(both, double=both is cams)]
-    name = title or ("Cam and follower" if both is not cams else "Yoke cam" if both.is_single else "Conjugate cams")
+    name = title or (
+        "Disc cam with its follower" if both is not cams else "Yoke cam" if both.is_single else "Conjugate cams"
+    )
     way = -TURN if both.first.clockwise else TURN
     driven = drive(CAM, values=both.first.start + np.linspace(0.0, way, POSES))
     return Mechanism(name, *items, driven, mode(both.first.mode, FOLLOWER), unit=unit)

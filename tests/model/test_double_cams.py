@@ -31,6 +31,7 @@ def slow(height: float) -> Program:
     return program(rise(height, ck.deg(150)), dwell(ck.deg(30)), fall(height, ck.deg(180)))
 
 
+STEEP = program(rise(10, 1.1), fall(10, TURN - 1.1))
 # A yoke's: each rise is answered by an equal fall half a turn later.
 EVEN = program(
     rise(8, ck.deg(60), "3-4-5"), dwell(ck.deg(30)), rise(17, ck.deg(90)),
@@ -161,7 +162,7 @@ def test_they_are_written_to_files_and_read_again(tmp_path: Path) -> None:
         ),
         (lambda: constant_breadth(program(rise(9, 3), fall(8, TURN - 3)), base=40), "does not return"),
         (lambda: constant_breadth(program(rise(9, 3), fall(9, 3)), base=40), "not to a turn of 360"),
-        (lambda: conjugate(slow(10), base=60, second_base=2, follower="flat"), "second base: the face would"),
+        (lambda: conjugate(STEEP, base=60, second_base=20, follower="flat"), "second base: the face would"),
         (lambda: conjugate(lift(30), base=-4, roller=10), "base circle"),
         (lambda: conjugate(lift(0.4), base=40, roller=10, pivot=80, arm=60, second_arm=2), "second arm: .*reach"),
         (lambda: conjugate(lift(30), base=40, follower=cast(Any, "flatt")), "flat"),

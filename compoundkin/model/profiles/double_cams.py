@@ -9,7 +9,7 @@ Design and Manufacturing Handbook, 2nd ed., Industrial Press 2009, chapter 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -30,9 +30,9 @@ PLACES = 1441
 
 @dataclass(frozen=True)
 class DoubleCam:
-    """Two profiles on one shaft, between which a follower is held; see `conjugate` and `constant_breadth`.
+    """Two profiles on one shaft, between which a follower is held.
 
-    `second` is `first` where one disc does both.
+    See `conjugate` and `constant_breadth`. `second` is `first` where one disc does both.
     """
 
     first: Synthesised
@@ -102,19 +102,8 @@ def conjugate(
     """
     pin = None if pivot is None else place_of(pivot, "pivot")
     first = Synthesised(program, base, follower, roller, offset, angle, pin, arm, face, side, clockwise, start)
-    second = replace(
-        first,
-        program=upside_down(program),
-        base=_other(second_base, base),
-        roller=_other(second_roller, roller),
-        # to the left of the opposite direction
-        offset=0.0 - offset,
-        angle=angle + np.pi if pin is None else angle,
-        arm=_other(second_arm, arm),
-        face=_other(second_face, face),
-        side=-side,
-    )
-    return _made(first, second)
+    other = {"base": second_base, "roller": second_roller, "arm": second_arm, "face": second_face}
+    return _made(first, _opposite(first, {key: value for key, value in other.items() if value is not None}))
 
 
 @checked
@@ -148,7 +137,7 @@ def constant_breadth(
 
 
 def upside_down(program: Program) -> Program:
-    """Return the program that falls as another one rises, between the same least and greatest values.
+    """Return the program that falls as another one rises, between the same values.
 
     >>> from compoundkin.model.laws import fall, program, rise
     >>> upside_down(program(fall(3, over=1), rise(5, over=2), start=3.0)).values.tolist()
@@ -159,8 +148,18 @@ def upside_down(program: Program) -> Program:
     return replace(program, segments=segments, start=total - program.start)
 
 
-def _other(given: float | None, first: float) -> float:
-    return first if given is None else given
+def _opposite(first: Synthesised, other: Mapping[str, Any]) -> Synthesised:
+    """Return the profile on the other side of the axis, or of the arm to the other side."""
+    behind = np.pi if first.pivot is None else 0.0
+    return replace(
+        first,
+        program=upside_down(first.program),
+        # what is on the left of a direction is on the right of the opposite one
+        offset=0.0 - first.offset,
+        angle=first.angle + behind,
+        side=-first.side,
+        **other,
+    )
 
 
 def _made(first: Synthesised, second: Synthesised, wrong: list[Problem] | None = None) -> DoubleCam:
