@@ -121,6 +121,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "cams.cam_mechanism": {"cams": ck.profiles.constant_breadth(h["wave"], base=20.0), "title": "", "unit": ""},
         "cams.cam_pairs": {"motion": h["cam"]},
         "performance.four_bar_code": {"base": 2.0, "input": 1.0, "coupler": 2.5, "output": 2.5},
+        "performance.path_features": {"motion": motion, "point": "C", "tolerance": None, "design": 0},
+        "performance.straightness": {"motion": motion, "point": "C", "begin": 0.2, "end": 0.5, "design": 0},
         "performance.linkage_types": {"what": m, "design": 0},
         "catalog.load_named": {"name": "six-bar"},
         "catalog.path": {"name": "six-bar"},

@@ -1,0 +1,163 @@
+"""Features of a point's path: straight stretches, arcs of circles, cusps, and points that it passes twice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.analysis.characteristics.path_fits import Fit, fitted_circles, fitted_lines, longest_stretch
+from compoundkin.analysis.characteristics.path_stretches import Stretch, stretch_of
+from compoundkin.analysis.characteristics.point_places import path_of, resting_places
+from compoundkin.analysis.characteristics.traced_path import TracedPath, around
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number
+from compoundkin.base.curves.self_crossings import crossings
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics import Motion
+
+# A path is a line or a circle where its samples are off by less than this part of its extent: rounding, no feature.
+EXACT = 1e-9
+# A stretch is straight, or an arc, where it is off by less than this part of the path's extent, if nothing is said.
+TOLERANCE = 1e-3
+# What lies on itself has as many crossings as samples; a coupler curve of a four-bar, of order six, has three.
+MOST_CROSSINGS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class PathPlace:
+    """A cusp, or a point that a path passes twice.
+
+    Where it is, and the drivers' values each time.
+    """
+
+    point: complex
+    at: tuple[dict[str, float], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class PathFeatures:
+    """The features of the path of a point of one design.
+
+    It is that over a motion, or over the longest part without a break. Straight stretches and arcs stay within the
+    `tolerance`, a length. The path is `retraced` where the point turns back on it: then it is the path from one end to
+    the other.
+    """
+
+    path: TracedPath
+    point: str
+    tolerance: float
+    retraced: bool
+
+    @property
+    def size(self) -> float:
+        """The diagonal of the box around the path."""
+        return self.path.samples.size
+
+    @property
+    def closed(self) -> bool:
+        """Whether the path is closed."""
+        return self.path.closed
+
+    @cached_property
+    def length(self) -> float:
+        """The length of the path."""
+        return self.path.samples.length(lambda s: np.abs(self.path.derivatives(s, 1)[1]))
+
+    @cached_property
+    def line(self) -> Stretch:
+        """The whole path beside the line from which it is least far."""
+        return stretch_of(self.path, fitted_lines, 0, len(around(self.path)) - 1)
+
+    @cached_property
+    def circle(self) -> Stretch:
+        """The whole path beside a circle."""
+        return stretch_of(self.path, fitted_circles, 0, len(around(self.path)) - 1)
+
+    @cached_property
+    def is_straight(self) -> bool:
+        """Whether it is a line but for rounding."""
+        return self.line.deviation <= EXACT * self.size
+
+    @cached_property
+    def is_circular(self) -> bool:
+        """Whether it is a circle or an arc of one, but for rounding."""
+        return not self.is_straight and self.circle.deviation <= EXACT * self.size
+
+    @cached_property
+    def straight(self) -> Stretch:
+        """The longest stretch that is straight within the tolerance."""
+        return self._longest(fitted_lines)
+
+    @cached_property
+    def arc(self) -> Stretch:
+        """The longest stretch that is an arc of a circle within the tolerance."""
+        return self._longest(fitted_circles)
+
+    @cached_property
+    def cusps(self) -> tuple[PathPlace, ...]:
+        """The places where the point stands still and its path turns sharply."""
+        if self.is_straight or self.is_circular:
+            return ()
+        s, cusp = resting_places(self.path)
+        where = self.path.derivatives(s[cusp], 0)[0]
+        return tuple(PathPlace(complex(p), (self.path.drivers(x),)) for p, x in zip(where, s[cusp], strict=True))
+
+    @cached_property
+    def double_points(self) -> tuple[PathPlace, ...]:
+        """The points that the path passes twice; none where it lies on itself."""
+        if self.is_straight or self.is_circular:
+            return ()
+        found = crossings(self.path.samples, self.path.expansion)
+        known = found if len(found) <= MOST_CROSSINGS else ()
+        return tuple(PathPlace(c.point, (self.path.drivers(c.first), self.path.drivers(c.second))) for c in known)
+
+    def _longest(self, fit: Callable[[Number], Fit]) -> Stretch:
+        samples = self.path.samples
+        return stretch_of(self.path, fit, *longest_stretch(samples.points, samples.closed, self.tolerance, fit))
+
+    def __repr__(self) -> str:
+        kind = "a line" if self.is_straight else "a circle" if self.is_circular else "a curve"
+        ends = "closed" if self.closed else "open"
+        told = f"{len(self.cusps)} cusps, {len(self.double_points)} double points"
+        return f"PathFeatures({self.point}: {kind}, {ends}, {self.length:.6g} long, {told})"
+
+
+def simple_shape(motion: Motion, point: str, design: int = 0) -> str:
+    """Tell from the poses whether a path is a line or a circle.
+
+    It is a "line" or a "circle" but for rounding; "" for other curves.
+
+    >>> import compoundkin as ck
+    >>> simple_shape(ck.solve(ck.catalog.load_named("slider-crank")), "A")
+    'circle'
+    """
+    rows = np.asarray(motion.points[point].position).reshape(motion.inputs.designs, motion.inputs.poses)[design]
+    points = rows[np.isfinite(rows)]
+    if len(points) < 3:
+        return "line"
+    size = float(np.hypot(np.ptp(points.real), np.ptp(points.imag)))
+    if not fitted_lines(points).deviation > EXACT * size:
+        return "line"
+    return "circle" if fitted_circles(points).deviation <= EXACT * size else ""
+
+
+@checked
+def path_features(motion: Motion, point: str, tolerance: float | None = None, design: int = 0) -> PathFeatures:
+    """Return the features of a point's path: straight stretches, arcs, cusps, double points.
+
+    Stretches are within `tolerance`, a length, 1/1000 of the path's extent if left out. Of a motion that cannot be
+    assembled throughout it is the longest part that can. Loops and stretches shorter than 1/360 of it are not seen.
+    Raises UnknownName for a point that is not there, InvalidInput for one that does not move.
+
+    >>> import compoundkin as ck
+    >>> found = path_features(ck.solve(ck.catalog.load_named("rolling-wheel")), "P")    # a cycloid
+    >>> [round(cusp.point.real / np.pi, 9) for cusp in found.cusps], found.double_points
+    ([4.0], ())
+    """
+    if tolerance is not None and not tolerance > 0:
+        raise InvalidInput(Problem("tolerance", f"{tolerance:g} is no length of a deviation", "give one above zero"))
+    path, retraced = path_of(motion, point, design)
+    return PathFeatures(path, point, TOLERANCE * path.samples.size if tolerance is None else tolerance, retraced)

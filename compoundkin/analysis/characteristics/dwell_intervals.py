@@ -1,0 +1,155 @@
+"""Dwells: where a quantity keeps its value within a tolerance, from where to where."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.bracketing import false_position
+
+# It is slower in a dwell than this part of its mean speed.
+SLOW = 0.7
+# The ends are right to this part of the tolerance, after so many steps of false position at most.
+FLAT, TRIALS = 1e-12, 60
+
+
+@dataclass(frozen=True)
+class DwellSpan:
+    """An interval in which a quantity stays between `low` and `high`.
+
+    It goes from place to place, 0 the first pose.
+
+    In a cycle it may end beyond the last place, which is the first one again.
+    """
+
+    first: float
+    last: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class Sampled:
+    """A real quantity at places in their order, and a function for all others.
+
+    After a `cycle` it comes again, greater by `advance`: the last sample is then the first one of the next.
+    """
+
+    places: Number
+    values: Number
+    at: Callable[[Number], Number]
+    cycle: float = 0.0
+    advance: float = 0.0
+
+    def value(self, s: Number) -> Number:
+        """Return the quantity at places, in a cycle also beyond its end."""
+        if not self.cycle:
+            return self.at(s)
+        turns = np.where(s > self.places[-1], np.floor((s - self.places[0]) / self.cycle), 0.0)
+        return self.at(s - turns * self.cycle) + turns * self.advance
+
+    @property
+    def twice(self) -> tuple[Number, Number]:
+        """Places and values of a cycle and the next one."""
+        if not self.cycle:
+            return self.places, self.values
+        s = np.concatenate([self.places, self.places[1:] + self.cycle])
+        return s, np.concatenate([self.values, self.values[1:] + self.advance])
+
+
+def dwells(of: Sampled, tolerance: float, shortest: float) -> tuple[DwellSpan, ...]:
+    """Find the intervals in which a quantity changes by no more than a tolerance.
+
+    They are at least `shortest` long. It is slow inside them. Where they overlap the longest is taken; they are in
+    their order, the ends solved for.
+
+    >>> s = np.linspace(0.0, 2.0 * np.pi, 201)
+    >>> found = dwells(Sampled(s, np.cos(s), np.cos, 2.0 * np.pi), 1.0 - np.cos(0.5), 0.2)
+    >>> [(round(one.first, 6), round(one.last, 6)) for one in found]
+    [(2.641593, 3.641593), (5.783185, 6.783185)]
+    """
+    s, values = of.twice
+    count = len(of.places) - 1 if of.cycle else len(s)
+    pace = SLOW * np.sum(np.abs(np.diff(of.values))) / (of.places[-1] - of.places[0])
+    spans = [(a, b) for a, b in _windows(values, tolerance) if a < count and s[b] - s[a] >= 0.5 * shortest]
+    chosen: list[tuple[int, int]] = []
+    for a, b in sorted(spans, key=lambda span: s[span[0]] - s[span[1]]):
+        if of.cycle and s[b] - s[a] >= of.cycle:
+            return (DwellSpan(s[0], s[0] + of.cycle, float(values.min()), float(values.max())),)
+        slow = np.sum(np.abs(np.diff(values[a : b + 1]))) <= pace * (s[b] - s[a])
+        if slow and not any(_overlap((s[a], s[b]), (s[c], s[d]), of.cycle) for c, d in chosen):
+            chosen.append((a, b))
+    found = _with_ends(of, s, values, sorted(chosen), tolerance) if chosen else ()
+    return tuple(one for one in found if one.last - one.first >= shortest)
+
+
+def _overlap(one: tuple[float, float], other: tuple[float, float], cycle: float) -> bool:
+    """Tell whether two intervals have more than an end in common, one of them perhaps a cycle later."""
+    return any(min(one[1], other[1] + shift) > max(one[0], other[0] + shift) for shift in {-cycle, 0.0, cycle})
+
+
+def _windows(values: Number, tolerance: float) -> list[tuple[int, int]]:
+    """Return the longest runs of samples, first and last, in which values differ by no more than a tolerance."""
+    found: list[tuple[int, int]] = []
+    highest: deque[int] = deque()
+    lowest: deque[int] = deque()
+    first = 0
+    plain = values.tolist()
+    for k, value in enumerate(plain):
+        while highest and plain[highest[-1]] <= value:
+            highest.pop()
+        while lowest and plain[lowest[-1]] >= value:
+            lowest.pop()
+        highest.append(k)
+        lowest.append(k)
+        start = first
+        while plain[highest[0]] - plain[lowest[0]] > tolerance:
+            first += 1
+            if highest[0] < first:
+                highest.popleft()
+            if lowest[0] < first:
+                lowest.popleft()
+        if first > start:
+            found.append((start, k - 1))
+    return [*found, (first, len(plain) - 1)]
+
+
+def _with_ends(
+    of: Sampled, s: Number, values: Number, spans: list[tuple[int, int]], tolerance: float
+) -> tuple[DwellSpan, ...]:
+    """Return intervals with their ends, where the quantity leaves the bands that what is inside demands."""
+    bands = np.array([_band(values[a : b + 1], tolerance) for a, b in spans])
+    first, last = np.array(spans).T
+    inside = np.concatenate([first, last])
+    outside = np.concatenate([np.maximum(first - 1, 0), np.minimum(last + 1, len(s) - 1)])
+    low, high = np.tile(bands.T, 2)
+    ends = s[inside].astype(float)
+    # where the next sample is within too, the motion ends there
+    leaves = (values[outside] > high) | (values[outside] < low)
+    level = np.where(values[outside] > high, high, low)[leaves]
+    start, way = s[inside][leaves], (s[outside] - s[inside])[leaves]
+
+    def beyond(part: Number) -> Number:
+        return of.value(start + part * way) - level
+
+    at_ends = values[inside][leaves] - level, values[outside][leaves] - level
+    if leaves.any():
+        part = false_position(beyond, np.ones(len(level)), *at_ends, FLAT * tolerance, TRIALS)
+        ends[leaves] = start + np.where(at_ends[0] == 0.0, 0.0, part) * way
+    return tuple(
+        DwellSpan(float(a), float(b), float(lo), float(hi))
+        for a, b, (lo, hi) in zip(ends[: len(spans)], ends[len(spans) :], bands, strict=True)
+    )
+
+
+def _band(inside: Number, tolerance: float) -> tuple[float, float]:
+    """Return the band of a tolerance around the values of an interval."""
+    low, high = float(inside.min()), float(inside.max())
+    # a least value inside has the tolerance above it, a greatest one below; otherwise half of it on either side
+    least, most = (0 < k < len(inside) - 1 for k in (int(inside.argmin()), int(inside.argmax())))
+    up, slack = 0.5 * (1.0 + least - most), tolerance - (high - low)
+    return low - (1.0 - up) * slack, high + up * slack
