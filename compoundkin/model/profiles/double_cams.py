@@ -17,6 +17,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Series
 from compoundkin.model.geometry import place_of
@@ -28,8 +29,8 @@ from compoundkin.model.profiles.synthesised import Synthesised
 PLACES = 1441
 
 
-@dataclass(frozen=True)
-class DoubleCam:
+@dataclass(frozen=True, repr=False)
+class DoubleCam(PrintsShort):
     """Two profiles on one shaft, between which a follower is held.
 
     See `conjugate` and `constant_breadth`. `second` is `first` where one disc does both.

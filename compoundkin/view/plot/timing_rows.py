@@ -16,6 +16,7 @@ from compoundkin.base.series import Number, Series
 from compoundkin.files.document import is_angle
 from compoundkin.model.attributes import DEGREES, TIME
 from compoundkin.model.laws import Law, as_law
+from compoundkin.model.laws.law_corners import corners
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contact import as_profiled
@@ -141,7 +142,7 @@ def _of_laws(
         # a table tells nothing outside of its range
         ends = law.span if law.span and not isinstance(law, Program) and not getattr(law, "repeat", False) else None
         low, high = (max(first, ends[0]), min(last, ends[1])) if ends else (first, last)
-        breaks = tuple(_breaks(law, low, high)) if isinstance(law, Program) else ()
+        breaks = tuple(map(float, corners(law, low, high))) if isinstance(law, Program) else ()
         yield TimingRow(name, (units or {}).get(name, ""), (low, high), _moved(law), breaks)
 
 
@@ -170,13 +171,6 @@ def _moved(law: Law) -> Callable[[Number], tuple[Number, Number]]:
         return value.reshape(np.shape(x)), rate.reshape(np.shape(x))
 
     return moved
-
-
-def _breaks(program: Program, low: float, high: float) -> Iterator[float]:
-    """Where its segments begin and end, period by period if it repeats."""
-    turns = range(int(np.floor(low / program.period)), int(np.ceil(high / program.period))) if program.repeat else (0,)
-    for turn in turns:
-        yield from (float(x) + turn * program.period for x in program.breaks)
 
 
 def _of_programs(programs: Mapping[str, Any]) -> Iterator[TimingRow]:
