@@ -33,7 +33,8 @@ class Product:
         """Write it. Its sign, and the rest."""
         number = float(first_entry(self.number))
         size = [] if abs(number) == 1.0 and self.factors else [plain(abs(number))]
-        return (1 if number >= 0 else -1), how.between.join([*size, *(factor.written(how) for factor in self.factors)])
+        ordered = sorted(self.factors, key=lambda factor: factor.place)
+        return (1 if number >= 0 else -1), how.between.join([*size, *(factor.written(how) for factor in ordered)])
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from compoundkin.model.pairs.loop_vectors import Curved, Sum, Unknown, Values, t
 class Length:
     """A length: known by its symbol, or without one a sum of unknowns."""
 
+    place: ClassVar[int] = 0  # among the factors of a product
     symbol: str
     sum: Sum
 
@@ -37,6 +38,7 @@ class Length:
 class TurnFactor:
     """The sine or cosine of an angle."""
 
+    place: ClassVar[int] = 2
     is_sine: bool
     angle: Sum
 
@@ -53,6 +55,7 @@ class TurnFactor:
 class Rate:
     """The rate of a sum of unknowns, first or second; or its square."""
 
+    place: ClassVar[int] = 1
     sum: Sum
     order: int = 1
     is_squared: bool = False
@@ -74,6 +77,7 @@ class Rate:
 class ProfilePart:
     """A part of a profile's vector, real or imaginary, or of its derivative."""
 
+    place: ClassVar[int] = 2
     of: Curved
     order: int
     is_imaginary: bool
@@ -99,6 +103,7 @@ class Partial:
     `sums` are the unknowns of the function in terms of those that are left.
     """
 
+    place: ClassVar[int] = 2
     of: Implicit
     by: Unknown
     sums: Mapping[Unknown, Sum]
@@ -121,6 +126,7 @@ class Partial:
 class Bend:
     """The second rate of a function at constant rates, found by series."""
 
+    place: ClassVar[int] = 2
     of: Implicit
     sums: Mapping[Unknown, Sum]
 

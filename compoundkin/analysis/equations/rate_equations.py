@@ -32,7 +32,7 @@ class SymbolArray(PrintsShort):
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> found = loop_equations(load_named("slider-crank"), order=2).acceleration
     >>> found.right_side.entries[0][0].text
-    "OA sin(crank) crank'' + OA crank'^2 cos(crank) + AB rod'^2 cos(rod)"
+    "OA crank'' sin(crank) + OA crank'^2 cos(crank) + AB rod'^2 cos(rod)"
     """
 
     entries: tuple[tuple[Expression, ...], ...]

@@ -106,7 +106,7 @@ class _Reader:
             # a bar that stretches needs a font for mathematics; the bar over a text does not
             return self.group().replace("<mtext>", '<mtext class="over">')
         if token in (r"\left", r"\right"):
-            return self.bracket(self.next())
+            return self.bracket(self.next(), stretches=True)
         if token in DOTS:
             return f'<mover accent="true">{self.group()}<mo>{DOTS[token]}</mo></mover>'
         if token == r"\begin":
@@ -137,11 +137,11 @@ class _Reader:
         table = "".join(f"<mtr>{row}</mtr>" for row in cells)
         return f"<mrow><mo>[</mo><mtable>{table}</mtable><mo>]</mo></mrow>"
 
-    def bracket(self, token: str) -> str:
+    def bracket(self, token: str, stretches: bool = False) -> str:
         if token not in "()[]":
             raise Unread(token)
         self.depth += 1 if token in "([" else -1
-        return f"<mo>{token}</mo>"
+        return f"<mo>{token}</mo>" if stretches else f'<mo stretchy="false">{token}</mo>'
 
     def words(self) -> str:
         """Tell what stands in braces, as it is, escapes undone."""

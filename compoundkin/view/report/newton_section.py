@@ -28,7 +28,8 @@ def newton_section(found: NewtonIterations, unit: str, size: float, solved: Mapp
     blocks: list[Block] = [Paragraph(START), _steps_table(found, unit)]
     if found.failure:
         last = ", ".join(f"{own.key} = {_shown(own, found.values[own.key])}" for own in found.unknowns)
-        blocks.append(Alert(f"No pose was found: {found.failure}; the last estimate is {last}.", "start elsewhere"))
+        remedy = "choose a pose within reach" if solved is None else "start elsewhere"
+        blocks.append(Alert(f"No pose was found: {found.failure}; the last estimate is {last}.", remedy))
     else:
         told = f"It converges in {counted(len(found.corrections), 'step')}."
         compared = "" if solved is None else f" {SAME_POSE if _is_same(found, size, solved) else OTHER_POSE}"

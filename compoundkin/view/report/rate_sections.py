@@ -17,8 +17,8 @@ from compoundkin.view.report.wording import listed, number
 # A matrix in brackets is no wider (characters); a wider one is written entry by entry.
 WIDEST = 76
 NOTATION = (
-    "A prime is a derivative by time: crank' is the angular velocity of the link crank, s''(slot) the second rate of "
-    "the displacement s(slot)."
+    "A prime, in formulas a dot, is a derivative by time: crank' is the angular velocity of the link crank, s''(slot) "
+    "the second rate of the displacement s(slot)."
 )
 FUNCTIONS = (
     "The derivatives dF/d( ) of a function F of which no more is known are found by series; F'' is its second rate "

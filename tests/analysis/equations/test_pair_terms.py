@@ -101,7 +101,5 @@ def test_rates_of_an_oldham_pair_follow_from_its_closure(oldham: Any) -> None:
     for own in (*written, *(one for row in equations.acceleration.right_side.entries for one in row)):
         assert mathml(own.latex)
     if equations.system.rows[-1].function is not None:
-        assert equations.velocity.rows[-1].startswith(
-            "dF1[tray/frame]/d(tray) tray' + dF1[tray/frame]/d(x(tray/frame))"
-        )
+        assert equations.velocity.rows[-1].startswith("tray' dF1[tray/frame]/d(tray) + x'(tray/frame) dF1[")
         assert equations.acceleration.rows[-1].endswith("= -F1''[tray/frame]")

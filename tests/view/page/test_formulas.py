@@ -15,7 +15,22 @@ from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section
 from compoundkin.view.report.report_forms import Report
 
 # The names of elements that MathML Core has, of those that formulas need.
-KNOWN = {"math", "mrow", "mi", "mn", "mo", "mtext", "msub", "msup", "msubsup"}
+KNOWN = {
+    "math",
+    "mrow",
+    "mi",
+    "mn",
+    "mo",
+    "mtext",
+    "mspace",
+    "msub",
+    "msup",
+    "msubsup",
+    "mover",
+    "mtable",
+    "mtr",
+    "mtd",
+}
 
 
 def read(formula: str) -> ElementTree.Element:
@@ -23,7 +38,7 @@ def read(formula: str) -> ElementTree.Element:
     root = ElementTree.fromstring(f"<all>{mathml(formula)}</all>")
     for element in root.iter():
         assert element.tag in KNOWN | {"all"}
-        wanted = {"msub": 2, "msup": 2, "msubsup": 3}.get(element.tag)
+        wanted = {"msub": 2, "msup": 2, "msubsup": 3, "mover": 2}.get(element.tag)
         assert wanted is None or len(element) == wanted
     return root
 
@@ -43,6 +58,20 @@ def test_every_equation_of_the_catalog_is_read_with_all_its_names(name: str) -> 
         assert said.count("=") == text(equation).count("=")
 
 
+@pytest.mark.parametrize("name", sorted(shipped_mechanisms.names()))
+def test_matrices_and_right_hand_sides_are_read_entry_by_entry(name: str) -> None:
+    for rates in loop_equations(ck.decompose(shipped_mechanisms.load_named(name)), order=2).rates:
+        for array in (rates.matrix, rates.right_side) if rates.unknowns else ():
+            rows = [[cell for cell in row if cell.tag == "mtd"] for row in read(array.latex).iter("mtr")]
+            assert [len(row) for row in rows] == [len(row) for row in array.entries]
+            both = zip(rows, array.entries, strict=True)
+            for cell, entry in (pair for row in both for pair in zip(*row, strict=True)):
+                said = "".join(cell.itertext())
+                assert all(word in said for word in re.findall(r"\\text\{([^}]*)\}", entry.latex))
+                assert said.count("sin") >= entry.text.count("sin(")
+                assert len(list(cell.iter("mover"))) == len(re.findall(r"\\d?dot", entry.latex))
+
+
 def test_scripts_and_signs() -> None:
     root = read(r"-2.5 \theta_{\text{a}} + \overline{\text{AB}}\,e^{i(\theta_{\text{b}} + 35^\circ)} = 0")
     assert [element.tag for element in root] == ["math"] * 3
@@ -58,7 +87,9 @@ def test_names_come_through_as_they_are(name: str) -> None:
     assert name in [element.text for element in read(latex(found.loops[0])).iter("mtext")]
 
 
-@pytest.mark.parametrize("formula", [r"\frac{1}{2}", r"\text", r"a_{b", r"\text{<b>"])
+@pytest.mark.parametrize(
+    "formula", [r"\frac{1}{2}", r"\text", r"a_{b", r"\text{<b>", r"\begin{bmatrix} 1 & 2", r"\begin{cases}"]
+)
 def test_what_it_does_not_know_is_shown_as_text(formula: str) -> None:
     with pytest.raises(Unread):
         mathml(formula)
