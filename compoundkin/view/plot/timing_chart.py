@@ -114,8 +114,11 @@ def _name(axes: Any, phase: Phase, y: float, inches: float, unit: str) -> None:
 def _levels(row: TimingRow, values: Any) -> list[float]:
     """The values between phases, the highest and the lowest first; those too near to another one are left out."""
     low, high = row.between
-    places = [low, high, *(phase.begin for phase in row.phases), *(x for x in row.breaks if low < x < high)]
-    ends = row.moved(np.array(places))[0] * row.scale
+    inside = np.array([x for x in row.breaks if low < x < high])
+    # between the pieces of a law it need not pause
+    pauses = inside[np.abs(row.moved(inside)[1]) <= row.still] if inside.size else inside
+    places = np.array([low, high, *(phase.begin for phase in row.phases), *pauses])
+    ends = row.moved(places)[0] * row.scale
     least = SAME_LEVEL * float(np.ptp(values))
     found: list[float] = []
     for value in [float(values.min()), float(values.max()), *(float(end) for end in ends)]:

@@ -89,14 +89,14 @@ class TimingRow:
         return np.array([low, *(x for x in sorted(set(self.breaks)) if low < x < high), high])
 
     @cached_property
-    def _still(self) -> float:
+    def still(self) -> float:
         """The rate that is none: rounding of the greatest, or of the values."""
         values, rates = self.moved(self._joints)
         return CONSTANT * max(float(np.max(np.abs(rates))), float(np.ptp(values)) / (self.between[1] - self.between[0]))
 
     def _senses(self, x: Number) -> Number:
         rates = self.moved(x)[1]
-        return np.where(np.abs(rates) <= self._still, 0, np.sign(rates)).astype(int)
+        return np.where(np.abs(rates) <= self.still, 0, np.sign(rates)).astype(int)
 
     def _refined(self, k: int, senses: Number, joints: Number) -> float:
         """Where the sense changes: at a break, else between two places looked at."""

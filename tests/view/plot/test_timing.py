@@ -79,6 +79,9 @@ def test_the_chart_of_a_mechanism_has_its_units_title_and_times(tmp_path: Path) 
     assert [text.get_text() for text in axes.texts[:2]] == ["rise 1 s", "dwell 3 s"]
     np.testing.assert_allclose(axes.get_yticks(), [0.0, 90.0])
     assert picture.figure.get_suptitle() == "Arm"
+    steps = program(rise(2, law="least-time", speed=2, acceleration=3, jerk=9), rise(1, over=1))
+    (axes,) = ck.plots.timing_chart({"steps": steps}).figure.axes
+    np.testing.assert_allclose(axes.get_yticks(), [0.0, 2.0, 3.0])
     picture.save(tmp_path / "chart.pdf")
     turned = ck.plots.timing_chart({"lift": program(rise(20, np.pi), fall(20, np.pi))}, over="rotation", title="Lift")
     assert turned.figure.axes[0].get_xlabel() == "rotation of the cam [deg]"
