@@ -8,6 +8,7 @@ array([3.573])
 
 from __future__ import annotations
 
-from compoundkin.analysis.mechanical_advantage import Advantage, ForcePort, Port, TorquePort, mechanical_advantage
+from compoundkin.analysis.mechanical_advantage import ForcePort, Port, TorquePort, mechanical_advantage
+from compoundkin.kinematics.derived.velocity_ratio import Advantage
 
 __all__ = ["Advantage", "ForcePort", "Port", "TorquePort", "mechanical_advantage"]

@@ -19,7 +19,7 @@ import networkx as nx
 import compoundkin
 from compoundkin.base.suffixes import SUFFIXES
 from compoundkin.kinematics.groups import DYADS
-from compoundkin.model.attributes import ALSO, CATALOGUE
+from compoundkin.model.attributes import ALSO, CATALOGUE, DERIVED
 from compoundkin.model.pairs import KINDS
 from tests.source import (
     FILES,
@@ -59,8 +59,8 @@ SAME_PART = {"__init__.py", "contract.py"}
 # Pins follow from shared letters, so the structure makes revolute pairs itself; __init__ gives users the words.
 ALLOWED_KINDS = {("structure/composites.py", "Revolute"), ("structure/__init__.py", "Revolute")}
 OF_KINDS = ("model/pairs/", "kinematics/groups/")
-# Words of attributes that are keys of files, words of drives or single letters as well.
-COMMON = {"angle", "displacement", "x", "y", "speed", "rate", "value", "second", "acceleration", "jerk"}
+# Words of attributes that are keys of files, words of drives, façades or single letters as well.
+COMMON = {"advantage", "angle", "displacement", "x", "y", "speed", "rate", "value", "second", "acceleration", "jerk"}
 # Problems name places in files and calls, and remedies parts, that are called like attributes.
 KEYS_OF_PROBLEMS = {
     "analysis/mechanical_advantage.py: .angle",
@@ -279,7 +279,7 @@ def places_of(words: Iterable[str]) -> dict[str, set[str]]:
 
 def test_each_word_of_an_attribute_is_a_literal_in_one_module() -> None:
     """As a word, and as what follows a name: `f"{name}.angle"`."""
-    words = {word for table in (*CATALOGUE.values(), *ALSO.values()) for word in table}
+    words = {word for table in (*CATALOGUE.values(), *ALSO.values(), *DERIVED.values()) for word in table}
     found = places_of([*(words - COMMON), *(f".{word}" for word in words)])
     offending = {f"{place}: {word}" for word in found for place in found[word] - {"model/attributes.py"}}
     only_shrinks(offending - KEYS_OF_PROBLEMS)

@@ -33,7 +33,7 @@ def answers(name: str) -> Iterator[tuple[str, Any]]:
         yield f"coupler.{word}", getattr(ck.coupler, word)(motion, link)
     for word in ("path_curvature", "relative_point"):
         yield f"coupler.{word}", getattr(ck.coupler, word)(motion, link, 0j)
-    yield "advantage", ck.advantage.mechanical_advantage(motion, link, driver)
+    yield "advantage", ck.advantage.mechanical_advantage(motion, driver, driver)
     yield "equivalents", ck.equivalents.equivalent_linkage(motion)
     yield "chains", ck.chains.structure_name(ck.decompose(mechanism))
     for pair in ck.cams.cam_pairs(motion):

@@ -8,13 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.analysis.cam_follower import direction_of, velocity_at
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import dot
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.derived.cam_follower import direction_of, pressure_angle, velocity_at
 from compoundkin.model.pairs.contact import Profiled, as_profiled
 from compoundkin.model.profiles import Synthesised
 
@@ -162,7 +162,7 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
     cam = motion.poses[pair.on]
     s = pair.parameter(ends, poses)
     radius = _radius(pair, s)
-    follower, oscillates, along = direction_of(motion, pair, place)
+    follower, oscillates, _ = direction_of(motion, pair, place)
     return CamAnalysis(
         motion,
         pair,
@@ -171,7 +171,7 @@ def cam_analysis(motion: Motion, name: str) -> CamAnalysis:
         contact=motion.grid.known(place),
         contact_on_cam=motion.grid.known(np.conjugate(cam.u.c[0]) * (place - cam.z.c[0])),
         parameter=motion.grid.known(s),
-        pressure_angle=motion.grid.known(_between(along, normal)),
+        pressure_angle=pressure_angle(motion, name),
         radius_of_curvature=motion.grid.known(radius),
         pitch_radius=motion.grid.known(radius + ends[1].measure) if not pair.is_flat else None,
         sliding=motion.grid.known(_sliding(motion, pair, place, normal)),
@@ -205,12 +205,6 @@ def _radius(pair: Profiled, s: Number) -> Number:
 def _sliding(motion: Motion, pair: Profiled, place: Number, normal: Number) -> Number:
     first, second = (velocity_at(motion.poses[name], place) for name in pair.members)
     return dot(second - first, 1j * normal)
-
-
-def _between(along: Number, normal: Number) -> Number:
-    """Return the angle from a line to a normal, at most a right angle."""
-    turned = np.conjugate(along) * normal
-    return np.angle(np.where(turned.real < 0.0, -turned, turned))
 
 
 def _point(place: complex) -> str:

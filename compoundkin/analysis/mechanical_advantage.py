@@ -7,12 +7,21 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from compoundkin.analysis.coupler.relative_motion import SMALL, moving, relative_link, relative_point
+from compoundkin.analysis.coupler.relative_motion import moving, relative_link, relative_point
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, dot
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.derived.velocity_ratio import (
+    Advantage,
+    Rate,
+    balance,
+    fastest,
+    no_turning,
+    rate_of,
+    rate_of_link,
+)
 from compoundkin.model.elements import FRAME
 
 
@@ -41,23 +50,6 @@ class ForcePort(PrintsShort):
 Port: TypeAlias = str | TorquePort | ForcePort
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Advantage(PrintsShort):
-    """Velocity ratio and mechanical advantage at every pose; real arrays of the motion's shape.
-
-    `velocity_ratio` is output rate / input rate, `advantage` its reciprocal: the output force or torque that balances a
-    unit one at the input, without friction. A force against a torque gives lengths: the units are those of the rates.
-    Each is inf where its denominator is zero (`output_rests`: a toggle position; `input_rests`), without a sign. Where
-    `defined` is False both are NaN: both rest, or the pose is not assembled or has no rates.
-    """
-
-    velocity_ratio: Number
-    advantage: Number
-    output_rests: Number
-    input_rests: Number
-    defined: Number
-
-
 @checked
 @np.errstate(all="ignore")
 def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage:
@@ -82,40 +74,28 @@ def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage
     moving(motion, "the mechanical advantage")
     _one_driver(motion)
     out, lag = (_rate(motion, port, where) for port, where in ((output, "output"), (input, "input")))
-    regular = motion.regular.reshape(motion.shape)
-    output_rests, input_rests = (regular & (np.abs(v) <= SMALL * s) for v, s in (out, lag))
-    defined = regular & ~(output_rests & input_rests)
-    ratio, advantage = _quotient(out[0], lag[0], input_rests), _quotient(lag[0], out[0], output_rests)
-    return Advantage(
-        np.where(defined, np.where(output_rests, 0.0, ratio), np.nan),
-        np.where(defined, np.where(input_rests, 0.0, advantage), np.nan),
-        output_rests,
-        input_rests,
-        defined,
-    )
+    return balance(out, lag, motion.regular.reshape(motion.shape))
 
 
-def _quotient(a: Number, b: Number, infinite: Number) -> Number:
-    return np.where(infinite, np.inf, a / b)
-
-
-def _rate(motion: Motion, port: Port, where: str) -> tuple[Number, Number]:
+def _rate(motion: Motion, port: Port, where: str) -> Rate:
     """Return the rate at a port, and its scale."""
-    scale, size = _scale(motion), motion.size
     if isinstance(port, str):
-        return _named(motion, port, where, scale)
+        return _named(motion, port, where)
+    scale = fastest(motion)
     if isinstance(port, TorquePort):
-        return np.asarray(relative_link(motion, port.link, port.on).angular_velocity), scale
+        return Rate(np.asarray(relative_link(motion, port.link, port.on).angular_velocity), scale)
     velocity = np.asarray(relative_point(motion, port.link, port.point, port.on).velocity)
-    return dot(np.exp(1j * _angle(motion, port.angle, where)), velocity), scale * size
+    return Rate(dot(np.exp(1j * _angle(motion, port.angle, where)), velocity), scale * motion.size)
 
 
-def _named(motion: Motion, name: str, where: str, scale: Number) -> tuple[Number, Number]:
-    if name in motion.links and name != FRAME:
-        return motion.links[name].angular_velocity, scale
-    for table in (motion.pairs, motion.drives):
-        if name in table:
-            return table[name].rate, scale * (1.0 if table[name].is_angle else motion.size)
+def _named(motion: Motion, name: str, where: str) -> Rate:
+    """Return the rate of the first that has one: a link that turns, a pair, a driver."""
+    tables = [table for table in (motion.pairs, motion.drives) if name in table]
+    is_link = name in motion.links and name != FRAME
+    if is_link and not (tables and no_turning(motion, name)):
+        return rate_of_link(motion, name, where)
+    if tables:
+        return rate_of(motion, tables[0], name)
     known = [known for known in dict.fromkeys((*motion.links, *motion.pairs, *motion.drives)) if known != FRAME]
     raise UnknownName(Problem(where, f"there is no moving link, pair or driver {name!r}", nearest(name, known)))
 
@@ -128,13 +108,6 @@ def _angle(motion: Motion, angle: Any, where: str) -> Number:
         text, remedy = f"{angle!r} is not an angle for every pose", f"a number, or an array of shape {motion.shape}"
         raise InvalidInput(Problem(f"{where}.angle", text, f"radians; {remedy}")) from None
     return value
-
-
-def _scale(motion: Motion) -> Number:
-    """Return the rate of the fastest link or driver at each pose, in rad/s. What rounding is relative to."""
-    rates = [np.abs(d.rate) / (1.0 if d.is_angle else motion.size) for d in motion.drives.values()]
-    rates += [np.abs(link.angular_velocity) for link in motion.links.values()]
-    return np.maximum.reduce(np.broadcast_arrays(*rates, np.zeros(motion.shape)))
 
 
 def _one_driver(motion: Motion) -> None:

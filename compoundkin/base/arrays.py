@@ -146,6 +146,17 @@ def unwrapped(angle: Number) -> Number:
 # --- values at one design and pose ---
 
 
+def degrees(angle: Any) -> Any:
+    """Convert radians to degrees; a short decimal missed by rounding alone is that decimal.
+
+    >>> float(np.rad2deg(np.deg2rad(30.0))), float(degrees(np.deg2rad(30.0)))
+    (29.999999999999996, 30.0)
+    """
+    exact = np.rad2deg(angle)
+    short = np.round(exact, 9)
+    return np.where(np.abs(short - exact) <= 2.0 * np.spacing(np.abs(exact)), short, exact)
+
+
 def entry(value: Number, at: tuple[int, ...]) -> Number:
     """Return the entry at an index of whatever shape the value broadcasts with.
 

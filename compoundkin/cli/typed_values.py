@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import degrees, first_entry
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.files.worded_numbers import warn_of_radians, worded_rate, written_end
 from compoundkin.files.written_quantities import MOST_VALUES, rate, spaced
 from compoundkin.kinematics.driver_values import FULL_TURN
-from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.elements import Drive
 from compoundkin.structure import Structure
 

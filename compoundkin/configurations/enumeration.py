@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import TURN, Number, first_entry
+from compoundkin.base.arrays import TURN, Number, degrees, first_entry
 from compoundkin.base.bracketing import bisected
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.base.poses import Pose
@@ -23,7 +23,6 @@ from compoundkin.kinematics.driver_values import by_name, inputs
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.groups.general import bodies_at
 from compoundkin.kinematics.inputs import Inputs
-from compoundkin.kinematics.quantities import degrees
 from compoundkin.kinematics.results import Named
 from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder, residual, run

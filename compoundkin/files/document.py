@@ -10,7 +10,7 @@ from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.files.recovery import PROFILE, Recovery, Tagged
 from compoundkin.files.single_values import bad, described, wrong
 from compoundkin.model import laws, profiles
-from compoundkin.model.attributes import ANGLE
+from compoundkin.model.attributes import is_angle_word
 from compoundkin.model.elements import Drive
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import Law
@@ -118,7 +118,7 @@ def quantity_is_angle(quantity: object) -> bool:
     >>> quantity_is_angle("bar.angle"), quantity_is_angle("bar.angular_velocity")
     (True, False)
     """
-    return isinstance(quantity, str) and quantity.endswith(f".{ANGLE}")
+    return isinstance(quantity, str) and "." in quantity and is_angle_word(quantity.rpartition(".")[2])
 
 
 def law(log: Recovery, raw: Any, where: str, angle: bool | None) -> Law | None:

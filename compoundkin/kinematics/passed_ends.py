@@ -6,12 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import entry
+from compoundkin.base.arrays import degrees, entry
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.guide_ends import Ended, as_ended, bounds_name

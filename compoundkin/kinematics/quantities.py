@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, Protocol, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.kinematics.derived import FIGURES
+from compoundkin.kinematics.derived.contract import HasQuantities, Lack
 from compoundkin.model.attributes import (
     ALSO,
     CATALOGUE,
     DEGREES,
+    DERIVED,
     LENGTH,
     PARTS,
     RADIANS,
@@ -25,31 +29,6 @@ from compoundkin.model.attributes import (
     unit_of,
     vector_of,
 )
-from compoundkin.model.mechanism import Mechanism
-
-
-class HasQuantities(Protocol):
-    """A motion, or whatever else has points, links, pairs and drivers by name."""
-
-    @property
-    def mechanism(self) -> Mechanism:
-        """The mechanism, which tells the unit of lengths."""
-
-    @property
-    def points(self) -> Mapping[str, Any]:
-        """The points."""
-
-    @property
-    def links(self) -> Mapping[str, Any]:
-        """The links."""
-
-    @property
-    def pairs(self) -> Mapping[str, Any]:
-        """The pairs: each tells whether it `is_angle`."""
-
-    @property
-    def drives(self) -> Mapping[str, Any]:
-        """The drivers: each tells whether it `is_angle`."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -111,17 +90,6 @@ class Quantity:
         return f"Quantity({self.name!r}{symbol}, {shape} {kind}{' in ' + self.unit if self.unit else ''})"
 
 
-def degrees(angle: Any) -> Any:
-    """Convert radians to degrees; a short decimal missed by rounding alone is that decimal.
-
-    >>> float(np.rad2deg(np.deg2rad(30.0))), float(degrees(np.deg2rad(30.0)))
-    (29.999999999999996, 30.0)
-    """
-    exact = np.rad2deg(angle)
-    short = np.round(exact, 9)
-    return np.where(np.abs(short - exact) <= 2.0 * np.spacing(np.abs(exact)), short, exact)
-
-
 def known_owners(motion: HasQuantities) -> list[str]:
     """List what has quantities: points, links, pairs and drivers, each once."""
     return list(dict.fromkeys(name for kind in CATALOGUE for name in getattr(motion, kind)))
@@ -133,9 +101,11 @@ def quantity(motion: HasQuantities, name: str) -> Quantity:
 
     "G" alone is G.position, "bar" bar.angle, "slot" slot.value. Points have position, velocity, acceleration, jerk, x,
     y, speed; links angle, angular_velocity, angular_acceleration, angular_jerk; pairs and drivers value, rate, second,
-    third (and angle or displacement for value). A vector has parts: "G.velocity.x", ".y", ".length". Raises UnknownName
-    with the nearest known name.
+    third (and angle or displacement for value). Links of dyads have transmission_angle, those of any group
+    transmission_index; guides that turn coriolis, cams pressure_angle; what moves by one driver velocity_ratio and
+    advantage. A vector has parts: "G.velocity.x", ".y", ".length". Raises UnknownName with the nearest known name.
 
+    >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, link
     >>> from compoundkin.kinematics import solve
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"), unit="mm")
@@ -168,7 +138,7 @@ def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
 def _is_known(motion: HasQuantities, name: str) -> bool:
     """Tell whether a name is that of an owner with one of its attributes."""
     owner, _, word = name.rpartition(".")
-    return any(owner in getattr(motion, k) and word in owner_of(motion, k, owner).attributes for k in CATALOGUE)
+    return any(owner in getattr(motion, k) and owner_of(motion, k, owner).has(word) for k in CATALOGUE)
 
 
 def _whole(motion: HasQuantities, name: str) -> Quantity:
@@ -179,40 +149,64 @@ def _whole(motion: HasQuantities, name: str) -> Quantity:
         what = f"there is no point, link, pair or driver {owner!r}"
         raise UnknownName(Problem(name, what, nearest(owner, known_owners(motion))))
     for one in found:
-        if word in one.attributes or not dot:
+        if not dot or one.has(word):
             return replace(one.read(word if dot else next(iter(one.attributes))), name=name)
-    words = list(dict.fromkeys(a for one in found for a in one.attributes))
-    raise UnknownName(Problem(name, f"{owner!r} has no {word!r}", _nearest(owner, word, words)))
+    for lack in filter(None, (one.lack(word) for one in found)):
+        raise UnknownName(Problem(name, f"{owner!r} has no {word!r}: {lack.reason}", lack.remedy))
+    words = list(dict.fromkeys(word for one in found for word in one.words))
+    others = [f"only {kind} have" for kind in DERIVED if word in DERIVED[kind]]
+    what = f"{owner!r} has no {word!r}{', which ' if others else ''}{' and '.join(others)}"
+    raise UnknownName(Problem(name, what, _nearest(owner, word, words)))
 
 
 class Owner(NamedTuple):
     """A point, link, pair or driver of a motion. Its name, the attributes it has, the unit of each order."""
 
     name: str
-    motion: Any
+    kind: Kind
+    whole: HasQuantities
     dimension: Dimension
     attributes: Mapping[str, Attribute]
-    mechanism: Mechanism
 
     def read(self, word: str) -> Quantity:
         """Return the quantity of an attribute."""
-        found = self.attributes[word]
-        known = hasattr(type(self.motion), word)
-        values = getattr(self.motion, word) if known else self.motion.derivative(found.order)
-        unit = unit_of(self.mechanism.unit, self.dimension, found.order)
-        symbol = f"{found.symbol}({self.name})"
-        return Quantity(f"{self.name}.{word}", unit, np.asarray(values), found.order, self.dimension, symbol)
+        if word not in self.attributes:
+            return self._derived(word)
+        found, motion = self.attributes[word], getattr(self.whole, self.kind)[self.name]
+        known = hasattr(type(motion), word)
+        return self._quantity(found, getattr(motion, word) if known else motion.derivative(found.order))
+
+    def has(self, word: str) -> bool:
+        """Tell whether it has an attribute, or what is derived of such an owner."""
+        return word in self.attributes or (word in DERIVED[self.kind] and self.lack(word) is None)
+
+    def lack(self, word: str) -> Lack | None:
+        """Return why it has not what is derived of others. None where there is no reason."""
+        return FIGURES[self.kind][word].lack(self.whole, self.name) if word in DERIVED[self.kind] else None
+
+    @property
+    def words(self) -> list[str]:
+        """All that it has."""
+        return [word for word in (*self.attributes, *DERIVED[self.kind]) if self.has(word)]
+
+    def _derived(self, word: str) -> Quantity:
+        figure = FIGURES[self.kind][word]
+        found = self._quantity(DERIVED[self.kind][word], figure.values(self.whole, self.name))
+        # a ratio of rates takes velocities, and is no rate itself
+        return replace(found, unit=figure.unit(self.whole, self.name), order=0) if figure.unit else found
+
+    def _quantity(self, found: Attribute, values: Any) -> Quantity:
+        dimension, symbol = found.dimension or self.dimension, f"{found.symbol}({self.name})"
+        unit = unit_of(self.whole.mechanism.unit, dimension, found.order)
+        return Quantity(f"{self.name}.{found.word}", unit, np.asarray(values), found.order, dimension, symbol)
 
 
 def owner_of(motion: HasQuantities, kind: Kind, name: str) -> Owner:
     """Return a point, link, pair or driver as the owner of quantities."""
-    found: Any = getattr(motion, kind)[name]
-    besides: Mapping[str, Attribute] = {}
-    dimension: Dimension = "length" if kind == "points" else "angle"
-    if kind in ("pairs", "drives"):
-        dimension = coordinate_dimension(found.is_angle)
-        besides = ALSO[dimension]
-    return Owner(name, found, dimension, {**CATALOGUE[kind], **besides}, motion.mechanism)
+    if kind not in ("pairs", "drives"):
+        return Owner(name, kind, motion, "length" if kind == "points" else "angle", CATALOGUE[kind])
+    dimension = coordinate_dimension(getattr(motion, kind)[name].is_angle)
+    return Owner(name, kind, motion, dimension, {**CATALOGUE[kind], **ALSO[dimension]})
 
 
 def _nearest(owner: str, word: str, known: list[str]) -> str:

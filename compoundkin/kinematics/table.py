@@ -12,7 +12,8 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
-from compoundkin.kinematics.quantities import HasQuantities, Quantity, owner_of, quantity
+from compoundkin.kinematics.derived.contract import HasQuantities
+from compoundkin.kinematics.quantities import Quantity, owner_of, quantity
 from compoundkin.model.attributes import TABULATED, TIME, VALUE, unit_of
 from compoundkin.model.elements import FRAME
 

@@ -21,14 +21,18 @@ RAISED = {"^2": "²", "^3": "³"}
 
 
 class Attribute(NamedTuple):
-    """A word that may follow a name. It has its symbol, and how many time derivatives it takes."""
+    """A word that may follow a name. It has its symbol, and how many time derivatives it takes.
+
+    Its dimension is that of its owner unless it has one of its own.
+    """
 
     word: str
     symbol: str
     order: int
+    dimension: Dimension | None = None
 
 
-def _catalogue(*rows: tuple[str, str, int]) -> Mapping[str, Attribute]:
+def _catalogue(*rows: tuple[str, str, int] | tuple[str, str, int, Dimension]) -> Mapping[str, Attribute]:
     return MappingProxyType({row[0]: Attribute(*row) for row in rows})
 
 
@@ -52,6 +56,16 @@ CATALOGUE: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
 ALSO: Mapping[Dimension, Mapping[str, Attribute]] = MappingProxyType(
     {"angle": _catalogue(("angle", "q", 0)), "length": _catalogue(("displacement", "q", 0))}
 )
+# What is derived at each pose of those that have it: by name alone, and no column of a whole table.
+_RATIOS = _catalogue(("velocity_ratio", "m_V", 1, "number"), ("advantage", "m_A", 1, "number"))
+_TRANSMISSION = _catalogue(("transmission_angle", "μ", 0, "angle"), ("transmission_index", "TI", 0, "number"))
+_GUIDES = _catalogue(("pressure_angle", "φ", 0, "angle"), ("coriolis", "a_cor", 2, "length"))
+DERIVED: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
+    {"points": {}, "links": {**_TRANSMISSION, **_RATIOS}, "pairs": {**_GUIDES, **_RATIOS}, "drives": _RATIOS}
+)
+VELOCITY_RATIO, ADVANTAGE = _RATIOS
+TRANSMISSION_ANGLE, TRANSMISSION_INDEX = _TRANSMISSION
+PRESSURE_ANGLE, CORIOLIS = _GUIDES
 # The words of the derivatives, from the zeroth on, that a whole table has of each.
 OF_POINTS, OF_LINKS, OF_PAIRS = tuple(POINT)[:4], tuple(LINK), tuple(PAIR)
 OF_DRIVERS = (OF_PAIRS[0], *tuple(DRIVER)[4:])
@@ -91,6 +105,26 @@ def unit_of(length: str, dimension: Dimension, order: int = 0) -> str:
     return units[dimension] + PER_SECOND[order]
 
 
+def ratio_unit(length: str, over: Dimension, under: Dimension) -> str:
+    """Return the unit of a rate divided by another. A radian is a number.
+
+    >>> ratio_unit("mm", "length", "angle"), ratio_unit("mm", "angle", "length"), ratio_unit("mm", "angle", "angle")
+    ('mm', '1/mm', '')
+    """
+    if over == under:
+        return ""
+    return unit_of(length, "length") if over == "length" else f"1/{unit_of(length, 'length')}"
+
+
+def is_angle_word(word: str) -> bool:
+    """Tell whether an attribute is always an angle. Files have it in degrees.
+
+    >>> is_angle_word("transmission_angle"), is_angle_word("value")
+    (True, False)
+    """
+    return word == ANGLE or any(word in of and of[word].dimension == "angle" for of in DERIVED.values())
+
+
 def coordinate_dimension(is_angle: bool) -> Dimension:
     """Return the dimension of a pair's or driver's coordinate."""
     return "angle" if is_angle else "length"
@@ -115,7 +149,8 @@ def order_of(name: str) -> int:
     (1, 3, 0, 1)
     """
     word = vector_of(name)[0].rpartition(".")[2] if "." in name else ""
-    return max((table[word].order for table in (POINT, LINK, DRIVER) if word in table), default=0)
+    tables = (POINT, LINK, DRIVER, *DERIVED.values())
+    return max((table[word].order for table in tables if word in table), default=0)
 
 
 def vector_of(name: str) -> tuple[str, str]:

@@ -9,12 +9,12 @@ from functools import singledispatch
 from compoundkin.analysis.cam_analysis import CamAnalysis
 from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check
+from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.configuration_arrays import Configurations
-from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose, roman
 from compoundkin.structure.redundancy import MobilityAnalysis

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.analysis.coupler.centrodes import pole_moves
-from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, Relative, direction, relative
+from compoundkin.analysis.coupler.relative_motion import INFINITE, Relative, direction, relative
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.base.display import PrintsShort
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.derived.velocity_ratio import SMALL
 from compoundkin.model.elements import FRAME
 
 

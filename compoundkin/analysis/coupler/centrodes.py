@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, UNKNOWN, Relative, direction, rate, relative
+from compoundkin.analysis.coupler.relative_motion import INFINITE, UNKNOWN, Relative, direction, rate, relative
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import cross
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.derived.velocity_ratio import SMALL
 from compoundkin.model.elements import FRAME
 
 

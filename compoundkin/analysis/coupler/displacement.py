@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.coupler.relative_motion import INFINITE, SMALL, UNKNOWN, direction, relative_link
+from compoundkin.analysis.coupler.relative_motion import INFINITE, UNKNOWN, direction, relative_link
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, NotAssembled, Problem
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.derived.velocity_ratio import SMALL
 from compoundkin.kinematics.moving_lines import numbers_of, shape_of, vectors_of
 from compoundkin.model.elements import FRAME
 

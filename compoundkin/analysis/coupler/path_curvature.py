@@ -10,7 +10,6 @@ import numpy as np
 from compoundkin.analysis.coupler.bresse_circles import CanonicalFrame, canonical
 from compoundkin.analysis.coupler.relative_motion import (
     INFINITE,
-    SMALL,
     UNKNOWN,
     Relative,
     direction,
@@ -23,6 +22,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.base.display import PrintsShort
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.derived.velocity_ratio import SMALL
 from compoundkin.model.elements import FRAME
 
 # Ball's point is where two curves cross. Where their directions differ by less than this they coincide, as in Cardan's

@@ -15,13 +15,10 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import LinkMotion, Motion, PointMotion
+from compoundkin.kinematics.derived.velocity_ratio import SMALL
 from compoundkin.kinematics.moving_lines import vectors_of
 from compoundkin.model.elements import FRAME
 
-# Rates come from sums of terms as large as the fastest of the two links and the drivers, each rounded to 1e-16 and
-# carried over the groups of the solving order. What is smaller than this part of that scale is rounding, not motion:
-# a pole farther away than 1e12 times the mechanism is at infinity.
-SMALL = 1e-12
 UNKNOWN = complex(np.nan, np.nan)
 INFINITE = complex(np.inf, np.inf)
 

@@ -84,6 +84,24 @@ class GroupSolver(ABC):
         """Whether it may pass between its modes, where its margin is zero."""
         return self.modes == 2 and self.tells_margin
 
+    @property
+    def tells_transmission(self) -> bool:
+        """Whether it tells how well it transmits forces."""
+        return self.has_transmission_angle
+
+    @property
+    def has_transmission_angle(self) -> bool:
+        """Whether one angle tells that. It does for a dyad, and for a body on a contact."""
+        return False
+
+    def transmission(self, block: Block) -> Number:
+        """Return a complex number at the transmission angle.
+
+        That is folded to a right angle. Of a group without such an angle it is that of the body that transmits worst.
+        The group's links are known in the block; it is asked only of a group that tells it.
+        """
+        raise NotImplementedError
+
     def followed(self) -> GroupSolver | None:
         """Return the solver that follows configurations which have no sign here. It is None where there are none."""
         return None
@@ -132,6 +150,12 @@ class Side:
     def in_body(self, block: Block) -> End:
         """Return the side in the frame of its body's base link."""
         return block.in_body(self.link, block.ends[self.pair.name][self.own])
+
+
+def in_world(pair: Pair, block: Block) -> End:
+    """Return a closed pair's side in the world, of whichever member is known."""
+    k = next(k for k, name in enumerate(pair.members) if name in block.world)
+    return block.world[pair.members[k]].carry(block.ends[pair.name][k])
 
 
 def side_of(pair: Pair, body: Body) -> Side:

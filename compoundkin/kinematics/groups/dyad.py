@@ -14,10 +14,11 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
-from compoundkin.kinematics.groups.contract import GroupSolver, side_of
+from compoundkin.kinematics.groups.contract import GroupSolver, in_world, side_of
+from compoundkin.kinematics.groups.transmission import contact_transmission
 from compoundkin.kinematics.limits import Root, clipped_root
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import lower_equivalent
@@ -75,6 +76,11 @@ class DyadSolver(GroupSolver):
     ) -> str:
         """Say why it cannot be assembled at the flat pose index `at`. `names` are the letters of its pairs."""
 
+    @staticmethod
+    @abstractmethod
+    def transmitted(first: End, inner: End, second: End) -> Number:
+        """Return a complex number at the transmission angle, folded to a right angle. The sides are in the world."""
+
     def __init__(self, index: int, group: Group, size: float, dyad: Group, ends: Mapping[str, Ends]) -> None:
         super().__init__(index, group)
         self.size = size
@@ -116,6 +122,21 @@ class DyadSolver(GroupSolver):
             if body in self.group.bodies:
                 block.publish(body, pose)
 
+    @property
+    def has_transmission_angle(self) -> bool:
+        """Whether one angle tells how it transmits forces: always."""
+        return True
+
+    def transmission(self, block: Block) -> Number:
+        """Return the transmission angle of its closed form.
+
+        Of one body on a higher pair it is the angle at the contact.
+        """
+        if len(self.group.bodies) == 1:
+            return contact_transmission(self.group, block)
+        first, second = (in_world(side.pair, block) for side in self.outer)
+        return self.transmitted(first, in_world(self.inner[0].pair, block), second)
+
     def every(self, block: Block) -> Configurations:
         """Return one configuration for each mode."""
         return self.in_modes(block)
@@ -145,6 +166,11 @@ def _by_lower_pairs(group: Group, ends: Mapping[str, Ends]) -> tuple[Group, Mapp
 def placed_at(point: Series, u: Series, local: Series | Number) -> Pose:
     """Return the pose with orientation `u` that has the body's point `local` at `point`."""
     return Pose(Pose(point, u).at(-local), u)
+
+
+def spot(end: End) -> Number:
+    """Return where a side of a pair is."""
+    return as_series(end.point).c[0]
 
 
 def element(value: Number, at: int) -> float:

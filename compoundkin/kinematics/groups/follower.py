@@ -18,6 +18,7 @@ from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.contract import GroupSolver, MountedBody
 from compoundkin.kinematics.groups.general import GeneralSolver
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
+from compoundkin.kinematics.groups.transmission import contact_transmission
 from compoundkin.model.pairs.contact import Profiled, as_profiled
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, lower_equivalent
@@ -114,6 +115,15 @@ class FollowerSolver(GroupSolver):
         """Return the contact's distance and its slope by the coordinate, all else standing still."""
         gap = self.pair.closure(ends, placing(Series((coordinate, 1.0))))[0]
         return gap.c[0], gap.c[1]
+
+    @property
+    def has_transmission_angle(self) -> bool:
+        """Whether one angle tells how it transmits forces: always."""
+        return True
+
+    def transmission(self, block: Block) -> Number:
+        """Return the angle at the contact between the follower's motion and the tangent."""
+        return contact_transmission(self.group, block)
 
     def every(self, block: Block) -> Configurations:
         """Return one configuration for each mode."""

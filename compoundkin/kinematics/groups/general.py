@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from itertools import combinations
 from typing import ClassVar, Self
 
@@ -17,6 +18,7 @@ from compoundkin.kinematics.configuration_arrays import Configurations, state_di
 from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.kinematics.groups.transmission import Force, forces_of, worst_transmission
 from compoundkin.model.pairs.contact import as_profiled
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Body, Group
@@ -61,6 +63,27 @@ class GeneralSolver(GroupSolver):
         state = np.where(closed[..., None], found.state, mode if keeps else np.nan)
         for body, pose in zip(self.group.bodies, self.equations.series(state, block, block.order), strict=True):
             block.publish(body, pose)
+
+    @cached_property
+    def _forces(self) -> tuple[GroupEquations, tuple[Force, ...]]:
+        """The equations of all bodies, none of them left out as a bar, and the forces that pass between them."""
+        own = self.equations
+        whole = GroupEquations(own.n, own.pairs, own.members, own.size, own.middles, bars=False)
+        return whole, forces_of(whole)
+
+    @property
+    def tells_transmission(self) -> bool:
+        """Whether some body or contact passes on one force."""
+        return bool(self._forces[1])
+
+    @property
+    def has_transmission_angle(self) -> bool:
+        """Whether it is one body with a single contact."""
+        return len(self.group.bodies) == 1 and len(self.group.outer) == 2 and self.tells_transmission
+
+    def transmission(self, block: Block) -> Number:
+        """Return the angle of the body or contact that transmits worst."""
+        return worst_transmission(*self._forces, block, [body.links[0] for body in self.group.bodies])
 
     def every(self, block: Block) -> Configurations:
         """Return the real configurations.

@@ -40,6 +40,11 @@ class PRP(DyadSolver):
         return Closed((pose, other), margin)
 
     @staticmethod
+    def transmitted(first: End, inner: End, second: End) -> Number:
+        """Return the angle between the guides."""
+        return np.conjugate(first.along.c[0]) * second.along.c[0]
+
+    @staticmethod
     def explain(
         first: OuterPair, inner: tuple[End, End], second: OuterPair, at: int, names: tuple[str, str, str]
     ) -> str:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+import numpy as np
+
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, as_series
 from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at
@@ -36,6 +38,11 @@ class RPP(DyadSolver):
         travel = gap.cross(guide) / sine
         moved = placed_at(as_series(second.world.point) + track * travel, v, second.local.point)
         return Closed((pose, moved), margin)
+
+    @staticmethod
+    def transmitted(first: End, inner: End, second: End) -> Number:
+        """Return the angle between the guides."""
+        return np.conjugate(inner.along.c[0]) * second.along.c[0]
 
     @staticmethod
     def explain(

@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.composition import planar
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, element, placed_at, text
+from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, element, placed_at, spot, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -37,6 +37,14 @@ class RPR(DyadSolver):
         first_pose = placed_at(as_series(first.world.point), u, first.local.point)
         second_pose = placed_at(as_series(second.world.point), v, second.local.point)
         return Closed((first_pose, second_pose), margin, line2)
+
+    @staticmethod
+    def transmitted(first: End, inner: End, second: End) -> Number:
+        """Return the angle between the guide and the normal of the line of pins.
+
+        The force goes across the guide through an outer pin, which moves across that line.
+        """
+        return np.conjugate(spot(second) - spot(first)) * inner.along.c[0] * 1j
 
     @staticmethod
     def explain(

@@ -12,7 +12,7 @@ import numpy as np
 
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at, text
+from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at, spot, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -36,6 +36,11 @@ class RRP(DyadSolver):
         u = (start + guide * travel) / rod
         block = placed_at(as_series(second.world.point) + guide * travel, v, second.local.point)
         return Closed((placed_at(as_series(first.world.point), u, first.local.point), block), margin)
+
+    @staticmethod
+    def transmitted(first: End, inner: End, second: End) -> Number:
+        """Return the angle between the rod and the normal of the guide."""
+        return np.conjugate(spot(inner) - spot(first)) * second.along.c[0] * 1j
 
     @staticmethod
     def explain(

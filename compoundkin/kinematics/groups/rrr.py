@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.composition import planar
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.groups.dyad import COINCIDENT, Closed, DyadSolver, OuterPair, element, placed_at, text
+from compoundkin.kinematics.groups.dyad import COINCIDENT, Closed, DyadSolver, OuterPair, element, placed_at, spot, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -41,6 +41,12 @@ class RRR(DyadSolver):
         v = (u * a - line) / b
         first_pose = placed_at(_point(first), u, first.local.point)
         return Closed((first_pose, placed_at(_point(second), v, second.local.point)), margin, line2)
+
+    @staticmethod
+    def transmitted(first: End, inner: End, second: End) -> Number:
+        """Return the angle between the links at the inner pin."""
+        pin = spot(inner)
+        return np.conjugate(pin - spot(first)) * (pin - spot(second))
 
     @staticmethod
     def explain(

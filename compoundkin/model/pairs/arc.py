@@ -16,13 +16,13 @@ from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import Contact, Touch, row
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.guide_ends import EndedArc, Reach, reach_key
-from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
+from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Groove, Mark, Stud, arc_line, reach
 
 
 @dataclass(frozen=True, eq=False)
-class ArcSlot(Contact, EndedArc):
+class ArcSlot(Contact, Guided, EndedArc):
     """A point of `link` that runs along a circular slot in the link `on`.
 
     The point is `at`, the circle of `radius` about `centre_at`.

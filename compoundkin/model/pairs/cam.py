@@ -21,13 +21,13 @@ from compoundkin.model.pairs.contact_search import Freedom, crossings_on_way, pa
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.loop_vectors import Curved, Sum, Unknown, angle_of
-from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
+from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
 
 
 @dataclass(frozen=True, eq=False)
-class Cam(Profiled):
+class Cam(Profiled, Guided):
     """A roller of `radius`, or the point `at`, on the profile of `on`.
 
     A closed profile is touched from outside, or from `inside`; without a radius the point runs on the profile itself,

@@ -6,7 +6,7 @@ A contact with a profile leads a member along it, as a cam its roller or flat fa
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import ClassVar, NamedTuple
 
@@ -15,7 +15,6 @@ import numpy as np
 from compoundkin.base.curves import Curve
 from compoundkin.base.curves.samples import spans
 from compoundkin.base.errors import Problem
-from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.model.pairs.contact_search import Freedom
 from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, table
@@ -55,6 +54,10 @@ class Contact(Replaceable):
     def sliding(self, ends: Ends, poses: Poses) -> tuple[Number, ...]:
         """Return the derivatives of the coordinate by each link's x, y, theta. They are a row of the Jacobian."""
 
+    def led(self, ends: Ends, poses: Poses) -> Number:
+        """Return the point led: a pin, a roller's middle, an edge, a face's contact."""
+        return self.touch(ends, poses).place.c[0]
+
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """Return the distance along the common normal."""
         return (self.touch(ends, poses).gap,)
@@ -81,12 +84,9 @@ def row(poses: Poses, place: Number, along: Number) -> tuple[Number, ...]:
 
     They are by each link's x, y, theta; the direction `along` is a unit vector, or one whose length is a factor.
     """
-    first, second = (along.real * arm.real + along.imag * arm.imag for arm in _arms(poses, place))
+    arms = (1j * (place - pose.z.c[0]) for pose in poses)
+    first, second = (along.real * arm.real + along.imag * arm.imag for arm in arms)
     return -along.real, -along.imag, -first, along.real, along.imag, second
-
-
-def _arms(poses: Sequence[Pose], place: Number) -> tuple[Number, ...]:
-    return tuple(1j * (place - pose.z.c[0]) for pose in poses)
 
 
 # One of so many samples of the profile is enough to find where it is crossed or touched; Newton does the rest.
@@ -154,10 +154,6 @@ class Profiled(Contact):
     def parameter(self, ends: Ends, poses: Poses) -> Number:
         """Return the parameter of the profile at the contact."""
 
-    @abstractmethod
-    def led(self, ends: Ends, poses: Poses) -> Number:
-        """Return the point led: the roller's middle, the edge, a flat face's contact."""
-
     @cached_property
     def hollows(self) -> tuple[tuple[float, float], ...]:
         """The parameter's spans where hollows are narrower than the roller or flat face."""
@@ -212,6 +208,11 @@ class Profiled(Contact):
         middle = curve.at(s).c[0] + curve.normal(s).c[0] * self.outward * self.roller
         nearer = np.abs(middle - curve.at(curve.foot(middle).c[0]).c[0])
         return CUTS * curve.size - (self.roller - nearer)
+
+
+def as_contact(pair: Pair) -> Contact | None:
+    """Return a pair as one of two links that touch, or None."""
+    return pair if isinstance(pair, Contact) else None
 
 
 def as_profiled(pair: Pair) -> Profiled | None:

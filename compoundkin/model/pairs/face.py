@@ -193,10 +193,6 @@ class Face(Profiled):
         """Return the parameter of the profile at the contact."""
         return self._support(*self._sides(ends, poses)).c[0]
 
-    def led(self, ends: Ends, poses: Poses) -> Number:
-        """Return the contact."""
-        return self.touch(ends, poses).place.c[0]
-
     def _sides(self, ends: Ends, poses: Poses) -> tuple[Pose, End]:
         """The frame of the profile, and the face in the world."""
         side, face = poses[0].carry(ends[0]), poses[1].carry(ends[1])

@@ -98,6 +98,19 @@ def as_turn_counting(pair: Pair) -> TurnCounting | None:
     return pair if isinstance(pair, TurnCounting) else None
 
 
+class Guided(Pair):
+    """A pair with a guide on the first member. A point of the second runs along it."""
+
+    def guided(self, ends: Ends) -> Number:
+        """Return this point, in the frame of its link."""
+        return ends[1].point
+
+
+def guided_point(pair: Pair, ends: Ends) -> Number | None:
+    """Return the point that runs along a guide, of the second member. None where none does."""
+    return pair.guided(ends) if isinstance(pair, Guided) else None
+
+
 class Equivalent(NamedTuple):
     """The lower pairs and the link between them for a higher pair.
 

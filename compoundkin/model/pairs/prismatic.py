@@ -18,12 +18,12 @@ from compoundkin.model.pairs.contract import Ends, Point, Poses, table
 from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
 from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
-from compoundkin.model.pairs.optional_answers import DrawnPair, Drivable, Orienting
+from compoundkin.model.pairs.optional_answers import DrawnPair, Drivable, Guided, Orienting
 from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 
 
 @dataclass(frozen=True, eq=False)
-class Prismatic(Drivable, Orienting, Ended):
+class Prismatic(Drivable, Orienting, Guided, Ended):
     """The link `link` slides on the link `on`. Its point `at` runs along a guide.
 
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x

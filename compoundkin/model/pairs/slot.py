@@ -19,14 +19,14 @@ from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import Contact, Touch, row
 from compoundkin.model.pairs.contract import Ends, Pair, Poses
 from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
-from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
+from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Groove, Mark, Stud, reach
 
 
 @dataclass(frozen=True, eq=False)
-class Slot(Contact, Ended):
+class Slot(Contact, Guided, Ended):
     """The point `at` of `link` runs along a straight slot in the link `on`.
 
     The slot is the line through the point `through` of `on`, in the direction `angle` (radians, from the x axis of

@@ -10,25 +10,23 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import turns_above
+from compoundkin.base.arrays import degrees, turns_above
 from compoundkin.base.series import Number
 from compoundkin.configurations.circuit import Branch, Circuit
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.kinematics.configuration import label
-from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.attributes import DEGREES, unit_of
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.branch_lines import (
     OF_ANGLES,
     OF_DRIVERS,
     BranchCurve,
-    Positions,
     curve_of,
     seam,
     shown,
-    start_position,
     wrapped,
 )
+from compoundkin.view.plot.branch_positions import Positions, start_position
 from compoundkin.view.plot.plotted_rows import TURN, Plotted
 from compoundkin.view.plot.point_labels import PointLabel
 

@@ -1,131 +1,24 @@
-"""Branches of circuits as curves: quantities at places of every segment, whose ends are limit positions themselves."""
+"""Branches of circuits as curves: quantities at places of every segment, and in which turn angles are shown."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN as FULL
-from compoundkin.base.arrays import turns_above, unwrapped
+from compoundkin.base.arrays import degrees, turns_above, unwrapped
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.configurations.circuit import Branch, Limit
-from compoundkin.configurations.circuit_search import Circuits
-from compoundkin.configurations.segments import CHANGE, NONE
-from compoundkin.kinematics.configuration import dimensions_at
-from compoundkin.kinematics.quantities import degrees, quantity, whole_and_part
+from compoundkin.configurations.segments import CHANGE
+from compoundkin.kinematics.quantities import quantity, whole_and_part
 from compoundkin.model.attributes import ALSO, order_of, vector_of
-from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.view.plot.branch_positions import Positions
 from compoundkin.view.plot.plotted_rows import TURN, Plotted
 
-# Places on a segment for a turn of the driver's period: equal steps on a half circle whose diameter is the segment's
-# interval, so that they lie close where curves are steep.
-PLACES = 360
 # Where the one turn begins in which angles are shown, degrees; of equally good ones the first is taken.
 OF_DRIVERS, OF_ANGLES = (0.0, -180.0), (-180.0, 0.0, -90.0)
-
-
-@dataclass(frozen=True, eq=False)
-class _Values:
-    """A coordinate at all places."""
-
-    values: Number
-    is_angle: bool = True
-
-    def derivative(self, _: int) -> Number:
-        """Return the coordinate itself: there are no others."""
-        return self.values
-
-
-class _Places(_Values):
-    """Where a point is at all places."""
-
-    @property
-    def x(self) -> Number:
-        """The first coordinate."""
-        return np.real(self.values)
-
-    @property
-    def y(self) -> Number:
-        """The second coordinate."""
-        return np.imag(self.values)
-
-
-@dataclass(frozen=True, eq=False)
-class Positions:
-    """All that has a position on segments. `values` of the driver (rows, places), and the poses of the links there."""
-
-    found: Circuits
-    values: Number
-    world: Mapping[str, Pose]
-
-    @property
-    def mechanism(self) -> Mechanism:
-        """The mechanism."""
-        return self.found.structure.mechanism
-
-    @cached_property
-    def points(self) -> Mapping[str, _Places]:
-        """The points."""
-        dimensions = dimensions_at(self.found.structure, self.found.placing.design, 0)
-        places = {letter: (links[0], dimensions[links[0]][letter]) for letter, links in self.mechanism.carriers.items()}
-        return {letter: _Places(self._full(self.world[link].at(p).c[0])) for letter, (link, p) in places.items()}
-
-    @cached_property
-    def links(self) -> Mapping[str, _Values]:
-        """The angles of the links."""
-        return {name: _Values(self._full(self.world[name].angle.c[0])) for name in self.mechanism.links}
-
-    @cached_property
-    def pairs(self) -> Mapping[str, _Values]:
-        """The coordinates of the pairs."""
-        sweep = self.found.placing.sweep
-        found = {}
-        for name, pair in sweep.solving_order.pairs.items():
-            ends: Ends = sweep.ends[name]
-            poses: Poses = tuple(self.world[member] for member in pair.members)
-            with np.errstate(all="ignore"):
-                found[name] = _Values(self._full(pair.coordinate(ends, poses).c[0]), pair.free_is_angle)
-        return found
-
-    @cached_property
-    def drives(self) -> Mapping[str, _Values]:
-        """The values of the drivers."""
-        sweep = self.found.placing.sweep
-        values = {**sweep.fixed, sweep.driver: self.values}
-        driven = self.found.structure.driven.items()
-        return {name: _Values(self._full(values[name]), step.pair.free_is_angle) for name, step in driven}
-
-    def _full(self, value: Number) -> Number:
-        return np.broadcast_to(value, self.values.shape)
-
-
-def all_positions(found: Circuits) -> Positions:
-    """Return every segment from end to end."""
-    segments = found.placing.segments
-    count = PLACES * max(1, round(found.period / FULL)) + 1
-    rows, phi = np.arange(segments.rows), np.linspace(0.0, np.pi, count)
-    sides = np.full(count, NONE)
-    sides[0], sides[-1] = 0, 1
-    return _positions(found, rows, segments.at(rows, phi[None]), sides)
-
-
-def start_position(found: Circuits) -> Positions | None:
-    """Tell where solving begins; None where nothing is assembled there."""
-    if found.start is None:
-        return None
-    return _positions(found, np.array([found.start.visit.row]), np.array([[found.start.inside]]), np.array([NONE]))
-
-
-def _positions(found: Circuits, rows: Number, values: Number, sides: Number) -> Positions:
-    with np.errstate(all="ignore"):
-        run = found.placing.sweep.run(found.placing.segments, rows, values, sides=sides)
-    return Positions(found, values, run.world)
 
 
 def shown(positions: Positions, name: str) -> tuple[Plotted, ...]:

@@ -7,18 +7,19 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.configurations.circuit import Branch, Circuit
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.circuit_search import circuits as all_circuits
-from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.attributes import ANGLE, DISPLACEMENT, VALUE, after_number, order_of
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Group, Structure
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.branch_curves import DOT, START, BranchDrawing
-from compoundkin.view.plot.branch_lines import Positions, all_positions, shown
+from compoundkin.view.plot.branch_lines import shown
+from compoundkin.view.plot.branch_positions import Positions, all_positions
 from compoundkin.view.plot.plot_style import Plot
 from compoundkin.view.plot.point_labels import PointLabel, number
 

@@ -12,7 +12,7 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity, known_owners, whole_and_part
-from compoundkin.model.attributes import LENGTH, PARTS, RATE_OF, SPEED, TIME, VALUE, unit_of, vector_of
+from compoundkin.model.attributes import ADVANTAGE, LENGTH, PARTS, RATE_OF, SPEED, TIME, VALUE, unit_of, vector_of
 
 POSE, DRIVEN = "pose", "driver"
 # The scale of angles, in degrees.
@@ -23,11 +23,27 @@ TURN = 360.0
 class Plotted(Quantity):
     """A quantity along an axis: `values` real or complex, (designs, poses), angles in degrees.
 
-    `scale` is what its rounding is relative to; `vector` holds the vectors that `values` are the lengths of.
+    `scale` is what its rounding is relative to; `vector` holds the vectors that `values` are the lengths of. What is a
+    reciprocal `has_poles`, where that is zero.
     """
 
     scale: float = 1.0
     vector: Number | None = None
+    has_poles: bool = False
+
+    @property
+    def is_unbounded(self) -> bool:
+        """Whether it may grow without limit.
+
+        Rates do at limit positions, an advantage at toggle positions.
+        """
+        return self.has_poles or self.order > 0
+
+    @property
+    def poles(self) -> Number:
+        """Between which poses it changes its sign through infinity, (designs, poses less one)."""
+        ahead = np.sign(self.values[:, :-1].real) * np.sign(self.values[:, 1:].real)
+        return (ahead < 0) if self.has_poles else np.zeros(np.shape(ahead), dtype=bool)
 
     def part(self, name: str) -> Self:
         """Return a component or the length of a vector."""
@@ -133,11 +149,13 @@ def all_of(motion: Motion, names: Sequence[str]) -> tuple[Plotted, ...]:
 def _rows(motion: Motion, found: Quantity) -> Plotted:
     values = _shaped(motion, found.shown.values)
     largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
-    scale = max(largest, (TURN if found.is_angle else motion.size) * _pace(motion) ** found.order)
+    natural = TURN if found.is_angle else 1.0 if found.dimension == "number" else motion.size
+    scale = max(largest, natural * _pace(motion) ** found.order)
     owner, _, attribute = found.name.rpartition(".")
     is_speed = attribute == SPEED and owner in motion.points
     vector = _shaped(motion, motion.points[owner].velocity) if is_speed else None
-    return Plotted(**{**vars(found.shown), "values": values}, scale=scale, vector=vector)
+    return Plotted(**{**vars(found.shown), "values": values}, scale=scale, vector=vector,
+                   has_poles=attribute == ADVANTAGE)  # fmt: skip
 
 
 def _pace(motion: Motion) -> float:

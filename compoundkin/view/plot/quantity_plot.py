@@ -112,16 +112,20 @@ def _draw(axes: Any, x: Plotted, panel: Panel, happened: Events, marked: bool | 
     designs = len(x.values)
     shades = plot_style.colours(len(panel.curves), designs)
     lines = [(curve, d) for curve in panel.curves for d in range(designs)]
-    window = _upwards(axes, panel, any(any(blank.limits) for blank in happened.blanks))
+    unbounded = any(curve.has_poles for curve in panel.curves)
+    window = _upwards(axes, panel, unbounded or any(any(blank.limits) for blank in happened.blanks))
     for k, (curve, d) in enumerate(lines):
         name = curve.name.removeprefix(f"{panel.title.name}.") if designs == 1 else f"_design {d}"
-        axes.plot(x.values[d], curve.values[d], color=shades[k], label=name)
+        cuts = np.flatnonzero(curve.poles[d]) + 1
+        across, up = (np.insert(row, cuts, np.nan) for row in (x.values[d].astype(float), curve.values[d]))
+        axes.plot(across, up, color=shades[k], label=name)
         beside = happened.beside(d, x.values.shape[1])
         canvas.ring(axes, x.values[d][beside], curve.values[d][beside], shades[k])
     if marked or (marked is None and len(lines) <= MOST_MARKED):
         found: list[PointLabel] = []
         for k, (curve, d) in enumerate(lines):
-            _extremes(axes, x.values[d], curve, d, window, shades[k], found)
+            if not curve.poles[d].any():
+                _extremes(axes, x.values[d], curve, d, window, shades[k], found)
         # the outermost ones take their places first
         labels.extend(sorted(found, key=lambda label: -label.y * label.towards.imag))
 
@@ -151,7 +155,7 @@ def _extremes(
     labels: list[PointLabel],
 ) -> None:
     vector = None if curve.vector is None else curve.vector[d]
-    for one in found_extremes(x, curve.values[d], curve.order > 0, curve.scale, vector):
+    for one in found_extremes(x, curve.values[d], curve.is_unbounded, curve.scale, vector):
         if window is None or window[0] < one.y < window[1]:
             canvas.dot(axes, one.x, one.y, colour)
             labels.append(
@@ -162,7 +166,7 @@ def _extremes(
 def _window(panel: Panel, values: Number, near_limits: bool) -> tuple[float, float] | None:
     """The values to show where rates grow without limit; None for all of them."""
     known = values[np.isfinite(values)]
-    if not len(known) or all(curve.order == 0 for curve in panel.curves):
+    if not len(known) or not any(curve.is_unbounded for curve in panel.curves):
         return None
     low, high = np.percentile(known, INNER)
     span = high - low

@@ -13,7 +13,7 @@ from compoundkin.analysis.centres import Centre, Centres, DerivationStep, instan
 from compoundkin.analysis.centres.centre_velocities import POOR
 from compoundkin.analysis.centres.circle_diagram import diagram_of
 from compoundkin.analysis.centres.derivation import derive
-from compoundkin.kinematics.quantities import degrees
+from compoundkin.base.arrays import degrees
 from compoundkin.model.attributes import unit_of
 from compoundkin.structure import Structure
 from compoundkin.view.report.report_data import Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock

@@ -27,6 +27,8 @@ from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Para
 from compoundkin.view.report.shown_poses import ROUNDING, Sample
 from compoundkin.view.report.wording import counted, listed, number, ordinal
 
+# A mechanical advantage at a toggle position.
+INFINITE = "inf"
 # How many outputs a report chooses where the mechanism names none.
 MOST_OUTPUTS = 6
 WAYS = {True: "oscillates about a pin", False: "translates on a slide", None: "has no guide of its own"}
@@ -114,8 +116,9 @@ def _extreme_rows(sample: Sample, found: Quantity) -> Iterator[tuple[Cell, ...]]
 def _extreme(sample: Sample, values: Any, floor: float) -> tuple[Cell, ...]:
     """The least value and where it is first taken, the greatest and where; differences by rounding are none."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    slack = max(floor, ROUNDING * max(abs(low), abs(high)))
-    shown = [0.0 if abs(value) <= floor else value for value in (low, high)]
+    # an advantage is infinite at toggle positions
+    slack = max(floor, ROUNDING * float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0)))
+    shown = [0.0 if abs(value) <= floor else _cell(value) for value in (low, high)]
     if high - low <= slack:
         return shown[0], "always", shown[1], "always"
     places = sample.places[1]
@@ -123,7 +126,9 @@ def _extreme(sample: Sample, values: Any, floor: float) -> tuple[Cell, ...]:
     return shown[0], float(first), shown[1], float(second)
 
 
-def _cell(value: Any) -> float | None:
+def _cell(value: Any) -> float | str | None:
+    if np.isposinf(value):
+        return INFINITE
     return float(value) if np.isfinite(value) else None
 
 

@@ -114,7 +114,7 @@ class Sample:
 
         It goes by the mechanism's size, its drivers' rates, and its own vectors.
         """
-        size = 1.0 if found.dimension == "angle" else self.motion.mechanism.geometry.size
+        size = 1.0 if found.dimension in ("angle", "number") else self.motion.mechanism.geometry.size
         values = np.abs(found.values)
         largest = float(np.max(values, initial=0.0, where=np.isfinite(values))) if found.is_vector else 0.0
         return ROUNDING * max(largest, size * self._rate**found.order)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.kinematics.quantities import degrees
+from compoundkin.base.arrays import degrees
 from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY
 from compoundkin.model.laws import ConstantAcceleration, ConstantSpeed, FunctionLaw, Law
 from compoundkin.model.laws.motion_programs import Program

@@ -18,7 +18,8 @@ import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view import plot
-from compoundkin.view.plot.branch_lines import all_positions, curve_of, shown, wrapped
+from compoundkin.view.plot.branch_lines import curve_of, shown, wrapped
+from compoundkin.view.plot.branch_positions import all_positions
 from tests.configurations.mechanisms import four_bar
 from tests.support import REFERENCE
 

@@ -1,4 +1,4 @@
-"""The follower of a cam: which link it is, how it is guided, and where its contact point can move."""
+"""The follower of a cam: which link it is, how it is guided, where its contact can move, and its pressure angle."""
 
 from __future__ import annotations
 
@@ -6,37 +6,62 @@ import numpy as np
 
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, as_series
-from compoundkin.kinematics import Motion
+from compoundkin.kinematics.derived.contract import HasQuantities, Lack
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contact import Profiled
+from compoundkin.model.pairs.contact import Profiled, as_profiled
 
 # Slower than this part of the fastest, a velocity has no direction but that of rounding.
 RESTS = 1e-9
 
 
-def direction_of(motion: Motion, pair: Profiled, contact: Number) -> tuple[str, bool | None, Number]:
+def pressure_angle(motion: HasQuantities, name: str) -> Number:
+    """Return the pressure angle of a cam pair.
+
+    Within -pi / 2 and pi / 2, it is from the direction in which the follower can move to the common normal,
+    counterclockwise. Raises InvalidInput where a follower without a guide of its own takes velocities that were not
+    solved for.
+    """
+    pair = as_profiled(motion.solving_order.pairs[name])
+    assert pair is not None
+    touch = pair.touch(motion.inputs.ends[name], tuple(motion.poses[member] for member in pair.members))
+    along = direction_of(motion, pair, touch.place.c[0])[2]
+    turned = np.conjugate(along) * touch.normal.c[0]
+    return motion.grid.known(np.angle(np.where(turned.real < 0.0, -turned, turned)))
+
+
+def no_pressure_angle(motion: HasQuantities, name: str) -> Lack | None:
+    """Return why a pair has no pressure angle."""
+    pair = motion.solving_order.pairs[name]
+    if as_profiled(pair):
+        return None
+    return Lack(f"a {pair.title} has no profile", "links of dyads have transmission angles, 90 degrees less theirs")
+
+
+def direction_of(motion: HasQuantities, pair: Profiled, contact: Number) -> tuple[str, bool | None, Number]:
     """Return the follower, whether it oscillates, and where its contact point can move.
 
     Where it has no single guide, the direction of its velocity.
     """
+    structure = motion.solving_order.structure
     name = _led(motion, pair)
-    carried = {passive.link: passive.on for passive in motion.structure.passive}
+    carried = {passive.link: passive.on for passive in structure.passive}
     name = carried.get(name, name)
     poses = tuple(motion.poses[member] for member in pair.members)
     point = contact if name == pair.on else pair.led(motion.inputs.ends[pair.name], poses)
-    guides = [guide for guide in motion.structure.pairs if _guides(guide, name, {pair.link, pair.on, *carried})]
+    guides = [guide for guide in structure.pairs if _guides(guide, name, {pair.link, pair.on, *carried})]
     if len(guides) == 1 and guides[0].is_simple:
         oscillates = guides[0].free_is_angle
         return name, oscillates, _guided(motion, guides[0], point)
+    motion.grid.require(1)
     velocity = velocity_at(motion.poses[name], point)
     speed = np.abs(velocity)
     fastest = float(np.max(speed, initial=0.0, where=np.isfinite(speed)))
     return name, None, np.where(speed > RESTS * fastest, velocity, np.nan)
 
 
-def _led(motion: Motion, pair: Profiled) -> str:
+def _led(motion: HasQuantities, pair: Profiled) -> str:
     """Return the link that the contact moves. That of the profile where it is in the group which the contact closes."""
-    for group in motion.structure.groups:
+    for group in motion.solving_order.structure.groups:
         if pair in group.outer or pair in group.inner:
             return pair.link if pair.link in group.links else pair.on
     return pair.link
@@ -47,7 +72,7 @@ def _guides(guide: Pair, name: str, apart: set[str]) -> bool:
     return name in guide.members and not (set(guide.members) - {name}) & (apart - {name})
 
 
-def _guided(motion: Motion, guide: Pair, point: Number) -> Number:
+def _guided(motion: HasQuantities, guide: Pair, point: Number) -> Number:
     """Return the direction in which a link's point can move on its guide."""
     reference = motion.poses[guide.members[0]].carry(motion.inputs.ends[guide.name][0])
     return 1j * (point - as_series(reference.point).c[0]) if guide.free_is_angle else reference.along.c[0]

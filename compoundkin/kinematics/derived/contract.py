@@ -1,0 +1,75 @@
+"""What quantities are read from, and what a figure is: a quantity that only some points, links or pairs have."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
+from compoundkin.kinematics.inputs import Inputs, PoseGrid
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.mechanism import Mechanism
+
+
+class HasQuantities(Protocol):
+    """A motion, or whatever else has points, links, pairs and drivers by name."""
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism, which tells the unit of lengths."""
+
+    @property
+    def points(self) -> Mapping[str, Any]:
+        """The points."""
+
+    @property
+    def links(self) -> Mapping[str, Any]:
+        """The links."""
+
+    @property
+    def pairs(self) -> Mapping[str, Any]:
+        """The pairs: each tells whether it `is_angle`."""
+
+    @property
+    def drives(self) -> Mapping[str, Any]:
+        """The drivers: each tells whether it `is_angle`."""
+
+    @property
+    def solving_order(self) -> SolvingOrder:
+        """What solved it."""
+
+    @property
+    def inputs(self) -> Inputs:
+        """All numbers it was solved with."""
+
+    @property
+    def poses(self) -> Mapping[str, Pose]:
+        """The poses of the links."""
+
+    @property
+    def regular(self) -> Number:
+        """Which poses have finite rates, (designs, poses)."""
+
+    @property
+    def grid(self) -> PoseGrid:
+        """How its numbers are shown."""
+
+
+@dataclass(frozen=True)
+class Lack:
+    """Why there is no such figure, and what to do about it."""
+
+    reason: str
+    remedy: str = ""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A quantity that only some owners have. Its values at every pose, and why others do not have it."""
+
+    values: Callable[[HasQuantities, str], Number]
+    lack: Callable[[HasQuantities, str], Lack | None]
+    # where it is not that of its attribute
+    unit: Callable[[HasQuantities, str], str] | None = None

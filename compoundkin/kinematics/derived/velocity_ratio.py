@@ -1,0 +1,140 @@
+"""Velocity ratio and mechanical advantage: the rate of one link, pair or driver over that of another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.derived.contract import HasQuantities, Lack
+from compoundkin.kinematics.derived.translation import translating_links
+from compoundkin.model.attributes import Dimension, Kind, coordinate_dimension, ratio_unit
+from compoundkin.model.elements import FRAME
+
+# Rates come from sums of terms as large as the fastest of the two links and the drivers, each rounded to 1e-16 and
+# carried over the groups of the solving order. What is smaller than this part of that scale is rounding, not motion:
+# a pole farther away than 1e12 times the mechanism is at infinity.
+SMALL = 1e-12
+WHAT = "velocity ratio"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Advantage(PrintsShort):
+    """Velocity ratio and mechanical advantage at every pose; real arrays of the motion's shape.
+
+    `velocity_ratio` is output rate / input rate, `advantage` its reciprocal: the output force or torque that balances a
+    unit one at the input, without friction. A force against a torque gives lengths: the units are those of the rates.
+    Each is inf where its denominator is zero (`output_rests`: a toggle position; `input_rests`), without a sign. Where
+    `defined` is False both are NaN: both rest, or the pose is not assembled or has no rates.
+    """
+
+    velocity_ratio: Number
+    advantage: Number
+    output_rests: Number
+    input_rests: Number
+    defined: Number
+
+
+class Rate(NamedTuple):
+    """The rate at a place, and the rate that rounding is relative to there."""
+
+    values: Number
+    scale: Number
+
+
+def balance(output: Rate, input: Rate, regular: Number) -> Advantage:
+    """Return the ratios of two rates. `regular` says where there are any."""
+    with np.errstate(all="ignore"):
+        output_rests, input_rests = (regular & (np.abs(rate) <= SMALL * scale) for rate, scale in (output, input))
+        defined = regular & ~(output_rests & input_rests)
+        ratio = np.where(input_rests, np.inf, output.values / input.values)
+        advantage = np.where(output_rests, np.inf, input.values / output.values)
+    return Advantage(
+        np.where(defined, np.where(output_rests, 0.0, ratio), np.nan),
+        np.where(defined, np.where(input_rests, 0.0, advantage), np.nan),
+        output_rests,
+        input_rests,
+        defined,
+    )
+
+
+def fastest(motion: HasQuantities) -> Number:
+    """Return the rate of the fastest link or driver at each pose, in rad/s. What rounding is relative to."""
+    size = motion.solving_order.size
+    rates = [np.abs(d.rate) / (1.0 if d.is_angle else size) for d in motion.drives.values()]
+    rates += [np.abs(link.angular_velocity) for link in motion.links.values()]
+    return np.maximum.reduce(np.broadcast_arrays(*rates, np.zeros(motion.grid.shape)))
+
+
+def ratio_of(motion: HasQuantities, kind: Kind, name: str) -> Advantage:
+    """Return the ratios of a link, pair or driver to the driver that moves.
+
+    Raises InvalidInput where none moves, or several do, and for a link that does not turn.
+    """
+    driver = rate_of(motion, motion.drives, mover(motion))
+    own = rate_of_link(motion, name) if kind == "links" else rate_of(motion, getattr(motion, kind), name)
+    return balance(own, driver, motion.regular.reshape(motion.grid.shape))
+
+
+def unit_of_ratio(motion: HasQuantities, kind: Kind, name: str, inverse: bool = False) -> str:
+    """Return the unit of a velocity ratio, or of its inverse."""
+    own: Dimension = "angle" if kind == "links" else coordinate_dimension(getattr(motion, kind)[name].is_angle)
+    pair = own, coordinate_dimension(motion.drives[mover(motion)].is_angle)
+    return ratio_unit(motion.mechanism.unit, *(pair[::-1] if inverse else pair))
+
+
+def rate_of_link(motion: HasQuantities, name: str, where: str = "") -> Rate:
+    """Return the angular velocity of a link. Raises InvalidInput for one that moves and never turns."""
+    lack = no_turning(motion, name)
+    if lack is None and _translates(motion, name):
+        lack = Lack(f"the link {name!r} does not turn in this motion", f"name {_force(name)}")
+    if lack is not None:
+        raise InvalidInput(Problem(where or name, lack.reason, lack.remedy))
+    return Rate(motion.links[name].angular_velocity, fastest(motion))
+
+
+def _translates(motion: HasQuantities, name: str) -> bool:
+    """Tell whether a link moves and turns at no pose. At a toggle position it rests, and turns all the same."""
+    link, scale = motion.links[name], fastest(motion)
+    turns = np.abs(link.angular_velocity) > SMALL * scale
+    if motion.grid.order > 1:
+        drivers = (d.second if d.is_angle else d.second / motion.solving_order.size for d in motion.drives.values())
+        hardest = np.maximum.reduce(np.broadcast_arrays(scale**2, *map(np.abs, drivers)))
+        turns = turns | (np.abs(link.angular_acceleration) > SMALL * hardest)
+    moves = np.abs(np.asarray(link.origin.velocity)) > SMALL * scale * motion.solving_order.size
+    return bool(np.any(moves) and not np.any(turns))
+
+
+def rate_of(motion: HasQuantities, table: Mapping[str, Any], name: str) -> Rate:
+    """Return the rate of a pair or a driver. They are listed in a table of the motion."""
+    return Rate(table[name].rate, fastest(motion) * (1.0 if table[name].is_angle else motion.solving_order.size))
+
+
+def mover(motion: HasQuantities) -> str:
+    """Return the driver that moves. Raises InvalidInput where none does, or several do."""
+    motion.grid.require(1)
+    moving = [name for name, drive in motion.drives.items() if np.any(drive.rate != 0)]
+    if len(moving) > 1:
+        text = f"several drivers move ({', '.join(moving)}): the ratio depends on all of them"
+        raise InvalidInput(Problem(WHAT, text, "solve(..., speed={one: 1, the others: 0})"))
+    if not moving:
+        remedy = "solve(..., speed=1): it does not depend on the driver's speed"
+        raise InvalidInput(Problem(WHAT, "no driver moves: every driver's speed is zero", remedy))
+    return moving[0]
+
+
+def no_turning(motion: HasQuantities, name: str) -> Lack | None:
+    """Return why a link has no velocity ratio."""
+    if name == FRAME:
+        return Lack("the frame does not move")
+    slide = translating_links(motion.solving_order.structure).get(name)
+    return Lack(f"the link {name!r} does not turn", f"name its slide {slide!r}, or {_force(name)}") if slide else None
+
+
+def _force(name: str) -> str:
+    return f"a force on it: ForcePort({name!r}, point, angle)"
