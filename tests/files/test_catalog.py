@@ -20,6 +20,7 @@ from compoundkin.analysis.checks import verify
 from compoundkin.base.errors import InvalidInput, UnknownName
 from compoundkin.files import dumps, load, loads, schema, shipped_mechanisms
 from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.quantities import quantity as named
 from compoundkin.model.elements import Expectation
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
@@ -52,8 +53,9 @@ def value(motion: Motion, quantity: str) -> Any:
         return getattr(motion.points[owner], what)
     if what in ("angle", "angular_velocity", "angular_acceleration"):
         return getattr(motion.links[owner], what)
-    assert what == "value"
-    return motion.pairs[owner].value
+    if what == "value":
+        return motion.pairs[owner].value
+    return named(motion, quantity).values
 
 
 def deviation(mechanism: Mechanism, expected: Expectation) -> float:
