@@ -15,7 +15,7 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.velocity_ratio import (
     Advantage,
-    Rate,
+    PortRate,
     balance,
     fastest,
     no_turning,
@@ -77,18 +77,18 @@ def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage
     return balance(out, lag, motion.regular.reshape(motion.shape))
 
 
-def _rate(motion: Motion, port: Port, where: str) -> Rate:
+def _rate(motion: Motion, port: Port, where: str) -> PortRate:
     """Return the rate at a port, and its scale."""
     if isinstance(port, str):
         return _named(motion, port, where)
     scale = fastest(motion)
     if isinstance(port, TorquePort):
-        return Rate(np.asarray(relative_link(motion, port.link, port.on).angular_velocity), scale)
+        return PortRate(np.asarray(relative_link(motion, port.link, port.on).angular_velocity), scale)
     velocity = np.asarray(relative_point(motion, port.link, port.point, port.on).velocity)
-    return Rate(dot(np.exp(1j * _angle(motion, port.angle, where)), velocity), scale * motion.size)
+    return PortRate(dot(np.exp(1j * _angle(motion, port.angle, where)), velocity), scale * motion.size)
 
 
-def _named(motion: Motion, name: str, where: str) -> Rate:
+def _named(motion: Motion, name: str, where: str) -> PortRate:
     """Return the rate of the first that has one: a link that turns, a pair, a driver."""
     tables = [table for table in (motion.pairs, motion.drives) if name in table]
     is_link = name in motion.links and name != FRAME

@@ -40,14 +40,14 @@ class Advantage(PrintsShort):
     defined: Number
 
 
-class Rate(NamedTuple):
+class PortRate(NamedTuple):
     """The rate at a place, and the rate that rounding is relative to there."""
 
     values: Number
     scale: Number
 
 
-def balance(output: Rate, input: Rate, regular: Number) -> Advantage:
+def balance(output: PortRate, input: PortRate, regular: Number) -> Advantage:
     """Return the ratios of two rates. `regular` says where there are any."""
     with np.errstate(all="ignore"):
         output_rests, input_rests = (regular & (np.abs(rate) <= SMALL * scale) for rate, scale in (output, input))
@@ -88,14 +88,14 @@ def unit_of_ratio(motion: HasQuantities, kind: Kind, name: str, inverse: bool = 
     return ratio_unit(motion.mechanism.unit, *(pair[::-1] if inverse else pair))
 
 
-def rate_of_link(motion: HasQuantities, name: str, where: str = "") -> Rate:
+def rate_of_link(motion: HasQuantities, name: str, where: str = "") -> PortRate:
     """Return the angular velocity of a link. Raises InvalidInput for one that moves and never turns."""
     lack = no_turning(motion, name)
     if lack is None and _translates(motion, name):
         lack = Lack(f"the link {name!r} does not turn in this motion", f"name {_force(name)}")
     if lack is not None:
         raise InvalidInput(Problem(where or name, lack.reason, lack.remedy))
-    return Rate(motion.links[name].angular_velocity, fastest(motion))
+    return PortRate(motion.links[name].angular_velocity, fastest(motion))
 
 
 def _translates(motion: HasQuantities, name: str) -> bool:
@@ -110,9 +110,9 @@ def _translates(motion: HasQuantities, name: str) -> bool:
     return bool(np.any(moves) and not np.any(turns))
 
 
-def rate_of(motion: HasQuantities, table: Mapping[str, Any], name: str) -> Rate:
+def rate_of(motion: HasQuantities, table: Mapping[str, Any], name: str) -> PortRate:
     """Return the rate of a pair or a driver. They are listed in a table of the motion."""
-    return Rate(table[name].rate, fastest(motion) * (1.0 if table[name].is_angle else motion.solving_order.size))
+    return PortRate(table[name].rate, fastest(motion) * (1.0 if table[name].is_angle else motion.solving_order.size))
 
 
 def mover(motion: HasQuantities) -> str:

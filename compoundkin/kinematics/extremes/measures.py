@@ -53,7 +53,7 @@ def measure_of(motion: Motion, name: str) -> Measure:
         raise InvalidInput(Problem(name, "a vector has no least and no greatest value", f"take {parts}"))
     owner, _, word = whole.name.rpartition(".")
     is_length = part == LENGTH or (word == SPEED and owner in motion.points)
-    size = 1.0 if whole.dimension == "angle" else motion.size
+    size = motion.size if whole.dimension == "length" else 1.0
     scale = size * driver_pace(motion) ** whole.order
 
     def of(at: Motion) -> Number:

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.analysis.equations import Unknown
 from compoundkin.analysis.equations.newton_iterations import NewtonIterations
-from compoundkin.kinematics.quantities import degrees
+from compoundkin.base.arrays import degrees
 from compoundkin.view.report.pose_numbers_section import coordinate_unit
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import counted, number

@@ -11,8 +11,8 @@ import numpy as np
 
 from compoundkin.analysis.equations import LoopEquations, RateSolution, Unknown
 from compoundkin.analysis.equations.pose_values import given_values, pose_values
+from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.quantities import degrees
 from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_of
 from compoundkin.view.report.motion_report import gap_sentence, gaps_of
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
