@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.curves.curve import Curve
 from compoundkin.base.curves.samples import check_points, checked_range
-from compoundkin.base.curves.spline import Pieces, interpolated
+from compoundkin.base.curves.spline import SplinePieces, interpolated
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number
 
@@ -44,7 +44,7 @@ class Function(Curve):
         self._pieces.taylor(self.low, 0)
 
     @cached_property
-    def _pieces(self) -> Pieces:
+    def _pieces(self) -> SplinePieces:
         pieces = FEWEST_PIECES
         s, points = self._points(np.linspace(self.low, self.high, pieces + 1))
         size = float(np.hypot(np.ptp(points.real), np.ptp(points.imag)))

@@ -30,7 +30,7 @@ SAMPLES_PER_PIECE = 4
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class SplinePieces:
     """Polynomials between breaks: `coefficients[j, k]` belongs to ``(s - breaks[k])**j`` on the k-th piece.
 
     Left of the first and right of the last break the outermost polynomials go on.
@@ -42,7 +42,7 @@ class Pieces:
     def taylor(self, s: Number, order: int) -> tuple[Number, ...]:
         """Return the Taylor coefficients 0 .. order at `s`, an array of any shape.
 
-        >>> parabola = Pieces(np.array([0.0, 1.0]), np.array([[0j], [0j], [1 + 0j]]))
+        >>> parabola = SplinePieces(np.array([0.0, 1.0]), np.array([[0j], [0j], [1 + 0j]]))
         >>> parabola.taylor(np.array([3.0]), 2)
         (array([9.+0.j]), array([6.+0.j]), array([1.+0.j]))
         """
@@ -57,7 +57,7 @@ class Pieces:
         return (*rest[: order + 1], *[np.zeros(np.shape(s), dtype=complex)[()]] * (order - degree))
 
 
-def interpolated(s: Number, points: Number, degree: int, closed: bool) -> Pieces:
+def interpolated(s: Number, points: Number, degree: int, closed: bool) -> SplinePieces:
     """Return the smoothest spline of odd degree through points at increasing parameters.
 
     A closed one has its first point again at the end, and is periodic; an open one is fixed at its ends by leaving out
@@ -76,7 +76,7 @@ def interpolated(s: Number, points: Number, degree: int, closed: bool) -> Pieces
         raise InvalidMechanism(Problem("points", what, "is one of them a slip?")) from None
     breaks = spline.t[degree:-degree]
     rows = [spline(breaks[:-1], k) / factorial(k) for k in range(degree + 1)]
-    return Pieces(breaks, np.array([row[:, 0] + 1j * row[:, 1] for row in rows]))
+    return SplinePieces(breaks, np.array([row[:, 0] + 1j * row[:, 1] for row in rows]))
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Spline(Curve):
         object.__setattr__(self, "high", float(self._pieces.breaks[-1]))
 
     @cached_property
-    def _pieces(self) -> Pieces:
+    def _pieces(self) -> SplinePieces:
         points = np.array(self.points)
         degree = 5 if points.size >= FEWEST_QUINTIC else 3
         if self.closed:
@@ -162,7 +162,7 @@ def _summed(lengths: Number) -> Number:
     return np.append(0.0, np.cumsum(lengths))
 
 
-def _arcs(pieces: Pieces, s: Number) -> Number:
+def _arcs(pieces: SplinePieces, s: Number) -> Number:
     """Measure the lengths of arc between parameters."""
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
     half = 0.5 * np.diff(s)[:, None]
