@@ -24,6 +24,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.driver_values import FULL_TURN
+from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
@@ -76,7 +77,8 @@ def newton_iterations(
     Values are radians and lengths, by drivers; `start` has estimates by the keys of unknowns (`loop_equations`). The
     others are taken from the drawing, or where it does not tell all links from the first pose that is solved.
 
-    Raises InvalidInput for values that are missing and for mechanisms of several designs, UnknownName for other names.
+    Raises InvalidInput for values that are missing and for mechanisms of several designs, UnknownName for other names,
+    NotDetermined for a structure that cannot be solved.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> found = newton_iterations(load_named("four-bar-norton"), {"crank": np.deg2rad(40)})
@@ -85,6 +87,7 @@ def newton_iterations(
     """
     equations = loop_equations(mechanism)
     structure, system = equations.structure, equations.system
+    solving_order_of(structure)  # which raises what keeps it from being solved
     if any(np.size(v) > 1 for own in structure.mechanism.geometry.points.values() for v in own.values()):
         raise InvalidInput(Problem("dimensions", "they are arrays of several designs", "iterate one of them"))
     values = _numbers("values", values, list(structure.driven))

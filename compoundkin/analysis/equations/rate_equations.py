@@ -6,7 +6,7 @@ sections 6.7 and 7.3.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,8 @@ from compoundkin.analysis.equations.rate_solution import RateSolution, Scales, s
 from compoundkin.analysis.equations.reduced_system import ReducedSystem
 from compoundkin.analysis.equations.row_derivatives import bend, slope
 from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Values
@@ -62,6 +64,8 @@ class SymbolArray(PrintsShort):
     def at(self, values: Values) -> Number:
         """Return the numbers, (..., rows, columns). Those of unknowns and rates go by their keys."""
         numbers = [[entry.at(values) for entry in row] for row in self.entries]
+        if not numbers or not numbers[0]:
+            return np.zeros((len(numbers), 0))
         shape = np.broadcast_shapes(*(np.shape(one) for row in numbers for one in row))
         return np.stack([np.stack([np.broadcast_to(one, shape) for one in row], axis=-1) for row in numbers], axis=-2)
 
@@ -108,35 +112,49 @@ class RateEquations(PrintsShort):
             for row, (right,) in zip(self.matrix.entries, self.right_side.entries, strict=True)
         )
 
-    def at(self, motion: Motion) -> RateSolution:
+    def at(self, where: Motion | Values) -> RateSolution:
         """Return matrix, right-hand side and solution in numbers, at all poses of a motion.
 
         Arrays are of the motion's shape, with axes for rows and columns at the end; NaN where a pose is not assembled.
-        Raises InvalidInput for a motion that was not solved to the order of the equations.
+        Instead of a motion it may be the values of all unknowns and the rates of those given, by their keys.
+        Raises InvalidInput for a motion that was not solved to the order of the equations, and for values left out.
 
         >>> from compoundkin.analysis.equations import loop_equations
         >>> from compoundkin.files.shipped_mechanisms import load_named
         >>> from compoundkin.kinematics import solve
         >>> m = load_named("slider-crank")
-        >>> found = loop_equations(m, order=1).velocity.at(solve(m, {"crank": [np.pi / 2]}, speed=2.0))
-        >>> found.solution.round(12).tolist()
+        >>> found = loop_equations(m, order=1).velocity
+        >>> found.at(solve(m, {"crank": [np.pi / 2]}, speed=2.0)).solution.round(12).tolist()
         [[-0.0, -0.24]]
+        >>> found.at({"crank": 0.0, "rod": 0.0, "s(stroke)": 0.38, "crank'": 1.3}).rate("rod").round(12)
+        np.float64(-0.6)
         """
-        motion.grid.require(self.order)
-        values = pose_values(motion)
+        if not isinstance(where, Motion):
+            return self._solved(np.broadcast_shapes(*map(np.shape, where.values())), self._checked(where))
+        where.grid.require(self.order)
+        values = pose_values(where)
         for order in range(1, self.order + 1):
-            values.update(given_values(motion, self.system, order))
-        return self._solved(motion, values)
+            values.update(given_values(where, self.system, order))
+        return self._solved(where.shape, values)
 
-    def _solved(self, motion: Motion, values: Mapping[str, Number]) -> RateSolution:
+    def _checked(self, values: Values) -> Values:
+        rated = [own.rate_key(k) for own in self.system.given for k in range(1, self.order + 1)]
+        placed = [own.key for own in (*self.unknowns, *self.system.given) if own.kind != "given"]
+        missing = [key for key in (*placed, *rated) if key not in values]
+        if missing:
+            raise InvalidInput(Problem("values", f"{missing[0]} has none", "give all unknowns, and the rates given"))
+        return {key: real_numbers(key, value) for key, value in values.items()}
+
+    def _solved(self, shape: tuple[int, ...], values: Values) -> RateSolution:
         found = {**values}
         if self.order == 2:
-            slower = rate_equations(self.structure, self.system, 1)._solved(motion, values)
+            slower = rate_equations(self.structure, self.system, 1)._solved(shape, values)
             found.update({own.rate_key(1): slower.solution[..., k] for k, own in enumerate(self.unknowns)})
-        shape = motion.shape
-        matrix, right = self.matrix.at(found), self.right_side.at(found)[..., 0]
-        matrix = np.broadcast_to(matrix, (*shape, *matrix.shape[-2:]))
-        return solution_of(self.unknowns, matrix, np.broadcast_to(right, matrix.shape[:-1]), self.scales)
+        rows, columns = len(self.system.rows), len(self.unknowns)
+        matrix = np.broadcast_to(self.matrix.at(found), (*shape, rows, columns))
+        side = self.right_side.at(found)
+        right = np.broadcast_to(side.reshape(side.shape[:-1]) if rows else np.zeros(0), (*shape, rows))
+        return solution_of(self.unknowns, matrix, right, self.scales)
 
 
 def rate_equations(structure: Structure, system: ReducedSystem, order: int) -> RateEquations:

@@ -83,6 +83,10 @@ def test_what_cannot_be_iterated() -> None:
         newton(mechanism, {})
     with pytest.raises(ck.errors.InvalidInput, match="one finite number"):
         newton(mechanism, {"crank": [1.0, 2.0]})  # type: ignore[dict-item]
+    four = (ck.link("frame", A=0, D=5.5), ck.link("crank", A=0, B=2), ck.link("rod", B=0, C=5),
+            ck.link("arm", D=0, C=4))  # fmt: skip
+    with pytest.raises(ck.errors.NotDetermined):
+        newton(ck.Mechanism("m", *four), {})
     bars = (ck.link("frame", A=0, D=5.5), ck.link("crank", A=0, B=2), ck.link("rod", B=0, C=np.array([[5.0], [6.0]])),
             ck.link("arm", D=0, C=4))  # fmt: skip
     with pytest.raises(ck.errors.InvalidInput, match="designs"):

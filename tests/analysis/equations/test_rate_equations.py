@@ -187,3 +187,23 @@ def test_orders_that_are_none() -> None:
         ck.loop_equations(mechanism, order=2).acceleration.at(ck.solve(mechanism, order=1))
     with pytest.raises(ck.errors.UnknownName, match="rod"):
         ck.loop_equations(mechanism, order=1).velocity.at(ck.solve(mechanism)).rate("rot")
+
+
+def test_nothing_unknown_is_no_matrix() -> None:
+    crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank"))
+    motion = ck.solve(crank, {"crank": [0.0, 1.0]})
+    found = ck.loop_equations(crank, order=2).acceleration.at(motion)
+    assert (found.matrix.shape, found.solution.shape) == ((2, 0, 0), (2, 0))
+    assert not found.singular.any()
+
+
+def test_values_stand_for_a_motion() -> None:
+    mechanism = load_named("slider-crank")
+    motion = ck.solve(mechanism, {"crank": [0.3, 0.9]}, speed=2.0, acceleration=1.0)
+    equations = ck.loop_equations(mechanism, order=2).acceleration
+    values = {**pose_values(motion), "crank'": 2.0, "crank''": 1.0}
+    assert np.array_equal(equations.at(values).solution, equations.at(motion).solution)
+    with pytest.raises(ck.errors.InvalidInput, match="crank''"):
+        equations.at({key: value for key, value in values.items() if key != "crank''"})
+    with pytest.raises(ck.errors.InvalidInput, match="no number"):
+        equations.at({**values, "rod": "x"})
