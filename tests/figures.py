@@ -79,6 +79,7 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "apart": lambda: ck.draw(posed(), kind="groups"),
     "graph": lambda: ck.draw(SIX_BAR, kind="graph"),
     "loops": lambda: ck.draw(posed(), kind="loops"),
+    "construction": lambda: ck.draw(load_named("crank-rocker"), ck.deg(60), kind="construction"),
     "modes": modes,
     "limit": limit,
     "centres": lambda: ck.draw(SIX_BAR, AT, centres=True),

@@ -76,7 +76,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "decompose": {"mechanism": m},
         "deg": {"angle": 3.0},
         "draw": {"what": motion, "at": None, "kind": "sketch", "pose": 0, "design": 0, "ghosts": 0, "paths": (),
-                 "centres": False, "vectors": (), "labels": True, "size": None},
+                 "centres": False, "vectors": (), "labels": True, "size": None, "link": None},
         "drawn": {"A": 0},
         "drive": {"link": "a", "on": "frame", "pair": "", "values": 0.0, "speed": 1.0, "acceleration": 0.0,
                   "jerk": 0.0, "law": None, "name": "n"},

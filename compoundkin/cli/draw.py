@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 VIEWS = ("groups", "loops", "graph", "circle")
 # What belongs to the sketch only, by the names of the values of the options.
 OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels")
+# What is drawn instead of the sketch: options, and the names of their values.
+INSTEAD = {"structure": "view", "polygon": "polygon", "construction": "construction"}
 
 
 @click.command(
@@ -30,6 +32,7 @@ Examples:
   compoundkin draw six-bar --at 35 --vectors velocity -o vectors.png
   compoundkin draw six-bar --at 35 --centres -o centres.pdf
   compoundkin draw six-bar --at 35 --polygon velocity -o polygon.svg
+  compoundkin draw six-bar --at 35 --construction plate -o circles.svg
   compoundkin draw six-bar --structure groups -o apart.svg
 """
 )
@@ -46,6 +49,9 @@ Examples:
 @click.option("--centres", is_flag=True, help="Draw the instant centres with the lines that give them.")
 @ARROWS
 @click.option("--polygon", type=click.Choice(VECTORS), help="Instead: the polygon of the vectors from one pole.")
+@click.option(
+    "--construction", metavar="LINK", help="Instead: the circles and lines that give the dyad with this link."
+)
 @click.option(
     "--structure",
     "view",
@@ -85,19 +91,21 @@ def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
     words = {key: asked[key] for key in ("design", "size")}
     if asked["polygon"]:
         return draw(shown, at, kind="polygon", vectors=asked["polygon"], **words)
+    if asked["construction"] is not None:
+        return draw(shown, at, kind="construction", link=asked["construction"], **words)
     return draw(shown, at, **words, **{key: asked[key] for key in OF_SKETCH})
 
 
 def _fitting(asked: Mapping[str, Any]) -> None:
     from compoundkin.base.errors import InvalidInput, Problem
 
-    other = next((f"--{key}" for key, name in (("structure", "view"), ("polygon", "polygon")) if asked[name]), None)
-    unfit = [key for key in OF_SKETCH if key != "labels" and asked[key]]
+    instead = [option for option, name in INSTEAD.items() if asked[name] is not None]
+    unfit = instead[1:] + [key for key in OF_SKETCH if key != "labels" and asked[key]]
     if asked["view"]:
-        unfit += [key for key in ("polygon", "at", "speeds", "modes") if asked[key]]
-    if other is not None and unfit:
-        option = f"--{unfit[0] if unfit[0] in ('ghosts', 'centres', 'vectors', 'polygon', 'at') else unfit[0][:-1]}"
-        raise InvalidInput(Problem(option, f"it does not go with {other}", "leave one of them out"))
+        unfit += [key for key in ("at", "speeds", "modes") if asked[key]]
+    if instead and unfit:
+        option = unfit[0][:-1] if unfit[0] in ("paths", "speeds", "modes") else unfit[0]
+        raise InvalidInput(Problem(f"--{option}", f"it does not go with --{instead[0]}", "leave one of them out"))
 
 
 def _motion(structure: Structure, asked: Mapping[str, Any]) -> tuple[Motion | Structure, dict[str, float] | None]:

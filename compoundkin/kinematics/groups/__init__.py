@@ -28,4 +28,9 @@ def solver_of(index: int, group: Group, size: float, ends: Mapping[str, Ends]) -
     return next(solver for solver in found if solver is not None)
 
 
-__all__ = ["DYADS", "SOLVERS", "DyadSolver", "GroupSolver", "equations_of", "solver_of"]
+def as_dyad(solver: GroupSolver) -> DyadSolver | None:
+    """Return the solver of a dyad as such; None for another one."""
+    return solver if isinstance(solver, DyadSolver) else None
+
+
+__all__ = ["DYADS", "SOLVERS", "DyadSolver", "GroupSolver", "as_dyad", "equations_of", "solver_of"]

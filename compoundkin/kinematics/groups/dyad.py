@@ -17,6 +17,7 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.dyad_loci import Loci, place_of
 from compoundkin.kinematics.groups.contract import GroupSolver, in_world, side_of
 from compoundkin.kinematics.groups.transmission import contact_transmission
 from compoundkin.kinematics.limits import Root, clipped_root
@@ -81,6 +82,20 @@ class DyadSolver(GroupSolver):
     def transmitted(first: End, inner: End, second: End) -> Number:
         """Return a complex number at the transmission angle, folded to a right angle. The sides are in the world."""
 
+    @staticmethod
+    def loci(
+        first: OuterPair,
+        inner: tuple[End, End],
+        second: OuterPair,
+        poses: tuple[Pose, Pose],
+        names: tuple[str, str, str],
+    ) -> Loci | None:
+        """Return the construction of one assembled pose by circles and lines.
+
+        `poses` are those of its bodies, `names` the letters of its pairs. None where a kind tells of none.
+        """
+        return None
+
     def __init__(self, index: int, group: Group, size: float, dyad: Group, ends: Mapping[str, Ends]) -> None:
         super().__init__(index, group)
         self.size = size
@@ -137,14 +152,32 @@ class DyadSolver(GroupSolver):
         first, second = (in_world(side.pair, block) for side in self.outer)
         return self.transmitted(first, in_world(self.inner[0].pair, block), second)
 
+    def constructions(self, block: Block) -> tuple[Loci, ...]:
+        """Return the constructions of one pose in all modes.
+
+        The block holds that pose, solved; its mode is the first.
+        """
+        asked, signs = self.arguments(block), (1.0, -1.0)[: self.modes]
+        modes = [self.assemble(*asked, sign).poses for sign in signs]
+        k = 0 if self.bodies[0] in self.group.bodies else 1
+        own = block.world[self.bodies[k].links[0]]
+        modes.sort(key=lambda poses: abs(place_of(poses[k].z - own.z)) / self.size + abs(place_of(poses[k].u - own.u)))
+        found = [self.loci(*asked, poses, self.letters) for poses in modes]
+        return tuple(loci for loci in found if loci is not None)
+
+    @property
+    def letters(self) -> tuple[str, str, str]:
+        """The letters of its pairs. The first outer one, the inner one, the second outer one."""
+        first, second = (side.pair.letters[0] for side in self.outer)
+        return first, self.inner[0].pair.letters[0], second
+
     def every(self, block: Block) -> Configurations:
         """Return one configuration for each mode."""
         return self.in_modes(block)
 
     def why(self, block: Block, at: int) -> str:
         """Say why it cannot be assembled at a pose."""
-        first, second = (side.pair.letters[0] for side in self.outer)
-        return self.explain(*self.arguments(block), at, (first, self.inner[0].pair.letters[0], second))
+        return self.explain(*self.arguments(block), at, self.letters)
 
 
 def _by_lower_pairs(group: Group, ends: Mapping[str, Ends]) -> tuple[Group, Mapping[str, Ends]]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
+from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at, spot, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
@@ -41,6 +42,21 @@ class RRP(DyadSolver):
     def transmitted(first: End, inner: End, second: End) -> Number:
         """Return the angle between the rod and the normal of the guide."""
         return np.conjugate(spot(inner) - spot(first)) * second.along.c[0] * 1j
+
+    @staticmethod
+    def loci(
+        first: OuterPair,
+        inner: tuple[End, End],
+        second: OuterPair,
+        poses: tuple[Pose, Pose],
+        names: tuple[str, str, str],
+    ) -> Loci:
+        """Return the rod's circle, and the line of its other pin."""
+        outer, pin, guide = names
+        meeting = place_of(poses[0].at(inner[0].point))
+        rod = radius_about(place_of(first.world.point), meeting, f"|{outer}{pin}|")
+        told = f"{pin}: the circle about {outer} with {rod.name} meets the line along the guide of {guide}"
+        return Loci((rod, LineLocus(meeting, direction_of(second.world))), meeting, (told,))
 
     @staticmethod
     def explain(

@@ -10,8 +10,9 @@ from typing import ClassVar
 import numpy as np
 
 from compoundkin.base.composition import planar
-from compoundkin.base.poses import End
+from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
+from compoundkin.kinematics.dyad_loci import Loci, place_of, radius_about
 from compoundkin.kinematics.groups.dyad import COINCIDENT, Closed, DyadSolver, OuterPair, element, placed_at, spot, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
@@ -47,6 +48,22 @@ class RRR(DyadSolver):
         """Return the angle between the links at the inner pin."""
         pin = spot(inner)
         return np.conjugate(pin - spot(first)) * (pin - spot(second))
+
+    @staticmethod
+    def loci(
+        first: OuterPair,
+        inner: tuple[End, End],
+        second: OuterPair,
+        poses: tuple[Pose, Pose],
+        names: tuple[str, str, str],
+    ) -> Loci:
+        """Return the circles of both links about their outer pins."""
+        outer, pin, other = names
+        meeting = place_of(poses[0].at(inner[0].point))
+        one = radius_about(place_of(first.world.point), meeting, f"|{outer}{pin}|")
+        two = radius_about(place_of(second.world.point), meeting, f"|{pin}{other}|")
+        told = f"{pin}: the circle about {outer} with {one.name} meets that about {other} with {two.name}"
+        return Loci((one, two), meeting, (told,))
 
     @staticmethod
     def explain(

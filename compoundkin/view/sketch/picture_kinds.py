@@ -11,6 +11,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.view.sketch.centre_pictures import circle_diagram
+from compoundkin.view.sketch.construction import construction
 from compoundkin.view.sketch.graph_picture import graph
 from compoundkin.view.sketch.groups_in_graph import groups_in_graph
 from compoundkin.view.sketch.picture import Picture
@@ -35,14 +36,16 @@ def draw(
     vectors: Any = (),
     labels: bool | str | Sequence[str] = True,
     size: float | None = None,
+    link: str | None = None,
 ) -> Picture:
     """Draw a mechanism at one pose, in the conventions of textbooks.
 
     `kind` is "sketch", the kinematic sketch; "groups", the mechanism taken apart: frame and driver, then each Assur
     group in solving order, the pairs by which it is attached in dashed circles; "loops", the independent loops as
     polygons of vectors; "graph", the kinematic graph of links and pairs; "circle", the circle diagram of the instant
-    centres; or "polygon", the polygon of the velocities of all points (`vectors="acceleration"`: of their
-    accelerations) with the images of the links.
+    centres; "polygon", the polygon of the velocities of all points (`vectors="acceleration"`: of their accelerations)
+    with the images of the links; or "construction", how the dyad with a `link` (the first one if left out) is drawn
+    with circles and lines, its other mode dashed.
 
     The pose is that of the drivers' values `at` (radians or lengths: a number, or several by name), or the pose with
     the index `pose`; else the one nearest to the mechanism's drawing. Graph and circle diagram have none. In a sketch,
@@ -66,7 +69,7 @@ def draw(
     """
     if kind not in KINDS:
         raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", nearest(kind, list(KINDS))))
-    wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size)
+    wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size, link)
     drawn, known = KINDS[kind]
     if unfit := wishes.others(known):
         raise InvalidInput(Problem(unfit[0], f"it does not go with the kind {kind!r}", "leave one of them out"))
@@ -131,4 +134,5 @@ KINDS: Mapping[str, tuple[Callable[[Drawable, Wishes], Picture], Sequence[str]]]
     "graph": (_graph, ("size",)),
     "circle": (_circle, ("size",)),
     "polygon": (vector_polygon, (*POSE, "vectors", "size")),
+    "construction": (construction, (*POSE, "link", "size")),
 }

@@ -49,6 +49,7 @@ class Wishes:
     vectors: str | Sequence[str] = ()
     labels: bool | str | Sequence[str] = True
     size: float | None = None
+    link: str | None = None
 
     def others(self, known: Sequence[str]) -> tuple[str, ...]:
         """Return the names of those that are given and not among some.
@@ -196,10 +197,9 @@ def _rate(numbers: tuple[Number, ...], k: int, design: int, index: int) -> float
 
 def _hint(motion: Motion, design: int, index: int) -> dict[str, complex]:
     """Where the points are at the pose, which tells the assembly modes; nothing where it is not assembled."""
-    found = {}
-    for letter in motion.mechanism.carriers:
-        rows = np.asarray(motion.points[letter].position).reshape(motion.inputs.designs, -1)
-        found[letter] = complex(rows[design, index])
+    shape = (motion.inputs.designs, -1)
+    places = {letter: np.asarray(motion.points[letter].position) for letter in motion.mechanism.carriers}
+    found = {letter: complex(place.reshape(shape)[design, index]) for letter, place in places.items()}
     return found if all(map(np.isfinite, found.values())) else {}
 
 

@@ -56,11 +56,11 @@ def window_on(
     points = np.concatenate([corners(drawn), *(first.at(scene.places(letter)) for letter in paths)])
     # of a frame alone nothing is drawn
     points = points if len(points) else first.at(np.zeros(1, dtype=complex))
-    return fitted(first, np.append(points, _near(points, [complex(first.at(wish)) for wish in wishes])))
+    return fitted(first, np.append(points, nearby(points, [complex(first.at(wish)) for wish in wishes])))
 
 
-def _near(points: Number, wishes: Sequence[complex]) -> list[complex]:
-    """Those of the wishes that are not far outside the box around the points."""
+def nearby(points: Number, wishes: Sequence[complex]) -> list[complex]:
+    """Return those of the wishes that are not far outside the box around points."""
     low, high = complex(points.real.min(), points.imag.min()), complex(points.real.max(), points.imag.max())
     room = STRETCH * max((high - low).real, (high - low).imag)
     box = Window(1.0, 0j, (high - low).real + 2.0 * room, (high - low).imag + 2.0 * room)
