@@ -59,6 +59,12 @@ def limit() -> ck.results.Picture:
     return with_ghosts(at_limit, *before)
 
 
+def transmission() -> ck.results.Picture:
+    """A crank-rocker with its crank on the line of the frame: least transmission angle, and faintly the other end."""
+    mechanism = load_named("crank-rocker")
+    return with_ghosts(*(ck.solve(mechanism, {"crank": [ck.deg(at)]}) for at in (0, 180)))
+
+
 def with_ghosts(motion: ck.results.Motion, *others: ck.results.Motion) -> ck.results.Picture:
     """The sketch of a motion of one pose, others drawn faintly behind it."""
     shown, *ghosts = (scene_of(one, None, None, 0) for one in (motion, *others))
@@ -82,6 +88,7 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "construction": lambda: ck.draw(load_named("crank-rocker"), ck.deg(60), kind="construction"),
     "modes": modes,
     "limit": limit,
+    "transmission": transmission,
     "centres": lambda: ck.draw(SIX_BAR, AT, centres=True),
     "circle": lambda: ck.draw(SIX_BAR, kind="circle"),
     "velocities": lambda: ck.draw(SIX_BAR, AT, kind="polygon"),

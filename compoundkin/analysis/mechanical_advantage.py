@@ -60,8 +60,9 @@ def mechanical_advantage(motion: Motion, output: Port, input: Port) -> Advantage
     free coordinate), `TorquePort(link, on)` for a torque between any two links, or `ForcePort(link, point, angle)`
     for a force at a point. Positive where both rates have one sign. It does not depend on the driver's speed.
 
-    Raises UnknownName for a name that is not there; InvalidInput below order 1, for a driver at rest, and where several
-    drivers move at one pose, for the balance then depends on what the others do.
+    Raises UnknownName for a name that is not there; InvalidInput below order 1, for a driver at rest, for a link that
+    moves without turning (name its slide, or a `ForcePort`), and where several drivers move at one pose, for the
+    balance then depends on what the others do.
     Source: power is conserved; Uicker, Pennock and Shigley, Theory of Machines and Mechanisms; for
     four-bars ``omega4 / omega2`` by the centres, Freudenstein's theorem.
 
