@@ -63,11 +63,17 @@ class SymbolArray(PrintsShort):
 
     def at(self, values: Values) -> Number:
         """Return the numbers, (..., rows, columns). Those of unknowns and rates go by their keys."""
-        numbers = [[entry.at(values) for entry in row] for row in self.entries]
-        if not numbers or not numbers[0]:
-            return np.zeros((len(numbers), 0))
-        shape = np.broadcast_shapes(*(np.shape(one) for row in numbers for one in row))
-        return np.stack([np.stack([np.broadcast_to(one, shape) for one in row], axis=-1) for row in numbers], axis=-2)
+        numbers = {
+            (k, j): entry.at(values)
+            for k, row in enumerate(self.entries)
+            for j, entry in enumerate(row)
+            if not entry.is_zero
+        }
+        shape = np.broadcast_shapes(*map(np.shape, numbers.values()))
+        found = np.zeros((*shape, len(self.entries), len(self.entries[0]) if self.entries else 0))
+        for (k, j), number in numbers.items():
+            found[..., k, j] = number
+        return found
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -47,6 +48,14 @@ class EquationRow:
         vector = sum((term.at(values) for term in self.terms), 0j)
         found = self.sum.at(values) + (vector.imag if self.is_imaginary else vector.real)
         return wrapped(found) if self.is_angle else found
+
+    @cached_property
+    def unknowns(self) -> frozenset[Unknown]:
+        """All that it depends on."""
+        sums = [self.sum, *self.sums.values()]
+        for term in self.terms:
+            sums += [term.angle, term.argument if isinstance(term, Curved) else term.length]
+        return frozenset(unknown for own in sums for _, unknown in own.parts)
 
     @property
     def is_length(self) -> bool:
@@ -103,6 +112,7 @@ def reduced(
         if len(plain) == 1 and _is_one(plain[0][0]) and plain[0][1] not in given:
             given[plain[0][1]] = own
             used.add(id(own))
+    # a row of which nothing is left is one of two ties that say the same
     rows = [row for k, loop in enumerate(loops, 1) for row in _of_loop(loop, k, sums)]
     rows += [_of_auxiliary(own, sums) for own in auxiliary if id(own) not in used]
     for own in drivers:
@@ -111,7 +121,7 @@ def reduced(
             given[value] = own
             rows.append(_of_driver(own, value, sums))
     left = tuple(unknown for unknown in unknowns if unknown not in given and sums[unknown].parts == ((1.0, unknown),))
-    return ReducedSystem(tuple(row for row in rows if _says(row)), left, given, sums)
+    return ReducedSystem(tuple(row for row in rows if row.unknowns), left, given, sums)
 
 
 def _tie(of: Sum, sums: dict[Unknown, Sum]) -> bool:
@@ -170,13 +180,3 @@ def _of_auxiliary(own: Auxiliary | Implicit, sums: Mapping[Unknown, Sum]) -> Equ
 def _of_driver(own: DriverEquation, value: Unknown, sums: Mapping[Unknown, Sum]) -> EquationRow:
     found = _put(own.sum, sums)
     return EquationRow(own.driver, Sum(found.constant, (*found.parts, (-1.0, value))), is_angle=own.is_angle)
-
-
-def _says(row: EquationRow) -> bool:
-    """Whether anything is left of a row: two ties may say the same."""
-    parts = [own for term in row.terms for own in (term.angle.parts, *_lengths(term))]
-    return row.function is not None or bool(row.sum.parts) or any(parts)
-
-
-def _lengths(term: Term) -> tuple[object, ...]:
-    return (term.argument.parts,) if isinstance(term, Curved) else (term.length.parts,)

@@ -25,6 +25,8 @@ Rated: TypeAlias = tuple[Number, Rate]
 
 def slope(row: EquationRow, unknown: Unknown) -> Expression:
     """Return the derivative of a row by an unknown."""
+    if unknown not in row.unknowns:
+        return Expression()
     if row.function is not None:
         function, sums = row.function, row.sums
         return total(*(Product(own.slope(unknown), (Partial(function, by, sums),)) for by, own in sums.items()))

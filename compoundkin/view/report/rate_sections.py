@@ -16,6 +16,8 @@ from compoundkin.view.report.wording import listed, number
 
 # A matrix in brackets is no wider (characters); a wider one is written entry by entry.
 WIDEST = 76
+# A matrix of more columns is not set as mathematics: nobody could read it.
+MOST_COLUMNS = 24
 NOTATION = (
     "A prime, in formulas a dot, is a derivative by time: crank' is the angular velocity of the link crank, s''(slot) "
     "the second rate of the displacement s(slot)."
@@ -64,10 +66,11 @@ def _symbols(found: LoopEquations) -> Iterator[Block]:
         yield Paragraph("Nothing is left unknown.")
         return
     yield Paragraph(ONE_MATRIX.format(", ".join(own.key for own in first.unknowns)))
-    yield FormulaBlock(_matrix_text(first), f"A = {first.matrix.latex}")
+    is_set = len(first.unknowns) <= MOST_COLUMNS
+    yield FormulaBlock(_matrix_text(first), f"A = {first.matrix.latex}" if is_set else "")
     for title, rates in zip(("Velocities, A x' = b:", "Accelerations, A x'' = c:"), found.rates, strict=False):
         yield Paragraph(title)
-        yield FormulaBlock("\n".join(rates.rows), _system_latex(rates))
+        yield FormulaBlock("\n".join(rates.rows), _system_latex(rates) if is_set else "")
 
 
 def _constant(own: Unknown) -> Any:
