@@ -19,6 +19,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 SPEED = click.option("--speed", "speeds", multiple=True, metavar="[NAME=]VALUE",
                      help="A driver's rate in rad/s or length/s; also 300rpm or 90deg (a second).")  # fmt: skip
+SECOND_RATE = click.option("--acceleration", "accelerations", multiple=True, metavar="[NAME=]VALUE",
+                           help="Its second rate in rad/s^2 or length/s^2.")  # fmt: skip
 MODE = click.option("--mode", "modes", multiple=True, metavar="LINK=SIGN",
                     help="Assembly mode, +1 or -1, of the group with this link.")  # fmt: skip
 DESIGN = click.option("--design", default=0, show_default=True, metavar="INDEX",
@@ -38,8 +40,7 @@ OPTIONS: tuple[Any, ...] = (
                  help="Solve at these times: 0:2:0.01 (from:to:step) or 0,0.5,1. Drivers move by their laws, others "
                  "from their value by their speed and acceleration."),
     SPEED,
-    click.option("--acceleration", "accelerations", multiple=True, metavar="[NAME=]VALUE",
-                 help="Its second rate in rad/s^2 or length/s^2."),
+    SECOND_RATE,
     click.option("--order", type=click.IntRange(0, 3), help="0 position, 1 velocity, 2 acceleration, 3 jerk; "
                  "otherwise what the outputs need, at least 2."),
     MODE,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.cli.drive_options import AT, pose_options
+from compoundkin.cli.drive_options import AT, SECOND_RATE, pose_options
 from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
 from compoundkin.cli.shell import NOT_ASSEMBLED, say
 
@@ -22,6 +22,7 @@ OF_EQUATIONS = {
     "newton": "--newton",
     "estimates": "--estimate",
     "speeds": "--speed",
+    "accelerations": "--acceleration",
     "modes": "--mode",
     "design": "--design",
 }
@@ -45,6 +46,7 @@ Examples:
               help="With --equations: 1 adds the equations of velocities, 2 of accelerations.")  # fmt: skip
 @AT
 @pose_options
+@SECOND_RATE
 @click.option("--newton", is_flag=True, help="With --equations: add Newton's iterations of the pose.")
 @click.option("--estimate", "estimates", multiple=True, metavar="NAME=VALUE",
               help="Where they start: an unknown, degrees or length; as drawn if left out.")  # fmt: skip
@@ -114,8 +116,8 @@ def _solved(structure: Structure, asked: dict[str, Any]) -> tuple[dict[str, floa
     from compoundkin.cli.drive_options import solved_at
 
     driven = typed_values.of_pose(structure, asked["at"])
-    rates = {"speeds": asked["speeds"], "accelerations": (), "outputs": (), "modes": asked["modes"]}
-    return driven, solved_at(structure, driven, {**rates, "order": max(asked["order"], 1)})
+    rest = {name: asked[name] for name in ("speeds", "accelerations", "modes")}
+    return driven, solved_at(structure, driven, {**rest, "outputs": (), "order": max(asked["order"], 1)})
 
 
 def _newton(structure: Structure, driven: dict[str, float], motion: Motion, estimates: tuple[str, ...]) -> Section:
