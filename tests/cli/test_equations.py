@@ -77,8 +77,8 @@ def test_newton_and_freudenstein_of_a_four_bar(run: Run) -> None:
 
 def test_rates_of_norton(run: Run) -> None:
     """R. L. Norton, Design of Machinery, examples 6-7 and 7-1: -4.121, 6.998 rad/s; 296.089, 470.134 rad/s^2."""
-    result = run("four-bar-norton", "--equations", "--order", "2", "--at", "40", "--speed", "25", "--acceleration", "15",
-                 "--format", "json")  # fmt: skip
+    rates = "--speed", "25", "--acceleration", "15"
+    result = run("four-bar-norton", "--equations", "--order", "2", "--at", "40", *rates, "--format", "json")
     shown = {row[0]: (row[3], row[5]) for row in tables(result, "pose")[1]}
     assert shown["coupler"] == pytest.approx((-4.121, 296.089), abs=1e-3)
     assert shown["rocker"] == pytest.approx((6.998, 470.134), abs=1e-3)
