@@ -77,6 +77,8 @@ def no_index(motion: HasQuantities, link: str) -> Lack | None:
 def _no_group(motion: HasQuantities, link: str, solver: GroupSolver | None) -> Lack:
     told = [name for name in motion.links if (one := solver_of_link(motion, name)) and one.tells_transmission]
     remedy = f"known: {', '.join(told)}" if told else "no link of this mechanism has one"
+    if solver is not None and solver.is_numbered:
+        return Lack("no body of its group passes on a single force", remedy)
     if solver is not None:
         return Lack("it moves in fixed proportion to what drives it, as gears do", remedy)
     return Lack("it stands still" if link == FRAME else "a driver moves it, and no force is passed on to it", remedy)

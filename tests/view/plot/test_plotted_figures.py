@@ -1,0 +1,41 @@
+"""Transmission angles over all circuits, and advantages that pass through infinity, in plots and reports."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.view.plot.branch_lines import shown
+from compoundkin.view.plot.branch_positions import all_positions
+from compoundkin.view.report import report
+from tests import catalog
+
+
+def test_transmission_angles_over_circuits_end_at_zero() -> None:
+    """Both branches of a triple rocker, from limit to limit of its driver; a ratio of rates is not shown so."""
+    found = ck.circuits(catalog.mechanism("triple-rocker"))
+    positions = all_positions(found)
+    (angle,) = shown(positions, "rocker.transmission_angle")
+    assert angle.unit == "deg"
+    assert np.abs(angle.values[:, [0, -1]]).max() < 1e-4
+    assert np.nanmax(angle.values) == pytest.approx(90.0, abs=0.5)
+    with pytest.raises(ck.errors.InvalidInput, match="circuits show positions, not rates"):
+        shown(positions, "rocker.advantage")
+
+
+def test_an_advantage_is_not_drawn_through_its_poles() -> None:
+    """A crank-rocker has two toggle positions, and a double crank none: its extremes are marked."""
+    rocker, crank = (ck.plot(catalog.motion(name), f"{link}.advantage").figure.axes[0]
+                     for name, link in (("crank-rocker", "rocker"), ("double-crank", "follower")))  # fmt: skip
+    cuts = np.isnan(rocker.lines[0].get_ydata()).sum()
+    assert cuts == 2
+    assert not any("−" in text.get_text() for text in rocker.texts if "cut off" not in text.get_text())
+    assert not np.isnan(crank.lines[0].get_ydata()).any()
+
+
+def test_a_report_says_infinite_where_it_is() -> None:
+    """At both dead points of a slider-crank, in the table and among the extremes; not a dash, as of no pose."""
+    text = report(catalog.motion("slider-crank"), ["stroke.advantage"]).text()
+    assert text.count(" inf") >= 3
+    assert "always" not in text.split("Extremes")[1].split("Checks")[0]
