@@ -33,6 +33,9 @@ def answers(name: str) -> Iterator[tuple[str, Any]]:
         yield f"coupler.{word}", getattr(ck.coupler, word)(motion, link)
     for word in ("path_curvature", "relative_point"):
         yield f"coupler.{word}", getattr(ck.coupler, word)(motion, link, 0j)
+    places = [ck.coupler.link_position(motion, link, k) for k in range(3)]
+    yield "coupler.pole_triangle", ck.coupler.pole_triangle(*places)
+    yield "dyads.rrr", ck.dyads.rrr((0, 0), (6, 0), 5.0, [5.0, 4.0])
     yield "advantage", ck.advantage.mechanical_advantage(motion, driver, driver)
     yield "equivalents", ck.equivalents.equivalent_linkage(motion)
     yield "chains", ck.chains.structure_name(ck.decompose(mechanism))

@@ -6,8 +6,12 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arrays import dot
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, as_series
+
+# Lines of one picture whose directions differ by less than this (the sine of the angle) are parallel.
+PARALLEL = 1e-6
 
 
 class CircleLocus(NamedTuple):
@@ -61,3 +65,19 @@ def radius_about(centre: complex, end: complex, name: str) -> CircleLocus:
     """
     radius = abs(end - centre)
     return CircleLocus(centre, radius, f"{name} = {radius:.5g}", end)
+
+
+def same_locus(one: Locus, two: Locus, nothing: float) -> bool:
+    """Tell whether two loci are one, but for so small a length.
+
+    >>> line = LineLocus(0j, 1 + 0j)
+    >>> same_locus(line, LineLocus(5 + 0j, -1 + 0j), 1e-9), same_locus(line, CircleLocus(0j, 1.0), 1e-9)
+    (True, False)
+    """
+    if isinstance(one, CircleLocus) and isinstance(two, CircleLocus):
+        return abs(one.centre - two.centre) <= nothing and abs(one.radius - two.radius) <= nothing
+    if isinstance(one, CircleLocus) or isinstance(two, CircleLocus):
+        return False
+    across = 1j * one.along
+    is_parallel = abs(dot(across, two.along)) <= PARALLEL
+    return bool(is_parallel and abs(dot(across, two.at - one.at)) <= nothing)

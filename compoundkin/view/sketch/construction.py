@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.kinematics.dyad_loci import CircleLocus, Loci, Locus
+from compoundkin.kinematics.dyad_loci import CircleLocus, Loci, Locus, same_locus
 from compoundkin.kinematics.groups import DyadSolver, as_dyad
 from compoundkin.structure import Group
 from compoundkin.view.sketch.label_places import Label, around, placed, text_half
@@ -30,6 +30,8 @@ BESIDE = 12.0
 INSIDE = 24.0
 # Around a dyad of fewer points than would show it, such as two blocks on one pin, so much of the mechanism is shown.
 NARROW = 0.2
+# A guide that is used for more than so many sizes of the mechanism is drawn where the pose needs it.
+LONG = 10.0
 # The picture is at least so wide, for what stands below it.
 WIDE = 380.0
 
@@ -57,7 +59,7 @@ class DrawnDyad:
         """Return the curves of the other mode that this one does not share."""
         size = self.scene.mechanism.geometry.size
         return [curve for loci in self.modes[1:] for curve in loci.curves
-                if not any(_is_same(curve, own, SAME * size) for own in self.modes[0].curves)]  # fmt: skip
+                if not any(same_locus(curve, own, SAME * size) for own in self.modes[0].curves)]  # fmt: skip
 
 
 def construction(what: Drawable, wishes: Wishes) -> Picture:
@@ -68,6 +70,7 @@ def construction(what: Drawable, wishes: Wishes) -> Picture:
     drawn. Source: e.g. F. Grashof, Theoretische Maschinenlehre, or any course of descriptive kinematics.
     """
     scene = scene_of(what, wishes.at, wishes.pose, wishes.design)
+    scene = scene.compact(LONG * scene.mechanism.geometry.size)
     solver = _solver(scene, wishes.link)
     modes = _modes(scene, solver)
     drawn = DrawnDyad(scene, solver.group, modes, solver.letters, _window(scene, solver.group, modes))
@@ -190,15 +193,6 @@ def _length(key: str, line: tuple[complex, complex], text: str, middle: complex)
     places = tuple(start + way * share + across * side * reach for share, side in tried)
     costs = tuple(20.0 * abs(share - 0.5) + (INSIDE if side != outside else 0.0) for share, side in tried)
     return Label(key, half, places, costs)
-
-
-def _is_same(one: Locus, two: Locus, nothing: float) -> bool:
-    """Whether two curves are one."""
-    if isinstance(one, CircleLocus) or isinstance(two, CircleLocus):
-        both = isinstance(one, CircleLocus) and isinstance(two, CircleLocus)
-        return both and abs(one[0] - two[0]) <= nothing and abs(one[1] - two[1]) <= nothing
-    off = (np.conjugate(one.along) * (two.at - one.at)).imag
-    return bool(abs((np.conjugate(one.along) * two.along).imag) <= SAME and abs(off) <= nothing)
 
 
 def _notes(scene: Scene, modes: Sequence[Loci]) -> list[str]:

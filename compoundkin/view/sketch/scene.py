@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,7 +18,7 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.guide_ends import as_ended, bounds_name
-from compoundkin.model.pairs.symbols import Mark
+from compoundkin.model.pairs.symbols import Mark, Sliding
 from compoundkin.structure import DrivenPair, Structure
 
 # Two poses are one if no link differs by more than this, in parts of the mechanism's size and in radians.
@@ -120,6 +120,14 @@ class Scene:
         """Return the same scene at the k-th assembled pose of the motion."""
         poses = {name: Pose(pose.z, pose.u).entry((k,)) for name, pose in self.whole.items()}
         return Scene(self.structure, self.whole, poses, self.points, self.ends, known=self.known)
+
+    def compact(self, longest: float) -> Scene:
+        """Return the scene with short guides, if one is used for longer.
+
+        They are then as the pose shown uses them, not the whole motion.
+        """
+        spans = [seen.mark.high - seen.mark.low for seen in self.seen if isinstance(seen.mark, Sliding)]
+        return replace(self, whole=self.here) if max(spans, default=0.0) > longest else self
 
     @property
     def count(self) -> int:

@@ -112,6 +112,22 @@ def test_a_picture_shows_whole_circles_and_labels_beside_each_other(name: str) -
     assert (prime in [text.text for text in said]) == (solver.name in ("RRR", "RRP"))
 
 
+def test_a_guide_used_far_beyond_the_mechanism_is_drawn_where_the_pose_needs_it() -> None:
+    """Two blocks on one pin, their guides nearly parallel at the first pose."""
+    first = ck.slide("one", on="frame", at="X", through="P")
+    blocks = (
+        first,
+        ck.slide("two", on="crank", at="X", through="O", toward="Q"),
+        ck.link("one", "X"),
+        ck.link("two", "X"),
+    )
+    bars = ck.link("frame", O=(0, 0), P=(0, 40)), ck.link("crank", "O", "Q"), ck.drive("crank")
+    mechanism = ck.Mechanism("guides", *bars, *blocks, ck.drawn(O=(0, 0), Q=(60, 60), P=(0, 40), X=(40, 40)))
+    picture = ck.draw(ck.solve(mechanism, {"crank": np.linspace(1e-5, 1.5, 9)}), pose=4, kind="construction")
+    assert len(picture.svg) < 20_000
+    assert max(picture.width, picture.height) < 800
+
+
 def pose_of(motion: ck.results.Motion) -> int:
     """The pose that pictures show where none is asked for."""
     from compoundkin.view.sketch.shown_pose import scene_of
