@@ -57,14 +57,16 @@ def direction_of(end: End) -> complex:
     return place_of(end.along)
 
 
-def radius_about(centre: complex, end: complex, name: str) -> CircleLocus:
+def radius_about(centre: complex, end: complex, name: str, other: str = "") -> CircleLocus:
     """Return the circle about a place through another, its radius named and measured.
 
-    >>> radius_about(0j, 3 + 4j, "|AC|").name
-    '|AC| = 5'
+    It is called by the letters of both, or as it is named; places without letters make it a plain r.
+
+    >>> radius_about(0j, 3 + 4j, "A", "C").name, radius_about(0j, 3 + 4j, "e").name
+    ('|AC| = 5', 'e = 5')
     """
-    radius = abs(end - centre)
-    return CircleLocus(centre, radius, f"{name} = {radius:.5g}", end)
+    radius, both = abs(end - centre), f"|{name}{other}|" if other else name
+    return CircleLocus(centre, radius, f"{'r' if ' ' in both else both} = {radius:.5g}", end)
 
 
 def same_locus(one: Locus, two: Locus, nothing: float) -> bool:

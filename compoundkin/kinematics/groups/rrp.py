@@ -54,7 +54,7 @@ class RRP(DyadSolver):
         """Return the rod's circle, and the line of its other pin."""
         outer, pin, guide = names
         meeting = place_of(poses[0].at(inner[0].point))
-        rod = radius_about(place_of(first.world.point), meeting, f"|{outer}{pin}|")
+        rod = radius_about(place_of(first.world.point), meeting, outer, pin)
         told = f"{pin}: the circle about {outer} with {rod.name} meets the line along the guide of {guide}"
         return Loci((rod, LineLocus(meeting, direction_of(second.world))), meeting, (told,))
 

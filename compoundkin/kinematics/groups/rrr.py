@@ -60,8 +60,8 @@ class RRR(DyadSolver):
         """Return the circles of both links about their outer pins."""
         outer, pin, other = names
         meeting = place_of(poses[0].at(inner[0].point))
-        one = radius_about(place_of(first.world.point), meeting, f"|{outer}{pin}|")
-        two = radius_about(place_of(second.world.point), meeting, f"|{pin}{other}|")
+        one = radius_about(place_of(first.world.point), meeting, outer, pin)
+        two = radius_about(place_of(second.world.point), meeting, pin, other)
         told = f"{pin}: the circle about {outer} with {one.name} meets that about {other} with {two.name}"
         return Loci((one, two), meeting, (told,))
 
