@@ -116,7 +116,7 @@ def units_of(motion: Solved, rows: tuple[Row, ...]) -> tuple[tuple[str, ...], ..
 
 
 def moved_alone(motion: Solved, driver: str) -> Any:
-    """Return the motion with one driver moving at unit speed, the others at rest, to order 1."""
+    """Return the motion with one driver at unit speed, the others at rest."""
     given = motion.inputs
     drives = {name: (v[0], float(name == driver)) for name, v in given.drives.items()}
     return _solved(motion, given.driven(drives), None)

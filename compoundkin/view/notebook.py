@@ -23,8 +23,8 @@ from compoundkin.view.page.markup import safe
 from compoundkin.view.page.player import framed
 from compoundkin.view.report.centres_section import centre_blocks
 from compoundkin.view.report.configurations_section import circuits_report, configurations_section
+from compoundkin.view.report.extremes_blocks import cam_blocks
 from compoundkin.view.report.mobility_sections import analysis_blocks
-from compoundkin.view.report.outputs_section import cam_blocks
 from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, TableBlock
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from compoundkin.kinematics.extremes.dead_points import DeadPoints, dead_points, driver_dead_points
-from compoundkin.kinematics.extremes.extremes_of_motion import Extreme, Extremes, Pieces, extremes, pieces
+from compoundkin.kinematics.extremes.extremes_of_motion import AssembledPieces, Extreme, Extremes, extremes, pieces
 from compoundkin.kinematics.extremes.measures import Measure
 from compoundkin.kinematics.extremes.motion_between import MotionBetween, between
-from compoundkin.kinematics.extremes.places import Places, closed_cycles
+from compoundkin.kinematics.extremes.places import Places, closed_cycles, places_of_jumps
 from compoundkin.kinematics.extremes.zeros_of_motion import Zeros, zeros
 
 __all__ = [
+    "AssembledPieces",
     "DeadPoints",
     "Extreme",
     "Extremes",
     "Measure",
     "MotionBetween",
-    "Pieces",
     "Places",
     "Zeros",
     "between",
@@ -24,5 +24,6 @@ __all__ = [
     "driver_dead_points",
     "extremes",
     "pieces",
+    "places_of_jumps",
     "zeros",
 ]

@@ -40,7 +40,7 @@ class DeadPoints(PrintsShort):
 
 @checked
 def dead_points(motion: Motion, quantity: str) -> DeadPoints:
-    """Return the dead points of an output: where its rate changes sign as the driver goes on.
+    """Return the dead points of an output: where its rate changes sign.
 
     The output is a place, an angle or a displacement by name ("ram.displacement", "rocker.angle", "B.x"). In a motion
     in time they are where it turns back in time. Raises UnknownName for a name that the motion does not have,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,8 +12,9 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.measures import ROUNDING, Measure, values_at_poses
 from compoundkin.kinematics.extremes.offers import BOTH, SIGNS, Offers, Peaks, best_of
+from compoundkin.kinematics.extremes.peak_items import PeakItems, narrowed, trusted_vertices
 from compoundkin.kinematics.extremes.stretches import Stretches
-from compoundkin.kinematics.extremes.windows import FINE, SAMPLES, Windows, sampled, solved, vertices
+from compoundkin.kinematics.extremes.windows import Windows, sampled, solved
 from compoundkin.kinematics.motion import Motion
 
 # What a curve may rise beyond a pose, in second differences there. The vertex of a parabola whose middle sample is the
@@ -24,23 +24,11 @@ MOST_ADDED = 0.5
 ALIKE = 1e-9
 # A window is narrowed so often at most: to 1e-8 of a stretch, at a kink or where only rounding is left.
 NARROWINGS = 14
+# What is so many times the median of the values is on its way through infinity, as the reciprocal of a rate.
+POLE = 1e6
 # So near to a limit position (in the square root of the distance) rates are compared; where they grow so many times,
 # they grow without limit.
 NEAR_LIMIT, GROWTH = np.array([1e-3, 1e-4]), 3.0
-
-
-class _Items(NamedTuple):
-    """Windows in which a quantity is searched in one sense: quantity, sign, stretch, and from where to where in t."""
-
-    m: Number
-    s: Number
-    which: Number
-    low: Number
-    high: Number
-
-    def some(self, index: Number) -> _Items:
-        """Return some of them."""
-        return _Items(*(v[index] for v in self))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -58,6 +46,10 @@ class ExtremeSearch(PrintsShort):
 
     def peaks(self) -> Peaks:
         """Return the least and the greatest values."""
+        with np.errstate(all="ignore"):
+            return self._peaks()
+
+    def _peaks(self) -> Peaks:
         if not self.measures or not len(self.stretches):
             nothing = np.full((len(self.measures), len(SIGNS), self.count), np.nan)
             return Peaks(nothing, nothing, nothing[:, 0])
@@ -109,7 +101,8 @@ class ExtremeSearch(PrintsShort):
     @cached_property
     def _slack(self) -> Number:
         """What is rounding of the values, (quantities, groups)."""
-        largest = self._by_group(np.fmax.reduce(np.abs(self.ends), axis=-1))
+        known = np.where(np.isfinite(self.ends), np.abs(self.ends), np.nan)
+        largest = np.maximum(self._by_group(np.fmax.reduce(known, axis=-1)), 0.0)
         return ROUNDING * np.maximum(largest, np.array([one.scale for one in self.measures])[:, None])
 
     def _by_group(self, rows: Number) -> Number:
@@ -136,26 +129,35 @@ class ExtremeSearch(PrintsShort):
         """Offer what windows over whole stretches show, and the vertices of their peaks."""
         whole = np.ones(len(which))
         windows = sampled(self.motion, self.measures, self.stretches, which, -whole, whole)
-        yield self._offered(windows.values, windows.places, which)
+        yield self._offered(windows.values[..., [0, -1]], windows.places[:, [0, -1]], which)
+        yield self._offered(windows.values, windows.places, which)._replace(is_exact=False)
         m, s, index = self._peaked(windows)
-        items = _Items(m, s, which[index], -whole[index], whole[index])
+        items = PeakItems(m, s, which[index], -whole[index], whole[index])
         vertex = []
         for _ in range(NARROWINGS):
             good = windows.trusted[m, index]
-            vertex.append(self._vertices(windows, items, index, good))
-            items = self._narrowed(windows, items.some(~good), index[~good])
+            vertex.append(trusted_vertices(windows, items, index, good))
+            items = narrowed(windows, items.some(~good), index[~good])
             if not len(items.m):
                 break
             windows = sampled(self.motion, self.measures, self.stretches, *items[2:])
             m, index = items.m, np.arange(len(items.m))
-            yield self._of_items(items, windows.values[m, index], windows.places)
-        items, t = (_Items(*map(np.concatenate, zip(*(one for one, _ in vertex), strict=True))),
+            yield self._of_items(items, self._through_poles(windows.values[m, index], m), windows.places)._replace(
+                is_exact=False
+            )
+        items, t = (PeakItems(*map(np.concatenate, zip(*(one for one, _ in vertex), strict=True))),
                     np.concatenate([t for _, t in vertex]))  # fmt: skip
         places = self.stretches.places(t[:, None], items.which)[:, 0]
         if len(places):
             found = solved(self.motion, self.measures, self.stretches.design[items.which], places)
             offered = self._of_items(items, found[items.m, np.arange(len(places))][:, None], places[:, None])
-            yield offered._replace(is_vertex=True)
+            yield offered
+
+    def _through_poles(self, values: Number, m: Number) -> Number:
+        """Return samples (n, k) of quantities, infinite where they are so large that they pass through infinity."""
+        known = np.where(np.isfinite(self.ends), np.abs(self.ends), np.nan)
+        typical = [np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.inf for row in known]
+        return np.where(np.abs(values) > POLE * np.array(typical)[m, None], np.sign(values) * np.inf, values)
 
     def _peaked(self, windows: Windows) -> tuple[Number, Number, Number]:
         """Return the windows that hold the greatest values, or may: quantities, signs, windows."""
@@ -172,23 +174,7 @@ class ExtremeSearch(PrintsShort):
         chosen[m[earliest], s[earliest], w[earliest]] = True
         return np.nonzero(chosen)  # type: ignore[return-value]
 
-    @staticmethod
-    def _vertices(windows: Windows, items: _Items, index: Number, good: Number) -> tuple[_Items, Number]:
-        """Return the items whose windows are trusted, and the t of the vertices there."""
-        some, index = items.some(good), index[good]
-        signed = SIGNS[some.s][:, None] * windows.fine[some.m, index]
-        inside = vertices(windows.polynomials[some.m, index], FINE[np.argmax(signed, axis=-1)])
-        return some, windows.t(inside, index)
-
-    @staticmethod
-    def _narrowed(windows: Windows, items: _Items, index: Number) -> _Items:
-        """Return items narrowed to the samples beside their greatest one."""
-        signed = SIGNS[items.s][:, None] * windows.values[items.m, index]
-        k = np.argmax(np.where(np.isnan(signed), -np.inf, signed), axis=-1)
-        ends = (SAMPLES[np.clip(k + step, 0, len(SAMPLES) - 1)] for step in (-1, 1))
-        return items._replace(**dict(zip(("low", "high"), (windows.t(end, index) for end in ends), strict=True)))
-
-    def _of_items(self, items: _Items, values: Number, places: Number) -> Offers:
+    def _of_items(self, items: PeakItems, values: Number, places: Number) -> Offers:
         """Offer values (n, k) of items."""
         kind = np.broadcast_to(self._kinds(items.m, items.s, items.which)[:, None], values.shape)
         return Offers(kind.ravel(), (SIGNS[items.s][:, None] * values).ravel(), places.ravel())
@@ -208,4 +194,4 @@ class ExtremeSearch(PrintsShort):
         )
         at = np.where(end == 1, self.stretches.high[which], self.stretches.low[which])[k]
         sign = (second[m, k] > 0).astype(int)
-        yield Offers(self._kinds(m, sign, which[k]), np.full(len(k), np.inf), at, is_vertex=True)
+        yield Offers(self._kinds(m, sign, which[k]), np.full(len(k), np.inf), at)

@@ -47,7 +47,7 @@ class Extremes(PrintsShort):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Pieces(PrintsShort):
+class AssembledPieces(PrintsShort):
     """The assembled pieces of a motion, in order along each design; arrays (n,).
 
     Each goes from `begin` to `end`; `limits` (n, 2) tells at which ends it stops being assembled. A piece that goes on
@@ -85,7 +85,7 @@ def extremes(motion: Motion, *quantities: str | Measure, by_piece: bool = False)
 
 
 @checked
-def pieces(motion: Motion) -> Pieces:
+def pieces(motion: Motion) -> AssembledPieces:
     """Return the assembled pieces of a motion. Raises InvalidInput for a single pose.
 
     >>> import warnings
@@ -101,7 +101,7 @@ def pieces(motion: Motion) -> Pieces:
     stretches, (_, first, last) = stretches_of(motion), _piece_groups(motion)
     begin, end = (Places(motion, stretches.design[k], at[k])
                   for k, at in ((first, stretches.low), (last, stretches.high)))  # fmt: skip
-    return Pieces(begin, end, np.stack([stretches.limits[first, 0], stretches.limits[last, 1]], axis=-1))
+    return AssembledPieces(begin, end, np.stack([stretches.limits[first, 0], stretches.limits[last, 1]], axis=-1))
 
 
 def _piece_groups(motion: Motion) -> tuple[Number, Number, Number]:

@@ -12,6 +12,8 @@ from compoundkin.base.series import Number
 # The least values are the greatest of the opposite.
 SIGNS = np.array([-1.0, 1.0])
 BOTH = SIGNS[:, None, None]
+# Nearer than this (of a pose) a place is a pose.
+SAME = 2e-9
 
 
 class Peaks(NamedTuple):
@@ -35,13 +37,13 @@ class Offers(NamedTuple):
     kind: Number
     value: Number
     place: Number
-    is_vertex: bool = False
+    is_exact: bool = True
 
 
 def best_of(offers: Sequence[Offers], slack: Number) -> Peaks:
     """Return the greatest value of each kind, and where it is first taken.
 
-    Vertices come before poses. `slack` (quantities, groups) is what rounding makes of one value.
+    Poses and vertices come before samples. `slack` (quantities, groups) is what rounding makes of one value.
     """
     shape = len(slack), len(SIGNS), slack.shape[1]
     best = np.full(np.prod(shape), -np.inf)
@@ -49,12 +51,14 @@ def best_of(offers: Sequence[Offers], slack: Number) -> Peaks:
         np.fmax.at(best, one.kind, one.value)
     least = best - np.repeat(slack[:, None], len(SIGNS), axis=1).ravel()
     place = np.full(best.shape, np.inf)
-    for among in ([one for one in offers if one.is_vertex], offers):
+    for among in ([one for one in offers if one.is_exact], offers):
         first = np.full(best.shape, np.inf)
         for one in among:
             near = one.value >= least[one.kind]
             np.fmin.at(first, one.kind[near], one.place[near])
         place = np.where(np.isfinite(place), place, first)
     known = np.isfinite(place)
+    # both sides of a jump at a pose are that pose
+    place = np.where(np.abs(place - np.round(place)) <= SAME, np.round(place), place)
     value = np.where(known, np.broadcast_to(BOTH[:, 0], shape).ravel() * best, np.nan)
     return Peaks(value.reshape(shape), np.where(known, place, np.nan).reshape(shape), slack)

@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.inputs_between import inputs_between, times_between
+from compoundkin.kinematics.extremes.stretches import stretches_of
 from compoundkin.kinematics.motion import Motion
 
 # First and last poses nearer than this (in parts of the size, or radians) are one: the motion is a closed cycle.
@@ -53,6 +54,16 @@ class Places(PrintsShort):
     def some(self, which: Number) -> Places:
         """Return some of the places."""
         return Places(self.motion, self.design[which], self.place[which])
+
+
+def places_of_jumps(motion: Motion) -> Places:
+    """Return both sides of the places where derivatives jump along a motion, in order."""
+    s = stretches_of(motion)
+    sides = [(s.low, (s.first < 0) & ~s.limits[:, 0]), (s.high, (s.last < 0) & ~s.limits[:, 1])]
+    design, place = (np.concatenate([row[odd] for row, odd in rows]) for rows in
+                     ([(s.design, odd) for _, odd in sides], sides))  # fmt: skip
+    order = np.lexsort((place, design))
+    return Places(motion, design[order], place[order])
 
 
 def closed_cycles(motion: Motion) -> Number:

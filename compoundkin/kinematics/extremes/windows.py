@@ -26,6 +26,8 @@ FIT = np.linalg.inv(chebyshev.chebvander(INSIDE, INNER - 1))
 FINE = np.linspace(-1.0, 1.0, 65)
 AT_FINE = chebyshev.chebvander(FINE, INNER - 1).T
 NEWTON = 6
+# Nearer than this to the end of a window a vertex that is no higher is the end.
+BESIDE, LEVEL = 0.01, 1e-8
 # A polynomial that is off by less than this part of the quantity's range is trusted.
 TRUSTED = 1e-10
 
@@ -138,4 +140,9 @@ def vertices(polynomials: Number, start: Number) -> Number:
             step = chebyshev.chebval(t, first, tensor=False) / chebyshev.chebval(t, second, tensor=False)
             spacing = FINE[1] - FINE[0]
             t = np.clip(np.where(np.isfinite(step), t - step, t), start - spacing, start + spacing)
-    return np.clip(t, -1.0, 1.0)
+    t = np.clip(t, -1.0, 1.0)
+    # a curve that runs into a plateau is as high just before it
+    end = np.where(t < 0.0, -1.0, 1.0)
+    at_end, found = (chebyshev.chebval(at, polynomials.T, tensor=False) for at in (end, t))
+    level = np.abs(at_end - found) <= LEVEL * np.abs(polynomials[:, 1:]).max(axis=-1)
+    return np.where(level & (np.abs(end - t) < BESIDE), end, t)

@@ -57,6 +57,10 @@ class ZeroSearch(PrintsShort):
 
     def zeros(self) -> FoundZeros:
         """Return the zeros, in order along each design."""
+        with np.errstate(all="ignore"):
+            return self._zeros()
+
+    def _zeros(self) -> FoundZeros:
         if not len(self.stretches):
             return FoundZeros(*[np.empty(0)] * 4)
         samples = self._samples()

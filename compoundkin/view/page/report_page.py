@@ -21,7 +21,7 @@ from compoundkin.view.page.html_document import Document, asset, vendored
 from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.markup import data_script, element, safe
 from compoundkin.view.page.viewer import Viewer, viewer_of
-from compoundkin.view.report.outputs_section import chosen_outputs, outputs_section
+from compoundkin.view.report.outputs_section import chosen_outputs, outputs_table
 from compoundkin.view.report.report_data import Outcome, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch import Picture, draw
@@ -109,8 +109,9 @@ def all_poses(
     sample = Sample(motion, design)
     if len(sample.rows) == sample.poses or sample.poses * len(table.columns) > MOST_CELLS:
         return sections, sample.rows
-    whole = _table(outputs_section(Whole(motion, design), chosen_outputs(motion, outputs)))
-    if whole is None or [c.name for c in whole.columns] != [c.name for c in table.columns]:
+    every = Whole(motion, design)
+    whole = outputs_table(every, [every.quantity(name) for name in chosen_outputs(motion, outputs)])
+    if [c.name for c in whole.columns] != [c.name for c in table.columns]:
         # the report is about other outputs
         return sections, sample.rows
     full = replace(whole, shown=sample.rows)

@@ -14,10 +14,10 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.marked_places import Events, at, events
-from compoundkin.view.plot.marked_places import extremes as found_extremes
 from compoundkin.view.plot.plot_style import Plot
 from compoundkin.view.plot.plotted_rows import Plotted, all_of, along
 from compoundkin.view.plot.point_labels import PointLabel, number
+from compoundkin.view.plot.solved_courses import PlottedCourse, PlottedExtreme, plotted_extremes
 
 FIRST, EACH = 2.0, 2.0
 # More curves than this in a panel, and values beside their extremes would be a crowd.
@@ -57,8 +57,9 @@ def plot(
     "G.velocity.length"); a vector is drawn as its components and its length; none means the mechanism's outputs.
     `against` is "time", "driver", "pose" or a quantity; without it the time of a motion in time, else the first driver
     that moves. Every quantity has a panel of its own; with ``stacked=False`` those of one unit share one. Angles are in
-    degrees. The highest and lowest values are marked, interpolated between poses, unless `extremes` is False or there
-    are many curves. Designs are a family of curves, called `designs` if that is given. `size` is in inches.
+    degrees. The highest and lowest values are marked, between poses too, unless `extremes` is False or there are many
+    curves; where a derivative jumps, the curve does. Designs are a family of curves, called `designs` if that is given.
+    `size` is in inches.
 
     What cannot be assembled is shaded, poses next to limit positions are ringed, change points dashed. Raises
     UnknownName for names that the motion does not have, InvalidInput for a motion of a single pose, a vector to draw
@@ -83,8 +84,9 @@ def plot(
         figure, axes = canvas.panels(len(shown), text, size or (canvas.WIDTH, height), sharex=True)
         labels: list[PointLabel] = []
         _across(axes, x, is_input)
+        course, marks = PlottedCourse.of(motion, x), _marks(motion, x, shown, extremes)
         for one, panel in zip(axes, shown, strict=True):
-            _draw(one, x, panel, happened, extremes, labels)
+            _draw(one, course, panel, happened, marks, labels)
             canvas.axis_labels(one, x if one is axes[-1] else None, panel.title, canvas.PANEL)
             _mark_events(one, x, happened, is_input)
         _legends(figure, axes, called, happened, is_input)
@@ -107,27 +109,39 @@ def arranged(shown: Sequence[Plotted], designs: int, stacked: bool) -> tuple[Pan
     return tuple(found)
 
 
-def _draw(axes: Any, x: Plotted, panel: Panel, happened: Events, marked: bool | None, labels: list[PointLabel]) -> None:
+def _marks(
+    motion: Motion, x: Plotted, shown: Sequence[Panel], asked: bool | None
+) -> dict[str, tuple[tuple[PlottedExtreme, ...], ...]]:
+    """The extremes of all curves that are marked, found at once."""
+    designs = len(x.values)
+    marked = [panel for panel in shown if asked or (asked is None and len(panel.curves) * designs <= MOST_MARKED)]
+    return plotted_extremes(motion, x, [curve for panel in marked for curve in panel.curves])
+
+
+def _draw(
+    axes: Any,
+    course: PlottedCourse,
+    panel: Panel,
+    happened: Events,
+    marks: dict[str, tuple[tuple[PlottedExtreme, ...], ...]],
+    labels: list[PointLabel],
+) -> None:
     """The curves of a panel, their extremes, and rings beside limit positions."""
+    x = course.x
     designs = len(x.values)
     shades = plot_style.colours(len(panel.curves), designs)
-    lines = [(curve, d) for curve in panel.curves for d in range(designs)]
     unbounded = any(curve.has_poles for curve in panel.curves)
     window = _upwards(axes, panel, unbounded or any(any(blank.limits) for blank in happened.blanks))
-    for k, (curve, d) in enumerate(lines):
+    found: list[PointLabel] = []
+    for k, (curve, d) in enumerate((curve, d) for curve in panel.curves for d in range(designs)):
         name = curve.name.removeprefix(f"{panel.title.name}.") if designs == 1 else f"_design {d}"
-        cuts = np.flatnonzero(curve.poles[d]) + 1
-        across, up = (np.insert(row, cuts, np.nan) for row in (x.values[d].astype(float), curve.values[d]))
-        axes.plot(across, up, color=shades[k], label=name)
+        axes.plot(*course.line(curve, d), color=shades[k], label=name)
         beside = happened.beside(d, x.values.shape[1])
         canvas.ring(axes, x.values[d][beside], curve.values[d][beside], shades[k])
-    if marked or (marked is None and len(lines) <= MOST_MARKED):
-        found: list[PointLabel] = []
-        for k, (curve, d) in enumerate(lines):
-            if not curve.poles[d].any():
-                _extremes(axes, x.values[d], curve, d, window, shades[k], found)
-        # the outermost ones take their places first
-        labels.extend(sorted(found, key=lambda label: -label.y * label.towards.imag))
+        marked = curve.name in marks and not curve.poles[d].any()
+        _mark_extremes(axes, marks[curve.name][d] if marked else (), curve, window, shades[k], found)
+    # the outermost ones take their places first
+    labels.extend(sorted(found, key=lambda label: -label.y * label.towards.imag))
 
 
 def _upwards(axes: Any, panel: Panel, near_limits: bool) -> tuple[float, float] | None:
@@ -145,22 +159,19 @@ def _upwards(axes: Any, panel: Panel, near_limits: bool) -> tuple[float, float] 
     return None
 
 
-def _extremes(
+def _mark_extremes(
     axes: Any,
-    x: Number,
+    marks: Sequence[PlottedExtreme],
     curve: Plotted,
-    d: int,
     window: tuple[float, float] | None,
     colour: Any,
     labels: list[PointLabel],
 ) -> None:
-    vector = None if curve.vector is None else curve.vector[d]
-    for one in found_extremes(x, curve.values[d], curve.is_unbounded, curve.scale, vector):
+    for one in marks:
         if window is None or window[0] < one.y < window[1]:
             canvas.dot(axes, one.x, one.y, colour)
-            labels.append(
-                PointLabel(axes, one.x, one.y, number(one.y, curve.scale), 1j if one.is_highest else -1j, colour)
-            )
+            towards = 1j if one.is_highest else -1j
+            labels.append(PointLabel(axes, one.x, one.y, number(one.y, curve.scale), towards, colour))
 
 
 def _window(panel: Panel, values: Number, near_limits: bool) -> tuple[float, float] | None:

@@ -16,7 +16,7 @@ from compoundkin.structure import Structure
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections
 from compoundkin.view.report.groups_section import drivers_section, solving_section
-from compoundkin.view.report.outputs_section import cams_sections, chosen_outputs, equivalent_section, outputs_section
+from compoundkin.view.report.outputs_section import chosen_outputs, equivalent_section, moving_sections
 from compoundkin.view.report.published_section import Comparison, comparisons, published_section
 from compoundkin.view.report.report_data import Alert, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
@@ -96,7 +96,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
     """Report one design of a motion."""
     sample, structure = Sample(motion, design), motion.structure
     # outputs first: an unknown name is said before the slower work is done
-    moving = outputs_section(sample, chosen_outputs(motion, outputs))
+    moving = moving_sections(sample, chosen_outputs(motion, outputs))
     check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
     outcome = outcome_of(motion, check, published)
     return Report(
@@ -108,8 +108,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
             drivers_section(structure, sample),
             *([equivalent] if (equivalent := equivalent_section(sample)) else []),
             *assembly_sections(motion, design),
-            moving,
-            *cams_sections(sample),
+            *moving,
             *([gaps_section(sample, missing)] if missing else []),
             checks_section(sample, check),
             *([published_section(structure, published)] if published else []),

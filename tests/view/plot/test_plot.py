@@ -136,6 +136,21 @@ def test_extremes_are_marked_with_their_values(six_bar: ck.results.Motion) -> No
     assert texts(ck.plot(six_bar, "bar.angle", extremes=False).figure.axes[0]) == []
 
 
+def test_where_the_acceleration_jumps_so_does_its_curve() -> None:
+    """A parabolic law: 4 times lift by span squared at most (Norton), and no peak beside the jump."""
+    law = ck.laws.program(ck.laws.dwell(0.33), ck.laws.rise(10.0, over=1.0, law="parabolic"), ck.laws.dwell(0.4))
+    slide = ck.slide("block", on="frame", through="A", angle=0)
+    block = ck.Mechanism("block", ck.link("frame", A=0), ck.link("block", B=0), slide, ck.drive("block", law=law))
+    motion = ck.solve(block, time=np.linspace(0.0, 1.73, 40))
+    (axes,) = ck.plot(motion, "B.acceleration.x").figure.axes
+    assert [text.replace("−", "-") for text in texts(axes)] == ["40", "-40"]
+    ((x, y),) = curves(axes).values()
+    jumps = x[:-1][np.abs(np.diff(y)) > 1.0]
+    assert np.diff(x)[np.abs(np.diff(y)) > 1.0].max() < 1e-9
+    np.testing.assert_allclose(jumps, [0.33, 0.83, 1.33], atol=1e-9)
+    np.testing.assert_allclose(np.unique(y.round(9)), [-40.0, 0.0, 40.0])
+
+
 def test_what_is_nothing_but_rounding_is_drawn_as_constant() -> None:
     motion = solved("parallelogram")
     (axes,) = ck.plot(motion, "follower.angular_velocity").figure.axes

@@ -135,14 +135,28 @@ def test_the_last_pose_is_in_the_table_whatever_the_step(six_bar: ck.results.Mot
     assert "Every 3rd of 50 poses" in texts(report(motion), "outputs")
 
 
-def test_extremes_are_those_of_all_poses(six_bar: ck.results.Motion) -> None:
+def test_extremes_are_those_between_the_poses_too(six_bar: ck.results.Motion) -> None:
+    """G stands still where its bar turns back; a fine motion comes near to it."""
     found = table(report(six_bar), "outputs", 1)
     rows = {row[0]: row for row in found.rows}
-    speed = np.abs(six_bar.points["G"].velocity)
-    places = pytest.approx(180.0), pytest.approx(5.0 * speed.argmax())
-    assert rows["|G.velocity|"][2:] == (speed.min(), places[0], speed.max(), places[1])
-    angle = np.rad2deg(six_bar.links["bar"].angle)
-    assert rows["bar.angle"][4] == pytest.approx(angle.max(), rel=1e-15)
+    fine = ck.solve(six_bar.mechanism, {"crank": ck.deg(np.arange(0.0, 360.0, 0.02))})
+    speed = np.abs(fine.points["G"].velocity)
+    assert rows["|G.velocity|"][2:] == (
+        0.0, pytest.approx(0.02 * speed.argmin(), abs=0.02), pytest.approx(speed.max(), rel=1e-7),
+        pytest.approx(0.02 * speed.argmax(), abs=0.02),
+    )  # fmt: skip
+    angle = np.rad2deg(fine.links["bar"].angle)
+    assert rows["bar.angle"][4] == pytest.approx(angle.max(), rel=1e-8)
+
+
+def test_extremes_of_several_pieces_are_told_of_each() -> None:
+    """The rate grows without limit towards a limit position: there it has no greatest value."""
+    with pytest.warns(ck.errors.UnassembledPoses):
+        motion = ck.solve(catalog.mechanism("triple-rocker"), {"driver": ck.deg(np.arange(-200.0, 400.0, 5.0))})
+    found = table(report(motion, ["rocker.angular_velocity"]), "outputs", 1)
+    assert [c.name for c in found.columns][2] == "between"
+    assert [row[2] for row in found.rows] == ["-88.9768 and 88.9768", "271.023 and 395"]
+    assert found.rows[0][3] == found.rows[0][5] == "without limit"
 
 
 def test_an_output_that_does_not_change_has_no_extremes() -> None:

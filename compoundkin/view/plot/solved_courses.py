@@ -1,0 +1,106 @@
+"""The courses of plotted quantities between the poses, solved again: highest and lowest values, jumps as jumps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.extremes import Places, between, extremes, places_of_jumps
+from compoundkin.kinematics.quantities import degrees, quantity
+from compoundkin.model.attributes import TIME, order_of
+from compoundkin.view.plot.marked_places import CONSTANT
+from compoundkin.view.plot.plotted_rows import POSE, Plotted
+
+# Nearer than this (of a pose) a pose and a side of a jump are one place.
+SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class PlottedExtreme:
+    """A highest or lowest value `y` of a curve, with its `x`."""
+
+    x: float
+    y: float
+    is_highest: bool
+
+
+def plotted_extremes(
+    motion: Motion, x: Plotted, curves: Sequence[Plotted]
+) -> dict[str, tuple[tuple[PlottedExtreme, ...], ...]]:
+    """Return the highest and lowest values of curves by name, for each design. A constant has none.
+
+    Rates that grow without limit towards a limit position have none there.
+    """
+    named = {curve.name: curve for curve in curves}
+    found = {}
+    for one in extremes(motion, *named):
+        curve, rows = named[one.name], []
+        both = tuple(_shown(curve, side.value) for side in (one.greatest, one.least))
+        at = tuple(x_at(motion, x, side.at) for side in (one.greatest, one.least))
+        for d, (high, low) in enumerate(zip(*both, strict=True)):
+            size = max(curve.scale, abs(high), abs(low)) if np.isfinite([high, low]).all() else curve.scale
+            level = high - low <= CONSTANT * size
+            marks = (PlottedExtreme(float(at[k][d]), float(y), k == 0) for k, y in enumerate((high, low)))
+            rows.append(() if level else tuple(mark for mark in marks if np.isfinite(mark.y)))
+        found[one.name] = tuple(rows)
+    return found
+
+
+def x_at(motion: Motion, x: Plotted, at: Places) -> Number:
+    """Return what a plot runs along at places; NaN where there is no place."""
+    if x.name == POSE:
+        return at.place
+    if x.name == TIME and motion.time is not None:
+        return at.time
+    if x.name in motion.drives:
+        return _shown(x, at.drives[x.name])
+    known = np.isfinite(at.place)
+    out = np.full(at.place.shape, np.nan)
+    out[known] = values_at(motion, x, at.some(known))
+    return out
+
+
+def values_at(motion: Motion, curve: Plotted, at: Places) -> Number:
+    """Return a plotted quantity at places, solved there."""
+    with np.errstate(all="ignore"):
+        there = between(motion, at.design, at.place, max(motion.order, order_of(curve.name)))
+    return _shown(curve, np.asarray(quantity(there, curve.name).values))
+
+
+def _shown(curve: Plotted, values: Number) -> Number:
+    return np.asarray(degrees(values) if curve.is_angle else values)
+
+
+@dataclass(frozen=True, eq=False)
+class PlottedCourse:
+    """How a plot goes from pose to pose: through both sides of jumps."""
+
+    motion: Motion
+    x: Plotted
+    jumps: Places
+
+    @classmethod
+    def of(cls, motion: Motion, x: Plotted) -> PlottedCourse:
+        """Return the course of a motion."""
+        return cls(motion, x, places_of_jumps(motion))
+
+    def line(self, curve: Plotted, design: int) -> tuple[Number, Number]:
+        """Return x and y of a curve. A pose at a jump gives way to its two sides; NaN parts what passes infinity."""
+        x, y = self.x.values[design], curve.values[design]
+        cuts = np.flatnonzero(curve.poles[design]) + 1
+        if len(cuts):
+            return np.insert(x.astype(float), cuts, np.nan), np.insert(y.astype(float), cuts, np.nan)
+        mine = self.jumps.design == design
+        if not mine.any():
+            return x, y
+        at = self.jumps.some(mine)
+        place = np.arange(len(x), dtype=float)
+        kept = np.abs(place[:, None] - at.place).min(axis=1) > SAME
+        order = np.argsort(np.concatenate([place[kept], at.place]))
+        rows = ((x, x_at(self.motion, self.x, at)), (y, values_at(self.motion, curve, at)))
+        across, up = (np.concatenate([row[kept], there])[order] for row, there in rows)
+        return across, up
