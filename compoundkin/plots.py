@@ -1,4 +1,4 @@
-"""Kinds of plots beside `plot`: phase plots, hodographs, polar plots, coupler curves, centrodes, circuits, timing.
+"""Plots beside `plot`: phase plots, hodographs, polar plots, coupler curves, centrodes, circuits, workspaces, timing.
 
 >>> import compoundkin as ck
 >>> motion = ck.solve(ck.catalog.load_named("crank-rocker"))
@@ -8,6 +8,6 @@ True
 
 from __future__ import annotations
 
-from compoundkin.view.plot import centrodes, circuits, hodograph, paths, phase, polar, timing_chart
+from compoundkin.view.plot import centrodes, circuits, hodograph, paths, phase, polar, timing_chart, workspace
 
-__all__ = ["centrodes", "circuits", "hodograph", "paths", "phase", "polar", "timing_chart"]
+__all__ = ["centrodes", "circuits", "hodograph", "paths", "phase", "polar", "timing_chart", "workspace"]

@@ -11,6 +11,7 @@ from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check, Finding
 from compoundkin.analysis.equations import LoopEquations
 from compoundkin.configurations.circuit_search import Circuits
+from compoundkin.configurations.reached_region import Workspace
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.kinematics.chosen_modes import GroupMode
 from compoundkin.kinematics.configuration import Configuration
@@ -52,4 +53,5 @@ __all__ = [
     "Report",
     "Structure",
     "Table",
+    "Workspace",
 ]  # fmt: skip

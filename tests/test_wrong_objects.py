@@ -24,7 +24,11 @@ def at_hand() -> dict[str, Any]:
     """What the calls below are given, made once."""
     bar, cam = loaded("crank-rocker"), loaded("disc-cam-offset-roller")
     rocker = ck.solve(bar, {"crank": ck.deg([10, 20, 30])}, order=3)
+    upper, fore = ck.link("upper", A=0, B=2), ck.link("fore", B=0, P=1)
+    arm = ck.Mechanism("arm", ck.link("frame", A=0), upper, fore, ck.drive("upper"), ck.drive("fore", on="upper"))
     return {
+        "arm": arm,
+        "region": ck.workspace(arm, "P", cells=8),
         "bar": bar,
         "structure": ck.decompose(bar),
         "motion": rocker,
@@ -114,6 +118,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "with_driver": {"mechanism": m, "link": "rocker", "on": "frame", "pair": "", "instead": "crank", "speed": 1.0,
                         "values": None},
         "with_frame": {"mechanism": m, "link": "crank"},
+        "workspace": {"mechanism": h["arm"], "point": "P", "ranges": None, "orientation": None, "modes": None,
+                      "cells": 8},
         "advantage.ForcePort": {"link": "a", "point": "C", "angle": 0.0, "on": "frame"},
         "advantage.TorquePort": {"link": "a", "on": "frame"},
         "advantage.mechanical_advantage": {"motion": motion, "output": "rocker", "input": "crank"},
@@ -201,6 +207,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "plots.phase": {"motion": motion, "name": "rocker.angle", "rate": None, "every": None, "designs": (),
                         "title": None, "size": None},
         "plots.polar": {"motion": motion, "around": None, "designs": (), "title": None, "size": None},
+        "plots.workspace": {"found": h["region"], "colour": None, "singular": True, "title": None, "size": None},
         "plots.timing_chart": {"what": m, "over": None, "title": None, "size": None},
         "profiles.DoubleCam": {"first": ck.profiles.synthesise(h["wave"], base=20.0),
                                "second": ck.profiles.synthesise(h["wave"], base=20.0)},

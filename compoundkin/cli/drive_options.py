@@ -94,7 +94,7 @@ def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[st
     from compoundkin.model.attributes import RATES
 
     rates = {what: typed_values.of_rates(structure, f"--{what}", asked[f"{what}s"]) for what in RATES[:2]}
-    modes = _modes(structure, asked["modes"])
+    modes = assembly_modes(structure, asked["modes"])
     time = typed_values.of_times(asked.get("time"))
     with working("solving"), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UnassembledPoses)
@@ -106,8 +106,8 @@ def solved_at(structure: Structure, driven: Mapping[str, Any], asked: Mapping[st
     return motion
 
 
-def _modes(structure: Structure, given: Sequence[str]) -> dict[str, int]:
-    """Assembly modes by link."""
+def assembly_modes(structure: Structure, given: Sequence[str]) -> dict[str, int]:
+    """Return assembly modes by link. Raises InvalidInput for links that are not there and for other signs."""
     from compoundkin.base.errors import InvalidInput, Problem, nearest
 
     signs = {"+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}

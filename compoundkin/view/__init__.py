@@ -6,5 +6,6 @@ display.register(
     html="compoundkin.view.notebook:html_of",
     svg="compoundkin.view.notebook:svg_of",
     plot="compoundkin.view.plot:plot",
+    workspace="compoundkin.view.plot:workspace",
     animation="compoundkin.view.animation:animate",
 )

@@ -6,5 +6,6 @@ from compoundkin.view.plot.path_plots import centrodes, paths
 from compoundkin.view.plot.plot_style import Plot
 from compoundkin.view.plot.quantity_plot import plot
 from compoundkin.view.plot.timing_chart import timing_chart
+from compoundkin.view.plot.workspace_plot import workspace
 
-__all__ = ["Plot", "centrodes", "circuits", "hodograph", "paths", "phase", "plot", "polar", "timing_chart"]
+__all__ = ["Plot", "centrodes", "circuits", "hodograph", "paths", "phase", "plot", "polar", "timing_chart", "workspace"]

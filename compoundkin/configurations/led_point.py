@@ -1,0 +1,139 @@
+"""The mechanism led by one of its points: its drivers let go, the point carried about instead.
+
+Driven so, serial and parallel robots come apart into dyads: their inverse kinematics in closed form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.arrays import Number, first_entry
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotDetermined, Problem
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.driver_values import inputs
+from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.solution import solving_order_of
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.elements import FRAME, Drive, Expectation, Item, Mode, drive, link
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import slide
+
+# What carries the point about: along x on the frame, along y on that. No link or point is called so.
+CARRIAGE, TRACER, CORNER = "(carriage)", "(tracer)", "(corner)"
+ALONG, ACROSS, TURN_OF = "(x)", "(y)", "(angle)"
+
+
+@dataclass(frozen=True)
+class LedPoint:
+    """A point, the drivers let go for it, and the mechanism led by it.
+
+    Where three drivers are let go the angle of the first link that carries the point is prescribed as well. `given` are
+    the numbers of the driven, `led_given` of the led mechanism, for one design.
+    """
+
+    point: str
+    free: tuple[str, ...]
+    driven: SolvingOrder
+    led: SolvingOrder
+    given: Inputs
+    led_given: Inputs
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, point: str, free: tuple[str, ...], still: dict[str, float]) -> LedPoint:
+        """Return the point as what leads the mechanism. Raises InvalidInput where that leaves it undetermined."""
+        driven = solving_order_of(mechanism)
+        try:
+            led = solving_order_of(_led(mechanism, point, free))
+        except (NotDetermined, InvalidMechanism) as error:
+            what = f"the drivers {', '.join(free)} do not follow from where {point} is: {error}"
+            raise InvalidInput(Problem("workspace", what, "take another point, or fewer drivers")) from None
+        if led.numbered and led.structure.relaxation:
+            what = f"led by {point}, what its redundant pairs hold has no closed form, and no search finds all of it"
+            raise InvalidInput(Problem("workspace", what, "leave the redundant links out"))
+        rest = {name: 0.0 for name in (ALONG, ACROSS, TURN_OF) if name in led.structure.driven}
+        whole = inputs(driven, {**dict.fromkeys(free, 0.0), **still}, None, None, None)
+        led_whole = inputs(led, {**rest, **still}, None, None, None)
+        first = slice(0, 1)
+        return cls(point, free, driven, led, whole.cut(first, first), led_whole.cut(first, first))
+
+    @property
+    def turns(self) -> bool:
+        """Whether an angle is prescribed beside the place."""
+        return TURN_OF in self.led.structure.driven
+
+    @property
+    def carrier(self) -> str:
+        """The link whose angle that is."""
+        return self.driven.structure.mechanism.carriers[self.point][0]
+
+    @cached_property
+    def origin(self) -> complex:
+        """The place from which the led coordinates count."""
+        points = self.driven.structure.mechanism.geometry.points[FRAME]
+        return complex(first_entry(next(iter(points.values()))))
+
+    def block(self, z: Number, angle: Number, order: int = 0, moved: str = "") -> tuple[Block, Inputs]:
+        """Return a block of the led mechanism at places and angles (n,), nothing solved. One coordinate may move."""
+        away = z - self.origin
+        values = {ALONG: away.real, ACROSS: away.imag, TURN_OF: angle}
+        drives = {
+            name: (values[name][None], float(name == moved)) if name in values else (v[0], 0.0)
+            for name, v in self.led_given.drives.items()
+        }
+        given = self.led_given.of_poses(len(z)).driven(drives)
+        return self.led.start(given.ends, given.series(order), order, (1, len(z))), given
+
+    def coordinates(self, block: Block) -> dict[str, Number]:
+        """Return the drivers let go, with derivatives, of a solved block."""
+        found = {}
+        for name in self.free:
+            step = self.driven.structure.driven[name]
+            poses = tuple(block.world[member] for member in step.pair.members)
+            value = step.pair.coordinate(self.given.ends[step.pair.name], poses)
+            found[name] = value if step.pair.driven_by(step.drive.link) > 0 else -value
+        return found
+
+    def placed(self, block: Block) -> tuple[Number, Number]:
+        """Return where the point is in a solved driven block. The angle of its link too."""
+        pose = block.world[self.carrier]
+        local = first_entry(self.driven.structure.mechanism.geometry.points[self.carrier][self.point])
+        return pose.at(local).c[0], np.angle(pose.u.c[0])
+
+
+def _led(mechanism: Mechanism, point: str, free: tuple[str, ...]) -> Mechanism:
+    """Return the mechanism with some drivers let go and a point carried about in their place."""
+    parts = [item for item in mechanism.parts if not isinstance(item, Mode | Expectation)]
+    kept = [item for item in parts if not (isinstance(item, Drive) and item.name in free)]
+    corner = next(iter(mechanism.links[FRAME].points))
+    quarter = np.pi / 2.0
+    more: list[Item] = [
+        link(CARRIAGE, **{CORNER: 0}),
+        link(TRACER, **{point: 0}),
+        slide(CARRIAGE, on=FRAME, at=CORNER, through=corner, angle=0.0, turn=0.0, name=ALONG),
+        slide(TRACER, on=CARRIAGE, at=point, through=CORNER, angle=quarter, turn=-quarter, name=ACROSS),
+        drive(CARRIAGE, pair=ALONG, name=ALONG),
+        drive(TRACER, on=CARRIAGE, pair=ACROSS, name=ACROSS),
+    ]
+    if len(free) == 3:
+        more.append(drive(mechanism.carriers[point][0], on=TRACER, pair=point, name=TURN_OF))
+    return Mechanism(mechanism.title, *kept, *more, unit=mechanism.unit)
+
+
+@dataclass(frozen=True)
+class LiveSigns:
+    """The choice of some configurations of the led mechanism, an axis before all others."""
+
+    signs: Mapping[int, Number]
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the signs of a group."""
+        return self.signs.get(solver.index, 1.0)
+
+    def angle(self, solver: GroupSolver, link: str) -> Number | None:
+        """Return nothing: full turns are not counted."""
+        return None

@@ -1,0 +1,139 @@
+"""Workspaces: the region that a point reaches, its boundary, singular curves, and the mechanism in one pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import Number, degrees, first_entry
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.configurations.reached_region import Workspace
+from compoundkin.kinematics import Motion
+from compoundkin.model.attributes import unit_of
+from compoundkin.model.elements import FRAME
+from compoundkin.view.plot import canvas, plot_style
+from compoundkin.view.plot.plot_style import COLOURS, GREY, INK, Plot
+from compoundkin.view.plot.point_labels import PointLabel
+
+SIZE = (7.0, 6.2)
+# The region is shaded, the mechanism stands behind it.
+REGION, MECHANISM = "#d7e8f3", "#9a9a9a"
+# What the region may be coloured by.
+CONDITION = "condition"
+# Condition numbers above this are drawn in one colour.
+WORST = 20.0
+
+
+@checked
+def workspace(
+    found: Workspace,
+    *,
+    colour: str | None = None,
+    singular: bool = True,
+    title: str | None = None,
+    size: tuple[float, float] | None = None,
+) -> Plot:
+    """Draw a workspace. The region is shaded, with its boundary and the mechanism in one pose.
+
+    Curves where the drivers lose their hold are dashed, of all configurations that lead there, unless `singular` is
+    False. With ``colour="condition"`` the region is coloured by the condition number of the Jacobian. Raises
+    InvalidInput for another colour.
+
+    >>> from compoundkin.configurations.reached_region import workspace as region_of
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> picture = workspace(region_of(load_named("five-bar"), "P", cells=40))
+    >>> [line.get_label() for line in picture.figure.axes[0].get_lines()[-1:]]
+    ['outer boundary']
+    """
+    if colour not in (None, CONDITION):
+        what = f"a workspace is not coloured by {colour!r}"
+        raise InvalidInput(Problem("colour", what, f"give {CONDITION!r}, or leave it out"))
+    labels: list[PointLabel] = []
+    with plot_style.styled():
+        figure, (axes, *_) = canvas.panels(1, _title(found) if title is None else title, size or SIZE)
+        _region(figure, axes, found, colour)
+        _mechanism(axes, found.pose, found.point, labels)
+        if singular:
+            _singular(axes, found)
+        for kind, curves, shade in (("inner", found.inner, COLOURS[1]), ("outer", found.outer, COLOURS[0])):
+            for k, curve in enumerate(curves):
+                axes.plot(curve.real, curve.imag, color=shade, label="" if k else f"{kind} boundary", zorder=4)
+        unit = unit_of(found.mechanism.unit, "length")
+        canvas.plane(axes, f"x [{unit}]", f"y [{unit}]")
+        canvas.legend(axes)
+        return canvas.finished(figure, labels)
+
+
+def _title(found: Workspace) -> str:
+    turned = "" if found.orientation is None else f", {found.link} at {degrees(found.orientation):.6g}°"
+    return f"{found.mechanism.title}: workspace of {found.point}{turned}"
+
+
+def _region(figure: Any, axes: Any, found: Workspace, colour: str | None) -> None:
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    curves = [Path(np.stack([c.real, c.imag], axis=-1), closed=True) for c in (*found.outer, *found.inner)]
+    outline = Path.make_compound_path(*curves)
+    patch = PathPatch(outline, facecolor=REGION, edgecolor="none", zorder=0.5)
+    axes.add_patch(patch)
+    axes.autoscale_view()
+    if colour is None:
+        return
+    x, y = found.places[0].real, found.places[:, 0].imag
+    values = np.minimum(found.condition, WORST)
+    shown = axes.pcolormesh(x, y, values, cmap="viridis_r", vmin=1.0, vmax=WORST, shading="nearest", zorder=0.6,
+                            rasterized=True)  # fmt: skip
+    shown.set_clip_path(patch)
+    bar = figure.colorbar(shown, ax=axes, aspect=35, pad=0.02, extend="max")
+    bar.set_label("condition number")
+    bar.outline.set_visible(False)
+
+
+def _singular(axes: Any, found: Workspace) -> None:
+    """Draw where determinants are zero, dashed."""
+    x, y = found.places[0].real, found.places[:, 0].imag
+    drawn = False
+    for values in found.determinants:
+        known = values[np.isfinite(values)]
+        if known.size and known.min() < 0.0 < known.max():
+            axes.contour(x, y, values, levels=[0.0], colors=[INK], linestyles="dashed", linewidths=1.0, zorder=3)
+            drawn = True
+    if drawn:
+        axes.plot([], [], color=INK, linestyle="--", linewidth=1.0, label="drivers lose their hold")
+
+
+def _mechanism(axes: Any, pose: Motion, point: str, labels: list[PointLabel]) -> None:
+    """Draw links as outlines of their points, guides as lines, pins as rings, and the point with its letter."""
+    for outline in (*_links(pose), *_guides(pose)):
+        axes.plot(outline.real, outline.imag, color=MECHANISM, linewidth=1.6, zorder=2, solid_joinstyle="round")
+    for letter in pose.mechanism.pins:
+        z = _place(pose, letter)
+        on_frame = letter in pose.mechanism.links[FRAME].points
+        axes.plot([z.real], [z.imag], marker="o", markersize=5, color=MECHANISM, zorder=2.5, linestyle="none",
+                  markerfacecolor=MECHANISM if on_frame else "white")  # fmt: skip
+    z = _place(pose, point)
+    canvas.dot(axes, [z.real], [z.imag], INK, 5.0)
+    labels.append(PointLabel(axes, z.real, z.imag, point, 1 + 1j, GREY))
+
+
+def _links(pose: Motion) -> Iterator[Number]:
+    for name, link in pose.mechanism.links.items():
+        if name != FRAME and len(link.points) > 1:
+            corners = np.array([_place(pose, letter) for letter in link.points])
+            order = np.argsort(np.angle(corners - np.mean(corners)))
+            yield np.append(corners[order], corners[order][:1])
+
+
+def _guides(pose: Motion) -> Iterator[Number]:
+    for pair in pose.mechanism.written_pairs:
+        known = [letter for letter in pair.letters if letter in pose.mechanism.carriers]
+        if pair.is_simple and not pair.free_is_angle and len(known) > 1:
+            yield np.array([_place(pose, letter) for letter in known[:2]])
+
+
+def _place(pose: Motion, letter: str) -> complex:
+    return complex(first_entry(np.asarray(pose.points[letter].position)))
