@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     epilog="""\b
 Examples:
   compoundkin workspace five-bar P
-  compoundkin workspace five-bar P --drive left=60:180 --drive right=0:120 -o five-bar.png
+  compoundkin workspace five-bar P --drive left=60:180 -o five-bar.png
   compoundkin workspace hydraulic-digger M --condition -o digger.svg
   compoundkin workspace 3-rrr P --orientation 0 -o 3-rrr.pdf
 """
@@ -111,6 +111,6 @@ def told(found: Workspace) -> list[str]:
         f"  drivers: {'; '.join(spans)}",
         f"  in {found.modes}"
         + ("" if found.orientation is None else f", {found.link} at {degrees(found.orientation):.6g}°"),
-        f"  area {found.area:.6g}{area}; x {x[0]:.6g} to {x[1]:.6g}{length}, y {y[0]:.6g} to {y[1]:.6g}{length}",
-        f"  boundary: {len(found.outer)} outer, {len(found.inner)} inner; cells of {found.step:.3g}{length}",
+        f"  area {found.area:.4g}{area}; x {x[0]:.4g} to {x[1]:.4g}{length}, y {y[0]:.4g} to {y[1]:.4g}{length}",
+        f"  boundary: {len(found.outer)} outer, {len(found.inner)} inner; corners and details within {found.step:.2g}{length}",
     ]
