@@ -12,6 +12,7 @@ from compoundkin.model.laws import (
     ConstantSpeed,
     FunctionLaw,
     Law,
+    MotionTable,
     Program,
     ProgramSegment,
     TimeTable,
@@ -20,14 +21,17 @@ from compoundkin.model.laws import (
     dwell,
     fall,
     least_time,
+    motion_table,
     program,
     rise,
     synchronised,
     time_table,
 )
+from compoundkin.model.leads import place_table
+from compoundkin.synthesis.found_laws import driven_forward, found_law
 
 __all__ = [
-    "ConstantAcceleration", "ConstantSpeed", "FunctionLaw", "Law", "Program", "ProgramSegment", "TimeTable",
-    "constant_acceleration", "constant_speed", "dwell", "fall", "least_time", "program", "rise", "synchronised",
-    "time_table",
+    "ConstantAcceleration", "ConstantSpeed", "FunctionLaw", "Law", "MotionTable", "Program", "ProgramSegment",
+    "TimeTable", "constant_acceleration", "constant_speed", "driven_forward", "dwell", "fall", "found_law",
+    "least_time", "motion_table", "place_table", "program", "rise", "synchronised", "time_table",
 ]  # fmt: skip

@@ -87,6 +87,7 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "loops": lambda: ck.draw(posed(), kind="loops"),
     "construction": lambda: ck.draw(load_named("crank-rocker"), ck.deg(60), kind="construction"),
     "modes": modes,
+    "led": lambda: ck.animate(load_named("five-bar-led"), paths="P"),
     "limit": limit,
     "transmission": transmission,
     "centres": lambda: ck.draw(SIX_BAR, AT, centres=True),

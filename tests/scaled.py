@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.model.elements import Drawn, Drive, Expectation, Link
+from compoundkin.model.elements import Drawn, Drive, Expectation, Lead, Link
 from compoundkin.model.laws.constant_laws import ConstantAcceleration, ConstantSpeed
 from compoundkin.model.laws.function_law import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.laws.time_tables import TimeTable
+from compoundkin.model.leads import CurvePath
 from compoundkin.model.profiles.given_profiles import DiscProfile, FormulaProfile, PointsProfile
 from compoundkin.model.profiles.synthesised import Synthesised
 
@@ -37,11 +38,20 @@ def scaled(mechanism: ck.Mechanism, factor: float) -> ck.Mechanism:
 def _item(item: Any, factor: float, is_length: bool) -> Any:
     if isinstance(item, Link | Drawn):
         return replace(item, points={k: None if p is None else p * factor for k, p in item.points.items()})
+    if isinstance(item, Lead) and item.point:
+        laws = {"x": _law(item.x, factor), "y": _law(item.y, factor)}
+        return replace(item, **laws, along=None if item.along is None else _path(item.along, factor))
     if isinstance(item, Drive):
         return _drive(item, factor) if is_length else item
     if is_dataclass(item) and not isinstance(item, type):
         return replace(item, **dict(_dimensions(item, factor)))
     return item
+
+
+def _path(path: Any, factor: float) -> Any:
+    if isinstance(path, CurvePath):
+        return replace(path, profile=_profile(path.profile, factor), law=_law(path.law, factor))
+    return replace(path, places=tuple(place * factor for place in path.places))
 
 
 def _dimensions(pair: Any, factor: float) -> Any:

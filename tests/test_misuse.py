@@ -38,5 +38,5 @@ def test_arguments_that_lack_are_told_of_the_word_not_of_its_class(word: str) ->
 
 
 def test_a_word_that_there_is_not_is_told_of_the_function_that_was_called() -> None:
-    with pytest.raises(TypeError, match=r"^with_driver\(\) got an unexpected keyword argument 'x'"):
-        ck.with_driver(SIX_BAR.mechanism, "bar", x=-1)
+    with pytest.raises(TypeError, match=r"^with_driver\(\) got an unexpected keyword argument 'colour'"):
+        ck.with_driver(SIX_BAR.mechanism, "bar", colour=-1)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.base.suffixes import alternatives, form_of
-from compoundkin.cli.drive_options import drive_options, solved
+from compoundkin.cli.drive_options import drive_options, names, solved
 from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
 from compoundkin.cli.shell import NOT_ASSEMBLED, put, say
 
@@ -23,12 +23,22 @@ Examples:
   compoundkin solve six-bar --speed 300rpm --order 3 -o six-bar.parquet
   compoundkin solve five-bar --drive left=0:90:10 --drive right=90:0:-10
   compoundkin solve crank-rocker --mode coupler=-1 | head -3
+  compoundkin solve five-bar-led --forward left,right -o forward.toml
 """
 )
 @mechanism_argument
 @drive_options
 @to_file(f"Write a table here: {alternatives('table')}.")
-def command(file: str, path: str | None, **asked: Any) -> int:
+@click.option(
+    "--forward",
+    "forward",
+    multiple=True,
+    metavar="LINK",
+    callback=lambda _c, _p, given: names(given),
+    help="Write the mechanism driven at these links by the laws found, LINK/ON against another than the frame. "
+    "Repeat it, or write commas.",
+)
+def command(file: str, path: str | None, forward: tuple[str, ...], **asked: Any) -> int:
     """Solve a mechanism and print a table (CSV). It has a row per pose, a column per quantity.
 
     Without --output, everything there is. Angles are in degrees in CSV and JSON, in radians in NPZ and Parquet.
@@ -39,9 +49,11 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     from compoundkin.structure import decompose
 
     if path is not None:
-        form_of("table", path)
+        form_of("mechanism" if forward else "table", path)
     structure = decompose(loaded(file))
     motion = solved(structure, asked)
+    if forward:
+        return _driven(motion, forward, path)
     table = motion.table(*asked["outputs"])
     if path is None:
         put(csv_text(table).encode("utf-8"))
@@ -52,10 +64,26 @@ def command(file: str, path: str | None, **asked: Any) -> int:
     return 0 if motion.assembled.all() else explained(motion)
 
 
+def _driven(motion: Motion, links: tuple[str, ...], path: str | None) -> int:
+    """Write the mechanism driven at some links by the laws found for a motion, or print it as TOML."""
+    from compoundkin.files import dumps, save
+    from compoundkin.model.elements import FRAME, Drive
+    from compoundkin.synthesis.found_laws import driven_forward
+
+    ends = [(link, on or FRAME) for link, _, on in (name.partition("/") for name in links)]
+    made = driven_forward(motion, *(Drive(link, link, on) for link, on in ends))
+    if path is None:
+        put(dumps(made).encode("utf-8"))
+    else:
+        save(made, path)
+        say(f"Wrote {made.title!r}, driven at {', '.join(links)}, to {path}.")
+    return 0
+
+
 def explained(motion: Motion) -> int:
     """Say which poses cannot be assembled, and why; the exit code for that."""
     from compoundkin.kinematics.gaps import gaps
-    from compoundkin.view.report.motion_report import MOST_GAPS, gap_sentence
+    from compoundkin.view.report.gaps_section import MOST_GAPS, gap_sentence
     from compoundkin.view.report.shown_poses import Sample
 
     found = gaps(motion)

@@ -15,7 +15,10 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import WRITTEN as LAWS
 from compoundkin.model.laws.program_segments import ProgramSegment
+from compoundkin.model.leads import WRITTEN as PATHS
+from compoundkin.model.leads import Lead
 from compoundkin.model.profiles import WRITTEN as PROFILES
+from compoundkin.model.written import DRIVES
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -49,6 +52,7 @@ def schema() -> dict[str, Any]:
             "segment": _table(ProgramSegment.keys),
             "turned": _table(SEGMENT),
             "program": _table(PROGRAM),
+            "path": _tagged(PATHS, "Where a point is led in time."),
             "profile": _tagged(PROFILES, "The profile of a cam or curved slot, in the coordinates of its link."),
         },
     }
@@ -62,6 +66,9 @@ def publish(path: str | os.PathLike[str]) -> None:
 
 def _tables(table: doc.TableForm) -> dict[str, Any]:
     one = _table(table.keys)
+    if table.name == DRIVES:
+        ways = [{"required": [key.name]} for key in Lead.keys if key.kind in ("law", "path")]
+        one = {"anyOf": [one, {**_table(Lead.keys), "anyOf": ways}]}
     if table.form == "array":
         return {"type": "array", "items": one, "description": table.doc}
     return {"type": "object", "additionalProperties": one, "required": [FRAME], "description": table.doc}
@@ -192,6 +199,8 @@ FRAGMENTS: dict[Kind, dict[str, Any]] = {
     "turn": _ref("single"),
     "place": _ref("point"),
     "places": {"type": "array", "items": _ref("point"), "minItems": 4},
+    "route": {"type": "array", "items": _ref("point"), "minItems": 2},
+    "path": _ref("path"),
     "turned": {"type": "array", "items": _ref("turned"), "minItems": 1},
     "program": {"anyOf": [{"type": "array", "items": _ref("turned"), "minItems": 1}, _ref("program")]},
     "profile": _ref("profile"),

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.files import document as doc
-from compoundkin.files.document import TAGGED
 from compoundkin.files.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
 from compoundkin.files.single_values import bad, described, single, wrong
+from compoundkin.files.tagged_tables import TAGGED
 from compoundkin.files.written_quantities import rate, values
-from compoundkin.model.attributes import TIME
-from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drive
+from compoundkin.model.attributes import ANGLE, TIME, rated
+from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Lead, Link, Mode, drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN, Pair
 from compoundkin.model.pairs.cylinder import Cylinder
-from compoundkin.model.written import CYLINDERS
+from compoundkin.model.written import CYLINDERS, DRIVES
 
 
 def read(document: Mapping[str, Any], where: str = "") -> Mechanism:
@@ -95,10 +96,10 @@ def _items(parts: Mapping[str, Any], log: Recovery) -> Iterator[Item]:
     shown = {key: value for key, value in parts.items() if key == doc.DRAWN.name}
     drawn = [Drawn(points) for points in log.table(shown, (doc.DRAWN,), "").values()]
     base = _valid(links, pairs, cylinders, drawn)
-    drives = [_drive(base, *at, log) for at in _array(parts, "drives", log)]
-    if any(problem.where.startswith("drives") for problem in log.problems):
+    drives = [_drive(base, *at, log) for at in _array(parts, DRIVES, log)]
+    if any(problem.where.startswith(DRIVES) for problem in log.problems):
         log.doubts.append(r"expected\[\d+\]\.at\.")
-    angles = {item.name: doc.is_angle(base, item) for item in drives} if base else {}
+    angles = dict(_driven(base, drives)) if base else {}
     yield from links
     yield from pairs
     yield from cylinders
@@ -139,11 +140,31 @@ def _pair(kind: type[Pair], raw: Any, where: str, log: Recovery) -> Pair:
     return kind(**table)
 
 
-def _drive(base: Mechanism | None, raw: Any, where: str, log: Recovery) -> Drive:
+# The keys that only drivers of points and of links' angles have.
+LED = {key.name for key in Lead.keys} - {key.name for key in Drive.keys}
+
+
+def _driven(base: Mechanism, drives: Iterable[Drive | Lead]) -> Iterator[tuple[str, bool | None]]:
+    """Yield what is driven, and whether it is an angle."""
+    for item in drives:
+        if isinstance(item, Lead):
+            yield from ((name, word == ANGLE) for word, name in item.drivers.items())
+        else:
+            yield item.name, doc.is_angle(base, item)
+
+
+def _drive(base: Mechanism | None, raw: Any, where: str, log: Recovery) -> Drive | Lead:
+    if isinstance(raw, dict) and not LED.isdisjoint(raw):
+        before = len(log.problems)
+        led = log.table(raw, Lead.keys, where, ANGLE in raw)
+        if len(log.problems) > before:
+            log.doubts.append(f"{re.escape(where)}$")
+        return Lead(led.pop("name", led.get("point", led.get("link", ""))), **led)
     said = {k: v for k, v in raw.items() if isinstance(v, str)} if isinstance(raw, dict) else {}
     meant = Drive("", said.get("link", ""), said.get("on", FRAME), said.get("pair", ""))
     found = log.table(raw, Drive.keys, where, doc.is_angle(base, meant) if base else None)
-    return drive(found.pop("link"), **found)
+    made: Drive | Lead = drive(found.pop("link"), **found)
+    return made
 
 
 def _expected(angles: Mapping[str, bool | None], raw: Any, where: str, log: Recovery) -> Expectation:
@@ -154,13 +175,13 @@ def _expected(angles: Mapping[str, bool | None], raw: Any, where: str, log: Reco
 
 
 def _at(angles: Mapping[str, bool | None], key: str, raw: Any, where: str, log: Recovery) -> float:
-    name, _, rated = key.partition(".")
+    name, word = rated(key, list(angles))
     try:
         if key == TIME and key not in angles:
             return single(raw, where)
-        if isinstance(raw, dict) and not rated and "rad" not in raw:
+        if isinstance(raw, dict) and not word and "rad" not in raw:
             raise wrong(where, raw, "a number", f'for rates write "{key}.speed" in quotes')
-        out = (rate if rated else values)(raw, where, angles.get(name))
+        out = (rate if word else values)(raw, where, angles.get(name))
         if isinstance(out, float):
             return out
         raise wrong(where, raw, "a single number")

@@ -115,8 +115,8 @@ class Recovery:
         values: dict[Kind, Any] = {
             "name": name, "text": name, "names": (), "point": point, "points": {name: point}, "drawing": {},
             "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
-            "two": (1.0, 1.0), "profile": PROFILE, "program": None, "place": point, "places": (),
-            "turned": (), "reach": None, "sweep": None,
+            "two": (1.0, 1.0), "profile": PROFILE, "program": None, "place": point, "places": (), "route": (),
+            "path": None, "turned": (), "reach": None, "sweep": None,
         }  # fmt: skip
         return values.get(kind, 0.0)
 

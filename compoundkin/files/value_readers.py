@@ -76,6 +76,7 @@ READERS: dict[Kind, Reader] = {
     "turn": turn,
     "place": place,
     "places": places,
+    "route": places,
     "values": values,
     "rate": rate,
     "at": table,

@@ -11,15 +11,15 @@ from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
 from compoundkin.files.document import DWELL, KIND, PROGRAM, SEGMENT
 from compoundkin.files.reader import default_name
-from compoundkin.model.attributes import OF_POINTS
-from compoundkin.model.elements import Drive, Expectation, Link
+from compoundkin.model.attributes import ANGLE, OF_POINTS, rated
+from compoundkin.model.elements import Drive, Expectation, Lead, Link
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.laws.program_segments import ProgramSegment
 from compoundkin.model.mechanism import Mechanism, same
 from compoundkin.model.pairs import WRITTEN
-from compoundkin.model.written import CYLINDERS
+from compoundkin.model.written import CYLINDERS, DRIVES
 
 
 def document(mechanism: Mechanism) -> dict[str, Any]:
@@ -36,7 +36,7 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
     for name in WRITTEN:
         out[name] = [_pair(item) for item in mechanism.items if getattr(item, "table", "") == name]
     out[CYLINDERS] = [_pair(item) for item in mechanism.cylinders.values()]
-    out["drives"] = [_drive(mechanism, item) for item in mechanism.items if isinstance(item, Drive)]
+    out[DRIVES] = [_driven(mechanism, item) for item in mechanism.items if isinstance(item, Drive | Lead)]
     out[doc.DRAWN.name] = _points(mechanism.sketch)
     out["modes"] = [_table(item, doc.MODE) for item in mechanism.modes]
     out["expected"] = [_expected(mechanism, item) for item in mechanism.expectations]
@@ -77,6 +77,30 @@ def _pair(item: Any) -> dict[str, Any]:
     return {key: value for key, value in out.items() if key != "name" or value != default_name(item)}
 
 
+def _driven(mechanism: Mechanism, item: Drive | Lead) -> dict[str, Any]:
+    return _lead(item) if isinstance(item, Lead) else _drive(mechanism, item)
+
+
+def _lead(item: Lead) -> dict[str, Any]:
+    """Return what leads a point or turns a link. Raises InvalidInput where a Python function does."""
+    for key in item.keys:
+        held = getattr(item, key.name)
+        if key.kind in ("law", "path") and not _is_writable(held):
+            what = "a Python function cannot be written to a file"
+            remedy = "write a time_table of its values, or places at times, instead"
+            raise InvalidInput(Problem(f"{DRIVES}.{item.name}.{key.name}", what, remedy))
+    out = _table(item, item.keys, item.angle is not None)
+    return {key: value for key, value in out.items() if key != "name" or value not in (item.point, item.link)}
+
+
+def _is_writable(held: Any) -> bool:
+    """Return whether a law or a path holds no Python function, nor anything that does."""
+    if held is None:
+        return True
+    keys = getattr(held, "keys", ())
+    return bool(keys) and all(_is_writable(getattr(held, key.name)) for key in keys if key.kind in ("law", "profile"))
+
+
 def _drive(mechanism: Mechanism, item: Drive) -> dict[str, Any]:
     if isinstance(item.law, FunctionLaw):
         what, remedy = "a Python function cannot be written to a file", "write a time_table of its values instead"
@@ -104,6 +128,7 @@ def _program(item: Program, angle: bool) -> Any:
 
 def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
     angles = {d.name: bool(doc.is_angle(mechanism, d)) for d in mechanism.drives}
+    angles |= {item.drivers[ANGLE]: True for item in mechanism.leads.values() if item.angle is not None}
     out = _table(item, doc.EXPECTED, doc.quantity_is_angle(item.quantity))
     if item.at:
         out["at"] = {key: _at(angles, key, value) for key, value in item.at}
@@ -114,8 +139,8 @@ def _expected(mechanism: Mechanism, item: Expectation) -> dict[str, Any]:
 
 
 def _at(angles: Mapping[str, bool], key: str, value: float) -> Any:
-    name, _, rated = key.partition(".")
-    return (exact_numbers.rate if rated else exact_numbers.coordinate)(value, angles.get(name, False))
+    name, word = rated(key, list(angles))
+    return (exact_numbers.rate if word else exact_numbers.coordinate)(value, angles.get(name, False))
 
 
 def _published(value: complex, angle: bool) -> Any:
@@ -151,6 +176,8 @@ WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "turn": lambda value, _: exact_numbers.degrees(value),
     "place": lambda value, _: exact_numbers.point(value),
     "places": lambda value, _: [exact_numbers.point(one) for one in value],
+    "route": lambda value, _: [exact_numbers.point(one) for one in value],
+    "path": _tagged,
     "turned": lambda value, angle: [_segment(one, SEGMENT, angle) for one in value],
     "program": lambda value, angle: _program(value, angle),
     "profile": lambda value, _: _tagged(value, value.oscillates),

@@ -52,6 +52,9 @@ def drawn_value(
     """Return the driver's coordinate as the drawing shows it, a number or (designs, 1). None where it does not."""
     driven = solving_order.structure.driven[name]
     pair = driven.pair
+    told = pair.drawn_value(drawn, sketch)
+    if told is not None:
+        return first_of(told)
     if any(link not in drawn for link in pair.members):
         length = pair.drawn_length(sketch)
         return None if length is None else _signed(first_of(length), given.drives[name][0])

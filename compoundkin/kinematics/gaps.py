@@ -25,7 +25,8 @@ class Gap:
     `begin` and `end` are the driver values at which the group stops and starts to close, found to 1e-9;
     where the run reaches an end of the motion (`open_begin`, `open_end`) they are the motion's own value
     there. `first` and `last` are the indices of the poses along the motion. `pair` is named where the poses
-    are beyond an end of its guide: `links` are then those that it joins, and no group is named.
+    are beyond an end of its guide: `links` are then those that it joins, and no group is named. `times` are those of
+    `begin` and `end` of a motion in time.
     """
 
     design: tuple[int, ...]
@@ -39,6 +40,7 @@ class Gap:
     group: str
     reason: str
     pair: str = ""
+    times: tuple[float, float] | None = None
 
 
 @checked
@@ -64,8 +66,8 @@ def gaps(motion: Motion) -> tuple[Gap, ...]:
         return ()
     designs, first, last = runs[:, 0], runs[:, 1], runs[:, 2]
     with np.errstate(all="ignore"):
-        begin = _edges(motion, designs, first - 1, first)
-        end = _edges(motion, designs, last + 1, last)
+        places = _edges(motion, designs, first - 1, first), _edges(motion, designs, last + 1, last)
+        begin, end = (_values(motion, designs, at) for at in places)
         middle = (first + last) // 2
         blames = _blames(motion, designs, middle)
     axes = motion.shape[:-1]
@@ -82,6 +84,7 @@ def gaps(motion: Motion) -> tuple[Gap, ...]:
                 a == 0,
                 b == motion.inputs.poses - 1,
                 *blames[k],
+                times=_times(motion, *(float(at[k]) for at in places)),
             )
         )
     return tuple(found)
@@ -95,8 +98,8 @@ def _runs(failed: Number) -> Number:
     return np.stack([design, first, last], axis=1)
 
 
-def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[str, Number]:
-    """Return the driver values between an assembled pose and its neighbour that is not, by bisection."""
+def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> Number:
+    """Find the places between an assembled pose and its neighbour that is not, by bisection."""
     inside = (good >= 0) & (good < motion.inputs.poses)
     near: Number = bad + np.where(inside, good - bad, 0.0)
 
@@ -105,7 +108,19 @@ def _edges(motion: Motion, designs: Number, good: Number, bad: Number) -> dict[s
         block = motion.block(part, 0, middle[:, None], designs[:, None])
         return column(block.failed == 0, len(designs))
 
-    near, _ = bisected(closes, near, bad.astype(float), HALVINGS)
+    return bisected(closes, near, bad.astype(float), HALVINGS)[0]
+
+
+def _times(motion: Motion, begin: float, end: float) -> tuple[float, float] | None:
+    """Return the times at two places along a motion; None where it is not in time."""
+    if motion.time is None or np.ndim(motion.time) != 1 or len(motion.time) != motion.inputs.poses:
+        return None
+    first, last = np.interp([begin, end], np.arange(len(motion.time)), motion.time)
+    return float(first), float(last)
+
+
+def _values(motion: Motion, designs: Number, near: Number) -> dict[str, Number]:
+    """Return the driver values at places along the motion."""
     drives = motion.inputs.pick(designs, near).drives
     return {name: np.broadcast_to(np.ravel(values[0]), len(designs)) for name, values in drives.items()}
 

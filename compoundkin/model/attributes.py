@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from types import MappingProxyType
 from typing import Literal, NamedTuple, TypeAlias
@@ -161,3 +161,15 @@ def vector_of(name: str) -> tuple[str, str]:
     """
     owner, _, part = name.rpartition(".")
     return (owner, part) if part == LENGTH or (part in PARTS and "." in owner) else (name, "")
+
+
+def rated(key: str, drivers: Sequence[str]) -> tuple[str, str]:
+    """Return the driver of a key such as "crank.speed", and which rate. It is "" for the value, as of "G.x".
+
+    >>> rated("crank.speed", ["crank"]), rated("G.x", ["G.x"])
+    (('crank', 'speed'), ('G.x', ''))
+    """
+    if key in drivers:
+        return key, ""
+    name, dot, rate = key.rpartition(".")
+    return (name, rate) if dot and (rate in RATES or name in drivers) else (key, "")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -12,10 +12,11 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort, short
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number
-from compoundkin.model.fields import Key
+from compoundkin.model.drives import Drive as Drive
+from compoundkin.model.drives import drive as drive
 from compoundkin.model.geometry import FRAME as FRAME
 from compoundkin.model.geometry import real, vector
-from compoundkin.model.laws import Law, as_law
+from compoundkin.model.leads import Lead as Lead
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder
 
@@ -40,37 +41,6 @@ class Link(PrintsShort):
     def is_drawn(self) -> bool:
         """Whether its dimensions are to be read off the drawing."""
         return any(p is None for p in self.points.values())
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Drive(PrintsShort):
-    """A driver: it prescribes the free coordinate of the pair between `link` and `on`.
-
-    `values` (radians or a length, None for a full turn), `speed`, `acceleration` and `jerk` are numbers or
-    arrays; the last axis of `values` is the motion. Or `law` says how the coordinate moves in time.
-    """
-
-    name: str
-    link: str
-    on: str = FRAME
-    pair: str = ""
-    values: Number | None = None
-    speed: Number = 1.0
-    acceleration: Number = 0.0
-    jerk: Number = 0.0
-    law: Law | None = None
-
-    keys: ClassVar[tuple[Key, ...]] = (
-        Key("name", "name", "What the driver is called; the driven link's name where it is left out."),
-        Key("link", "name", "The driven link.", required=True),
-        Key("on", "name", "The link it is driven against.", default=FRAME),
-        Key("pair", "name", "The letter of the pin or name of the slide, where the two links share several."),
-        Key("values", "values", "Values of the driven coordinate; a full turn where they are left out."),
-        Key("speed", "rate", "Rate of the driven coordinate: rad/s for a pin, length/s for a slide.", default=1.0),
-        Key("acceleration", "length", "Second rate, rad/s^2 or length/s^2.", default=0.0),
-        Key("jerk", "length", "Third rate, rad/s^3 or length/s^3.", default=0.0),
-        Key("law", "law", "How the coordinate moves in time, instead of values and rates."),
-    )
 
 
 @dataclass(frozen=True)
@@ -102,7 +72,7 @@ class Expectation:
     at: tuple[tuple[str, float], ...] = ()
 
 
-Item: TypeAlias = Link | Pair | Cylinder | Drive | Mode | Drawn | Expectation
+Item: TypeAlias = Link | Pair | Cylinder | Drive | Lead | Mode | Drawn | Expectation
 
 
 @checked
@@ -128,34 +98,6 @@ def link(name: str, *letters: str, **points: Any) -> Link:
         )
     placed = _points(f"links.{name}.points", points)
     return Link(name, placed if placed else dict.fromkeys(letters))
-
-
-@checked
-def drive(
-    link: str,
-    *,
-    on: str = FRAME,
-    pair: str = "",
-    values: Any = None,
-    speed: Any = 1.0,
-    acceleration: Any = 0.0,
-    jerk: Any = 0.0,
-    law: Any = None,
-    name: str = "",
-) -> Drive:
-    """Return a driver of the pair between `link` and `on`; angles in radians.
-
-    `law` is one of `constant_speed`, `constant_acceleration`, `program`, `time_table`, or a Python function
-    of an array of times. Raises InvalidMechanism for anything else.
-
-    >>> drive("crank").name
-    'crank'
-    >>> drive("crank", law=lambda t: 0.5 * np.sin(t)).law.kind
-    'function'
-    """
-    given = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk}
-    numbers = {key: real(f"drives.{name or link}.{key}", value) for key, value in given.items()}
-    return Drive(name or link, link, on, pair, **numbers, law=as_law(f"drives.{name or link}.law", law))
 
 
 @checked

@@ -35,6 +35,8 @@ from compoundkin.base.errors import Problem, nearest
 #   turn     a single angle in degrees, or {rad = ...}    float, radians
 #   place    [x, y], {polar = [radius, degrees]}, single  complex
 #   places   list of such points                          tuple of complex
+#   route    the same, two or more                        tuple of complex
+#   path     table with a kind, and the keys of that path  Path
 #   turned   list of segments over degrees                tuple of ProgramSegment over radians
 #   program  such a list, or a table of it and a start    Program over radians
 #   profile  table with a kind, and the keys of that profile   Profile
@@ -52,7 +54,7 @@ Kind = Literal[
     "name", "text", "names", "length", "angle", "point", "sign", "flag", "two", "points", "drawing",
     "values", "rate", "at", "published", "margin",
     "whole", "span", "times", "coordinate", "segments", "law",
-    "number", "turn", "place", "places", "turned", "program", "profile", "reach", "sweep",
+    "number", "turn", "place", "places", "route", "path", "turned", "program", "profile", "reach", "sweep",
 ]  # fmt: skip
 
 

@@ -15,7 +15,7 @@ from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, Unk
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
 from compoundkin.model.drawn_poses import told_poses
-from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Link, Mode
+from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Lead, Link, Mode
 from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
 from compoundkin.model.pairs.contact import as_profiled
 from compoundkin.model.validation import problems_of
@@ -139,6 +139,11 @@ class Mechanism(Written, ShowsPicture):
         words = {k: getattr(self, k) for k in _ABOUT[1:]}
         title = changes.pop("title", self.title)
         return Mechanism(title, *kept, *keys.values(), **{**words, **changes})
+
+    def without_leads(self) -> Mechanism:
+        """Return the mechanism itself, without what leads its points and turns its links."""
+        gone = (Lead, Expectation)
+        return Mechanism(self.title, *(item for item in self.items if not isinstance(item, gone)), unit=self.unit)
 
     def link(self, name: str) -> Link:
         """Return the link of a name; raises UnknownName."""

@@ -11,10 +11,10 @@ import numpy as np
 from compoundkin.base.arrays import LONGEST, SHORTEST
 from compoundkin.base.errors import Problem, nearest
 from compoundkin.model.attributes import RATES
-from compoundkin.model.elements import Drive
+from compoundkin.model.elements import Drive, Lead
 from compoundkin.model.fields import Key
 from compoundkin.model.pairs import Pair
-from compoundkin.model.written import Written
+from compoundkin.model.written import DRIVES, Written
 
 # Two points of one link nearer than this fraction of the mechanism's size are one point: a link of no length.
 ZERO_LENGTH = 1e-12
@@ -34,7 +34,7 @@ def point_problems(mechanism: Written) -> Iterator[Problem]:
     if 0.0 < size < SHORTEST:
         yield _off_scale("links", f"the farthest point is at {size:g}")
     for name, link in mechanism.links.items():
-        if not link.points:
+        if not link.points and name not in mechanism.led_links:
             yield Problem(f"links.{name}.points", "a link needs at least one point")
         for letter, p in link.points.items():
             where = f"links.{name}.points.{letter}"
@@ -163,6 +163,19 @@ def drive_problems(drive: Drive, where: str) -> Iterator[Problem]:
             yield Problem(f"{where}.{key}", "the driver has a law as well, which says how it moves", remedy)
 
 
+def placed_drives(mechanism: Written) -> list[tuple[str, Drive]]:
+    """Return each driver with its place in a file."""
+    found: list[tuple[str, Drive]] = []
+    items = [item for item in mechanism.items if isinstance(item, Drive | Lead)]
+    for index, item in enumerate(items):
+        count = len(item.drivers) if isinstance(item, Lead) else 1
+        if mechanism.leads.get(item.name) is item or (
+            isinstance(item, Drive) and item.link not in mechanism.bad_cylinders
+        ):
+            found += [(f"{DRIVES}[{index}]", drive) for drive in mechanism.drives[len(found) : len(found) + count]]
+    return found
+
+
 def shape_problems(mechanism: Written) -> Iterator[Problem]:
     """Find arrays that do not broadcast together."""
     shapes: list[tuple[str, tuple[int, ...]]] = []
@@ -172,10 +185,8 @@ def shape_problems(mechanism: Written) -> Iterator[Problem]:
     shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
     for where, pair in mechanism.placed_pairs:
         shapes += [(f"{where}.{key.name}", np.shape(value)) for key in pair.keys for value in _numbers_of(pair, key)]
-    for index, drive in enumerate(mechanism.drives):
-        shapes += [
-            (f"drives[{index}].{k}", np.shape(getattr(drive, k))) for k in DRIVEN if getattr(drive, k) is not None
-        ]
+    for place, drive in placed_drives(mechanism):
+        shapes += [(f"{place}.{k}", np.shape(getattr(drive, k))) for k in DRIVEN if getattr(drive, k) is not None]
     total: tuple[int, ...] = ()
     for where, shape in shapes:
         if not shape:

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compoundkin.base.errors import Problem, nearest
-from compoundkin.model.attributes import RATES, TIME, VALUE
-from compoundkin.model.elements import FRAME, Drive, Item, Link
+from compoundkin.model.attributes import RATES, TIME, VALUE, rated
+from compoundkin.model.elements import FRAME, Drive, Item, Lead, Link
 from compoundkin.model.number_problems import (
     drive_problems,
     is_finite,
     no_numbers,
+    placed_drives,
     point_problems,
     shape_problems,
 )
 from compoundkin.model.pairs.cylinder import Cylinder
-from compoundkin.model.written import CYLINDERS, Written
+from compoundkin.model.written import CYLINDERS, DRIVES, Written
 
 _PRINTABLE = "use printable text without dots, commas or outer blanks"
 
@@ -25,7 +26,7 @@ def problems_of(mechanism: Written) -> Iterator[Problem]:
     yield from _words(mechanism)
     yield from _names(mechanism)
     yield from point_problems(mechanism)
-    yield from _cylinders(mechanism)
+    yield from _thought(mechanism)
     yield from _pairs(mechanism)
     yield from _joined(mechanism)
     yield from _drives(mechanism)
@@ -75,19 +76,20 @@ def _names(mechanism: Written) -> Iterator[Problem]:
 def _named(mechanism: Written) -> Iterator[tuple[str, str, str]]:
     """Yield the place, sort and name of everything that has one. Pairs of all kinds share their names."""
     for item in mechanism.parts:
-        if isinstance(item, Link):
+        if isinstance(item, Link) and item.name not in mechanism.led_links:
             yield f"links.{item.name}", "link", item.name
     for where, pair in mechanism.placed_pairs:
         yield f"{where}.name", "pair", pair.name
-    for index, drive in enumerate(mechanism.drives):
-        yield f"drives[{index}].name", "drive", drive.name
+    items = [item for item in mechanism.items if isinstance(item, Drive | Lead)]
+    for index, drive in enumerate(items):
+        yield f"{DRIVES}[{index}].name", "drive", drive.name
 
 
 def _is_name(name: str) -> bool:
     return bool(name) and name == name.strip() and name.isprintable() and not set(name) & set(".,")
 
 
-def _cylinders(mechanism: Written) -> Iterator[Problem]:
+def _thought(mechanism: Written) -> Iterator[Problem]:
     letters = {name: link.letters for name, link in mechanism.rigid_links.items()}
     items = [item for item in mechanism.items if isinstance(item, Cylinder)]
     for index, item in enumerate(items):
@@ -95,8 +97,10 @@ def _cylinders(mechanism: Written) -> Iterator[Problem]:
         if item.name in (other.name for other in items[:index]):
             remedy = "names are unique: give one of them a name"
             yield Problem(f"{CYLINDERS}[{index}].name", f"the name {item.name!r} is used twice", remedy)
-    for index, drive in enumerate(item for item in mechanism.items if isinstance(item, Drive)):
-        if drive.link in mechanism.cylinders and (drive.on, drive.pair) != (FRAME, ""):
+    for index, drive in enumerate(item for item in mechanism.items if isinstance(item, Drive | Lead)):
+        if isinstance(drive, Lead):
+            yield from drive.problems(letters, f"{DRIVES}[{index}]")
+        if isinstance(drive, Drive) and drive.link in mechanism.cylinders and (drive.on, drive.pair) != (FRAME, ""):
             what = f"the cylinder {drive.link!r} is driven by its length, against no other link"
             yield Problem(f"drives[{index}].on", what, "leave `on` and `pair` out")
 
@@ -130,8 +134,7 @@ def _joined(mechanism: Written) -> Iterator[Problem]:
 
 def _drives(mechanism: Written) -> Iterator[Problem]:
     driven: dict[tuple[str, frozenset[str]], str] = {}
-    for index, drive in enumerate(mechanism.drives):
-        where = f"drives[{index}]"
+    for where, drive in placed_drives(mechanism):
         unknown = [(k, n) for k, n in (("link", drive.link), ("on", drive.on)) if n not in mechanism.links]
         for key, name in unknown:
             known = [*mechanism.links, *mechanism.cylinders]
@@ -180,7 +183,7 @@ def _expectations(mechanism: Written) -> Iterator[Problem]:
     for index, expectation in enumerate(mechanism.expectations):
         where = f"expected[{index}]"
         for key, value in expectation.at:
-            driver, _, rate = key.partition(".")
+            driver, rate = rated(key, drives)
             if named and driver not in drives and key != TIME:
                 yield Problem(f"{where}.at.{key}", f"there is no driver {driver!r}", nearest(driver, drives))
             if rate not in ("", *RATES):

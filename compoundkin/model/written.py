@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 
 from compoundkin.base.series import Number
-from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
+from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Lead, Link, Mode
 from compoundkin.model.pairs import Pair, pairs_among
 from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.pairs.optional_answers import as_drivable
 
-# The table of cylinders in a mechanism file.
+# The tables of cylinders and of drivers in a mechanism file.
 CYLINDERS = "cylinders"
+DRIVES = "drives"
 
 
 class Written:
@@ -38,22 +40,56 @@ class Written:
 
     @cached_property
     def parts(self) -> tuple[Item, ...]:
-        """The words, with what stands for cylinders.
+        """The words, with what stands for cylinders and leads points.
 
-        Those are two links, a slide, and a driver of that. One that is badly written is left out.
+        Those are links, pairs between them, and their drivers. One that is badly written is left out.
         """
-        letters = {name: item.letters for name, item in self.rigid_links.items()}
-        names = [item.name for item in self.items if isinstance(item, Cylinder)]
-        bad = {k for k, item in self.cylinders.items() if names.count(k) > 1 or any(item.problems(letters, ""))}
+        bad = self.bad_cylinders
         found: list[Item] = []
         for item in self.items:
             if isinstance(item, Cylinder) and item.name not in bad:
                 found += [Link(item.barrel, {item.at: 0j}), Link(item.rod, {item.point: 0j}), item.slide]
             elif isinstance(item, Drive) and item.link not in bad:
                 found.append(self.resolved(item))
+            elif isinstance(item, Lead):
+                found += self._led(item) if item in self.leads.values() else ()
             elif not isinstance(item, Cylinder | Drive):
                 found.append(item)
-        return tuple(found) if self.cylinders else self.items
+        return tuple(found)
+
+    @cached_property
+    def bad_cylinders(self) -> set[str]:
+        """The cylinders that are badly written, and stand for nothing."""
+        names = [item.name for item in self.items if isinstance(item, Cylinder)]
+        wrong = {name for name, item in self.cylinders.items() if any(item.problems(self._letters, ""))}
+        return wrong | {name for name in names if names.count(name) > 1}
+
+    @cached_property
+    def _letters(self) -> dict[str, tuple[str, ...]]:
+        """The points of the links that are written out."""
+        return {name: item.letters for name, item in self.rigid_links.items()}
+
+    @cached_property
+    def leads(self) -> dict[str, Lead]:
+        """What is prescribed of points and links by name, all that is well written."""
+        items = [item for item in self.items if isinstance(item, Lead)]
+        names = [item.name for item in items]
+        return {item.name: item for item in items
+                if names.count(item.name) == 1 and not any(item.problems(self._letters, ""))}  # fmt: skip
+
+    @cached_property
+    def led_links(self) -> frozenset[str]:
+        """The links that are only thought, to lead points and to turn links."""
+        return frozenset(name for item in self.leads.values() for name in item.links)
+
+    def _led(self, item: Lead) -> Iterator[Item]:
+        """Yield the links, pairs and drivers that lead a point or turn a link."""
+        *links, last = item.links
+        yield from (Link(name, {}) for name in links)
+        yield Link(last, item.carried)
+        yield from item.pairs(self._letters)
+        for name, link, on, law in item.written_drives:
+            yield Drive(name, link, on, name, law=law)
 
     def resolved(self, drive: Drive) -> Drive:
         """Return the driver of a cylinder as that of its slide. Any other is left as it is."""
@@ -124,6 +160,18 @@ class Written:
         return {letter: names for letter, names in self.carriers.items() if len(names) > 1}
 
     @cached_property
+    def real_pins(self) -> dict[str, tuple[str, ...]]:
+        """The pins without the links that are only thought."""
+        real = {letter: tuple(name for name in names if name not in self.led_links)
+                for letter, names in self.pins.items()}  # fmt: skip
+        return {letter: names for letter, names in real.items() if len(names) > 1}
+
+    @cached_property
+    def real_pairs(self) -> tuple[Pair, ...]:
+        """The pairs that are written out by the user."""
+        return tuple(pair for pair in self.written_pairs if self.led_links.isdisjoint(pair.members))
+
+    @cached_property
     def pins_on(self) -> dict[str, dict[str, None]]:
         """The letters of the pins on each link, in the order of `pins`."""
         found: dict[str, dict[str, None]] = {name: {} for name in self.links}
@@ -147,10 +195,10 @@ class Written:
 
     @cached_property
     def placed_pairs(self) -> tuple[tuple[str, Pair], ...]:
-        """Each written pair with its place in a file."""
+        """Each written pair with its place in a file. What leads points has none."""
         count: dict[str, int] = {}
         found = []
-        for pair in self.written_pairs:
+        for pair in self.real_pairs:
             table = CYLINDERS if pair.name in self.cylinders else pair.table
             index = count.get(table, 0)
             count[table] = index + 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from compoundkin.structure.assur_groups import roman
-from compoundkin.structure.decomposition import decompose
+from compoundkin.structure.decomposition import decompose, without_leads
 from compoundkin.structure.graph import (
     Loop,
     independent_loops,
@@ -15,7 +15,8 @@ from compoundkin.structure.graph import (
     simple_loops,
 )
 from compoundkin.structure.kinematic_structure import Structure
-from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Mobility, PairCount, Passive
+from compoundkin.structure.mobility_count import Mobility, PairCount
+from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Passive
 
 __all__ = [
     "Body",
@@ -36,4 +37,5 @@ __all__ = [
     "pair_counts",
     "roman",
     "simple_loops",
+    "without_leads",
 ]

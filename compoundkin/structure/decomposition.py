@@ -18,14 +18,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidMechanism
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.assur_groups import Binder, all_pairs
 from compoundkin.structure.composites import composites
 from compoundkin.structure.faults import closed_drives, counted_faults, rank_faults
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.matching import Matching, maximum_matching, overdetermined, underdetermined
+from compoundkin.structure.mobility_count import mobility_of
 from compoundkin.structure.order import solving_order, strong_components
-from compoundkin.structure.parts import Fault, Group, Relaxation, mobility_of
+from compoundkin.structure.parts import Fault, Group, Relaxation
 from compoundkin.structure.rank import RankTest, Subsystem
 from compoundkin.structure.system import System, system_of
 
@@ -68,6 +70,14 @@ def _at_general_dimensions(fault: Fault) -> Fault:
     if fault.kind != "over":
         return fault
     return replace(fault, remedy=f"{fault.remedy}, or give dimensions at which it moves")
+
+
+def without_leads(structure: Structure) -> Structure:
+    """Return the structure of the mechanism itself, nothing led."""
+    try:
+        return decompose(structure.mechanism.without_leads()) if structure.mechanism.leads else structure
+    except InvalidMechanism:  # of links that nothing else joins
+        return structure
 
 
 @contextmanager

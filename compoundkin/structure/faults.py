@@ -136,14 +136,16 @@ def _over(system: System, found: Deficiency) -> Fault:
         text = f"{_listed(links)} {_are(links)} kept from turning by {excess} too many, in loops of slides alone"
         return Fault("over", links, found.redundant, text, "nothing has to be changed: they move all the same")
     text = f"{_listed(links)} {_are(links)} held by {_number(found.redundant, 'constraint')} too many"
-    pairs = dict.fromkeys(constraint.letter or _meant(system, constraint.pair) for constraint in found.tight)
-    return Fault("over", links, found.redundant, text, _over_remedy(found.redundant, drives, list(pairs)))
+    pairs = dict.fromkeys(c.letter or _meant(system, c.pair) for c in found.tight if not system.is_thought(c))
+    return Fault("over", links, found.redundant, text, _over_remedy(system, found.redundant, drives, list(pairs)))
 
 
-def _over_remedy(amount: int, drives: Sequence[DrivenPair], pairs: Sequence[str]) -> str:
+def _over_remedy(system: System, amount: int, drives: Sequence[DrivenPair], pairs: Sequence[str]) -> str:
     names = list(dict.fromkeys(step.drive.name for step in drives if not step.is_passive))
     free = f"free {_of(amount, pairs, 'coordinate', 'of the pairs')}"
-    return f"remove {_of(amount, names, 'driver')} or {free}" if names else f"{free} or take out a link"
+    led = [k for k, item in system.mechanism.leads.items() if len({*item.drivers.values()} & {*names}) > 1]
+    drivers = _of(amount, names, "driver") + (f" (lead {_listed(led)} by x or y alone)" if led else "")
+    return f"remove {drivers} or {free}" if names else f"{free} or take out a link"
 
 
 def _under(system: System, part: Subsystem, found: Deficiency) -> Fault:
@@ -154,7 +156,8 @@ def _under(system: System, part: Subsystem, found: Deficiency) -> Fault:
     if not any(side not in own for constraint in part.constraints for side in constraint.sides):
         remedy = f"join {_listed(links)} to the frame by a pair"
     else:
-        choices = [choice for constraint in found.moving for choice in _drivable(system, constraint)]
+        moving = (constraint for constraint in found.moving if not system.is_thought(constraint))
+        choices = [choice for constraint in moving for choice in _drivable(system, constraint)]
         remedy = _under_remedy(found.free, sorted(choices, key=lambda text: " on frame (" not in text))
     slips = system.mechanism.case_slips()
     asked = f"did you mean {slips[0][0]!r} and {slips[0][1]!r} to be one letter? else " if slips else ""
@@ -188,7 +191,7 @@ def _links_of(system: System, constraint: Constraint) -> tuple[str, ...]:
 
 def _in_input_order(system: System, links: Iterable[str]) -> tuple[str, ...]:
     """Return the links once each; the frame only if it is alone."""
-    moving = dict.fromkeys(name for name in links if name != FRAME)
+    moving = set(links) - {FRAME, *system.mechanism.led_links}
     return tuple(sorted(moving, key=system.place_of.__getitem__)) or (FRAME,)
 
 

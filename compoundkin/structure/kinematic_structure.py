@@ -10,7 +10,8 @@ from compoundkin.base.display import ShowsPicture
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.graph import Loop, independent_loops, kinematic_graph
-from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Mobility, Passive, Relaxation
+from compoundkin.structure.mobility_count import Mobility
+from compoundkin.structure.parts import Body, DrivenPair, Fault, Group, Passive, Relaxation
 
 if TYPE_CHECKING:
     import networkx as nx

@@ -72,6 +72,11 @@ class System:
         """Return whether an unknown is a moving body (else a pin)."""
         return unknown < len(self.bodies.moving)
 
+    def is_thought(self, constraint: Constraint) -> bool:
+        """Return whether a constraint is only thought, to lead a point."""
+        links = self.mechanism.carriers[constraint.letter] if constraint.letter else constraint.pair.members
+        return len([name for name in links if name not in self.mechanism.led_links]) < 2
+
     def neighbour(self, letter: str, body: int) -> int:
         """Return the first other body that carries a letter."""
         on_pin = (self.bodies.body_of[name] for name in self.mechanism.pins[letter])

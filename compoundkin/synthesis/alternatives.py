@@ -14,7 +14,7 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.structure.cycles import find
-from compoundkin.structure.decomposition import decomposed
+from compoundkin.structure.decomposition import decomposed, without_leads
 from compoundkin.synthesis.chains import Coloured, canonical
 from compoundkin.synthesis.chains.coloured_graphs import Permutation
 from compoundkin.synthesis.chains.mechanism_names import titled
@@ -85,7 +85,7 @@ def alternatives(mechanism: Mechanism | Structure, frames: Sequence[str] | None 
     >>> [(str(choice.drivers[0]), choice.class_) for choice in table][:2]
     [('AB on frame (A)', 2), ('FG on frame (G)', 3)]
     """
-    structure = mechanism if isinstance(mechanism, Structure) else decompose(mechanism)
+    structure = without_leads(mechanism if isinstance(mechanism, Structure) else decompose(mechanism))
     links = structure.mechanism.links
     wanted = [structure.mechanism.link(name).name for name in (links if frames is None else frames)]
     if structure.mobility.freedoms < 1:

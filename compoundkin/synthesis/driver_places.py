@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode
+from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Lead, Link, Mode
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder
@@ -85,7 +85,9 @@ def means(item: Drive, place: DriverPlace) -> bool:
 
 def is_driver(item: Item, drive: Drive | None) -> bool:
     """Return whether a word is that driver, as written."""
-    return isinstance(item, Drive) and drive is not None and item.name == drive.name
+    if drive is None or not isinstance(item, Drive | Lead):
+        return False
+    return drive.name in item.drivers.values() if isinstance(item, Lead) else item.name == drive.name
 
 
 def driver_at(names: Mapping[str, str], place: DriverPlace) -> Drive:
@@ -117,7 +119,7 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
     """Return a word with links renamed; drivers and pairs keep their own names."""
     if isinstance(item, Link):
         return replace(item, name=names.get(item.name, item.name))
-    if isinstance(item, Drive):
+    if isinstance(item, Drive | Lead):
         return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
     return item if isinstance(item, Mode | Drawn | Expectation) else renamed_pair(item, names)
 

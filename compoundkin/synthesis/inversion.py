@@ -85,10 +85,10 @@ def with_driver(
     """
     for word in words.keys() - signature(drive).parameters:
         raise TypeError(f"with_driver() got an unexpected keyword argument {word!r}")
-    for name in [name for name in (link, on) if name not in mechanism.cylinders]:
-        mechanism.link(name)
     old = _replaced(mechanism, instead)
     new = drive(link, on=on, pair=pair, **words)
+    for name in [name for name in (link, on) if name not in mechanism.cylinders and isinstance(new, Drive)]:
+        mechanism.link(name)
     kept = [item for item in mechanism.items if not (isinstance(item, Mode | Expectation) or is_driver(item, old))]
     if not any(item.is_drawn for item in mechanism.links.values()):
         kept = [item for item in kept if not isinstance(item, Drawn)]
@@ -99,7 +99,7 @@ def with_driver(
     owners = [name.split("(")[0].split(".")[0] for name in mechanism.outputs]
     outputs = [name for name, owner in zip(mechanism.outputs, owners, strict=True) if owner in (*known, *drives)]
     made = _written(mechanism, f"{mechanism.title}, {link} driven", [*kept, new], outputs)
-    return _standing(made, new) if new.values is None and new.law is None else made
+    return _standing(made, new) if isinstance(new, Drive) and new.values is None and new.law is None else made
 
 
 def _replaced(mechanism: Mechanism, instead: str) -> Drive | None:

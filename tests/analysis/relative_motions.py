@@ -29,7 +29,7 @@ def _own_motion(name: str) -> ck.results.Motion:
 
 def _solved(name: str, **words: Any) -> ck.results.Motion:
     mechanism = load_named(name)
-    return ck.solve(mechanism, speed={drive.name: 1.0 for drive in mechanism.drives}, **words)
+    return ck.solve(mechanism, speed={drive.name: 1.0 for drive in mechanism.drives if drive.law is None}, **words)
 
 
 def random_mechanism(seed: int, change: Callable[[complex], complex] = complex) -> ck.Mechanism:

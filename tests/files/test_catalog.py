@@ -65,7 +65,8 @@ def deviation(mechanism: Mechanism, expected: Expectation) -> float:
         drive, _, rate = key.partition(".")
         given[rate][drive] = number
     rates = {rate: numbers for rate, numbers in given.items() if rate and numbers}
-    solved = complex(value(solve(mechanism, given[""], **rates), expected.quantity))
+    time = given[""].pop("time", None)
+    solved = complex(value(solve(mechanism, given[""] or None, time=time, **rates), expected.quantity))
     gap = solved - expected.value
     if expected.quantity.endswith(".angle"):
         return abs(float(np.angle(np.exp(1j * gap.real))))

@@ -9,7 +9,7 @@ from compoundkin.model.elements import drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose, links_by_pairs, loop_count, pair_counts
 from compoundkin.structure.cycles import cycle_basis
-from compoundkin.structure.parts import Mobility, PairCount
+from compoundkin.structure.mobility_count import Mobility, PairCount
 
 
 def six_bar(bars):

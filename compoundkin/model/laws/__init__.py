@@ -9,6 +9,8 @@ from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.model.laws.constant_laws import ConstantAcceleration, ConstantSpeed
 from compoundkin.model.laws.function_law import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program, least_time, program, synchronised
+from compoundkin.model.laws.motion_tables import MotionTable
+from compoundkin.model.laws.path_parts import PathPart
 from compoundkin.model.laws.program_segments import ProgramSegment, dwell, fall, rise
 from compoundkin.model.laws.time_tables import TimeTable
 
@@ -18,6 +20,8 @@ __all__ = [
     "ConstantSpeed",
     "FunctionLaw",
     "Law",
+    "MotionTable",
+    "PathPart",
     "Program",
     "ProgramSegment",
     "TimeTable",
@@ -27,16 +31,19 @@ __all__ = [
     "dwell",
     "fall",
     "least_time",
+    "motion_table",
     "program",
     "rise",
     "synchronised",
     "time_table",
 ]
 
-Law: TypeAlias = ConstantSpeed | ConstantAcceleration | Program | TimeTable | FunctionLaw
+Law: TypeAlias = ConstantSpeed | ConstantAcceleration | Program | TimeTable | MotionTable | PathPart | FunctionLaw
 
 # The laws that files can say.
-WRITTEN: dict[str, type[Any]] = {kind.kind: kind for kind in (ConstantSpeed, ConstantAcceleration, Program, TimeTable)}
+WRITTEN: dict[str, type[Any]] = {
+    kind.kind: kind for kind in (ConstantSpeed, ConstantAcceleration, Program, TimeTable, MotionTable)
+}
 
 
 @checked
@@ -69,6 +76,16 @@ def time_table(times: Any, values: Any, *, degree: int = 5, repeat: bool = False
     (0.0, 2.0)
     """
     return TimeTable(times, values, degree, repeat)
+
+
+@checked
+def motion_table(times: Any, values: Any, speeds: Any, accelerations: Any) -> MotionTable:
+    """Return the law of values, speeds and accelerations at times (seconds). Quintic polynomials between them.
+
+    >>> motion_table([0, 1], [0, 1], [0, 0], [0, 0]).coordinate(0.5, order=1).c
+    (0.5, 1.875)
+    """
+    return MotionTable(times, values, speeds, accelerations)
 
 
 def as_law(where: str, law: Any) -> Law | None:

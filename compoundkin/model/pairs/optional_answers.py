@@ -30,6 +30,10 @@ class Drivable(Pair):
         """Return the free coordinate at the members' drawn poses."""
         return self.coordinate(ends, poses).c[0]
 
+    def drawn_value(self, drawn: Mapping[str, Pose], sketch: Mapping[str, Number]) -> Number | None:
+        """Return the free coordinate by poses and points that are drawn elsewhere. None where it is its members'."""
+        return None
+
     def drawn_length(self, sketch: Mapping[str, Number]) -> Number | None:
         """Return the size of the free coordinate that drawn points alone show. It has no sign.
 

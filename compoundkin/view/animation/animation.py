@@ -185,7 +185,7 @@ def animate(
     sketch = moving_sketch(motion, design, paths=asked_paths(scene, paths), labels=asked)
     timeline = timeline_of(sketch.scene, motion, design, back, seconds, fps)
     sketch, arrows = with_arrows(sketch, kinds, bool((timeline.ways < 0).any()))
-    names = [f"{number} {name}" for name, number in scene.numbers.items()] if "links" in asked else []
+    names = [f"{number} {name}" for name, number in scene.legend.items()] if "links" in asked else []
     shown = timeline.poses[timeline.frames]
     caption = Caption(sketch, shown, tuple(names), tuple(one.scale for one in arrows), bool(asked))
     return Animation(sketch, timeline, caption, arrows, moving_centres(sketch) if centres else (), shown_size)

@@ -101,7 +101,7 @@ class MotionData:
             },
             "along": {"name": column.name, "unit": column.unit, "values": exact(np.asarray(places)[self.chosen])},
             "drivers": [self._quantity(driver, exact) for driver in self.sample.drivers],
-            "links": [self._link(name) for name in mechanism.links],
+            "links": [self._link(name) for name in self.links],
             "points": [self._point(letter) for letter in self.sketch.scene.letters],
             "parts": self._parts,
             "vectors": dict(self._vectors()),
@@ -132,7 +132,13 @@ class MotionData:
 
     @cached_property
     def _numbers(self) -> Mapping[str, int]:
-        return {name: k for k, name in enumerate(self.motion.mechanism.links)}
+        return {name: k for k, name in enumerate(self.links)}
+
+    @cached_property
+    def links(self) -> tuple[str, ...]:
+        """The links that there are to be seen."""
+        thought = self.motion.mechanism.led_links
+        return tuple(name for name in self.motion.mechanism.links if name not in thought)
 
     def _link(self, name: str) -> dict[str, Any]:
         link, scene = self.motion.links[name], self.sketch.scene

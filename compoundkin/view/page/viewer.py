@@ -124,10 +124,10 @@ def _legend(moving: MotionData) -> str:
     """The numbers of the links, each in a place of its own that lights up with its link."""
     scene = moving.sketch.scene
     # by keyboard many names would be a long way; tables have them too, as one stop
-    stop = "0" if len(scene.numbers) <= MOST_STOPS else None
+    stop = "0" if len(scene.legend) <= MOST_STOPS else None
     named = [
         element("span", f"<b>{number}</b> {safe(name)}", class_="link", data_links=name, tabindex=stop)
-        for name, number in scene.numbers.items()
+        for name, number in scene.legend.items()
     ]
     return element("figcaption", " ".join(named))
 
@@ -188,7 +188,7 @@ def _plots(moving: MotionData) -> str:
     of_links = OF_LINKS[: min(order, MOST_ORDER) + 1]
     points = [letter for letter in moving.sketch.scene.letters if FRAME not in mechanism.carriers[letter]]
     names = [f"{letter}.{word}" for letter in points for word in of_points]
-    names += [f"{link}.{word}" for link in mechanism.links if link != FRAME for word in of_links]
+    names += [f"{link}.{word}" for link in moving.links if link != FRAME for word in of_links]
     options = "".join(element("option", safe(name), value=name) for name in names)
     choice = f'<label>Another quantity <select class="quantity">{options}</select></label>'
     add = element("button", "Plot it", type="button", class_="add")

@@ -189,7 +189,8 @@ def _velocities(shown: CentresSample) -> Section:
     motion = shown.sample.motion
     text, unit, scale = _reference(shown)
     rows = []
-    for name in motion.mechanism.links:
+    thought = motion.mechanism.led_links
+    for name in (name for name in motion.mechanism.links if name not in thought):
         by_centres = float(shown.of(shown.centres.velocities.angular_velocity(name))) / scale
         solved = float(shown.of(motion.links[name].angular_velocity)) / scale
         rows.append((name, by_centres, solved, abs(by_centres - solved)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from math import degrees
 from typing import Any
 
@@ -18,31 +18,48 @@ from compoundkin.model.attributes import (
     coordinate_dimension,
     unit_of,
 )
-from compoundkin.model.elements import Drive
+from compoundkin.model.elements import FRAME, Drive
+from compoundkin.model.laws import PathPart
 from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
+from compoundkin.view.report.law_words import Wording
+from compoundkin.view.report.path_words import PathWording
 from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, StepBlock, TableBlock
 from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.report.wording import Wording, counted, listed
+from compoundkin.view.report.wording import counted, listed
 
 
 def drivers_section(structure: Structure, sample: Sample | None) -> Section:
     """Report each driver with its range and rates. Angles and lengths in tables of their own."""
     steps = structure.driven
     kinds: dict[bool, list[tuple[Cell, ...]]] = {}
+    led = _prescribed(structure)
     for drive in structure.mechanism.drives:
         step = steps.get(drive.name)
         is_angle = step is None or step.pair.free_is_angle
-        what = f"{drive.link} on {drive.on}" + (f", {step.pair.name}" if step else "")
+        what = led.get(drive.name) or f"{drive.link} on {drive.on}" + (f", {step.pair.name}" if step else "")
         kinds.setdefault(is_angle, []).append((drive.name, what, *_span(drive, sample, is_angle)))
     tables = tuple(_driver_table(structure, is_angle, rows) for is_angle, rows in kinds.items())
     return Section("drivers", "Drivers", (*tables, *_laws(structure)) or (Paragraph("There is no driver."),))
 
 
+def _prescribed(structure: Structure) -> dict[str, str]:
+    """What drivers prescribe of points and links: by their names "x of G"."""
+    leads = structure.mechanism.leads.values()
+    return {
+        name: f"{word} of {item.point or item.link}{f' on {item.on}' if item.on != FRAME else ''}"
+        for item in leads
+        for word, name in item.drivers.items()
+    }
+
+
 def _laws(structure: Structure) -> Iterator[Paragraph]:
     """How each driver with a law moves."""
     steps, unit = structure.driven, unit_of(structure.mechanism.unit, "length")
+    for lead in structure.mechanism.leads.values():
+        if lead.along is not None:
+            yield Paragraph(f"{lead.point} is led {PathWording(unit).path(lead.along)}.")
     for drive in structure.mechanism.drives:
-        if drive.law is not None:
+        if drive.law is not None and not isinstance(drive.law, PathPart):
             is_angle = drive.name not in steps or steps[drive.name].pair.free_is_angle
             yield Paragraph(f"{drive.name} moves {Wording(is_angle, unit).law(drive.law)}.")
 
@@ -85,7 +102,7 @@ def _shaped(sample: Sample, value: Any) -> Any:
 def solving_section(structure: Structure, motion: Motion | None, design: int = 0) -> Section:
     """Report the frame with its driven links, then every group."""
     known = _letters(structure, structure.ground.links)
-    steps = [_ground(structure.ground, known)]
+    steps = [_ground(structure, structure.ground, known)]
     for k, group in enumerate(structure.groups):
         new = [letter for letter in _letters(structure, group.links) if letter not in known]
         known.update(dict.fromkeys(new))
@@ -119,14 +136,18 @@ def _title(group: Group) -> str:
     return f"{group.name} {'dyad' if group.name in DYADS else 'group'}: {listed(group.links)}"
 
 
-def _ground(ground: Body, letters: Iterable[str]) -> StepBlock:
-    driven = tuple(("driver", _driven(step)) for step in ground.driven if not step.is_passive)
+def _ground(structure: Structure, ground: Body, letters: Iterable[str]) -> StepBlock:
+    led = _prescribed(structure)
+    driven = tuple(("driver", _driven(step, led)) for step in ground.driven if not step.is_passive)
     title = "0  The frame and its driven links" if driven else "0  The frame"
-    return StepBlock(title, (*driven, ("yields", _yields(ground.links, letters))))
+    links = [name for name in ground.links if name not in structure.mechanism.led_links]
+    return StepBlock(title, (*driven, ("yields", _yields(links, letters))))
 
 
-def _driven(step: DrivenPair) -> str:
+def _driven(step: DrivenPair, led: Mapping[str, str]) -> str:
     drive, pair = step.drive, step.pair
+    if drive.name in led:
+        return led[drive.name]
     name = f"{drive.name}: " if drive.name != drive.link else ""
     return f"{name}{drive.link} on {drive.on}, the {' and '.join(pair.free)} of {pair.title} {pair.name}"
 
@@ -141,7 +162,7 @@ def _facts(structure: Structure, group: Group, new: list[str]) -> Iterator[tuple
         if passive:
             yield "passive", "; ".join(f"{step.drive.link} may turn about {step.pair.letters[0]}" for step in passive)
         if driven:
-            yield "driven", "; ".join(map(_driven, driven))
+            yield "driven", "; ".join(_driven(step, _prescribed(structure)) for step in driven)
             yield "body", f"{listed(body.links)} are one link of changing shape"
     yield "uses", "; ".join(_used(structure, group))
     yield "yields", _yields(group.links, new)
@@ -155,6 +176,8 @@ def _used(structure: Structure, group: Group) -> Iterator[str]:
             if link not in own:
                 points = structure.mechanism.links[link].points
                 letters = [letter for letter in pair.letters if letter in points]
+                if link in structure.mechanism.led_links:
+                    link = "what leads it"
                 prefix = "" if pair.name.startswith(pair.letters[0]) else f"{pair.name}: "
                 yield f"{prefix}{', '.join(letters)}{' on ' if letters else ''}{link}"
 

@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.analysis.equations import Implicit, LoopEquations, Unknown, latex, loop_equations, pair_terms, text
 from compoundkin.structure import Structure, loop_count
 from compoundkin.view.report.report_data import Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock
-from compoundkin.view.report.wording import counted, joined
+from compoundkin.view.report.wording import counted, joined, listed
 
 # Beyond these a report lists only the first: a reader has seen enough.
 MOST_LOOPS = 20
@@ -85,6 +85,9 @@ def loops_section(structure: Structure) -> Section:
     links, pairs, loops = len(structure.mechanism.links), len(structure.pairs), loop_count(structure)
     euler = FormulaBlock(f"L = p - n + 1 = {pairs} - {links} + 1 = {pairs - links + 1}")
     blocks: list[Block] = [euler]
+    if structure.mechanism.leads:
+        what = listed([item.point or f"the angle of {item.link}" for item in structure.mechanism.leads.values()])
+        blocks.append(Paragraph(f"What prescribes {what} is counted here: the loop through it is the way to there."))
     if loops != pairs - links + 1:
         text = f"The links fall into separate pieces, so that there are {counted(loops, 'loop')}."
         blocks.append(Paragraph(text))

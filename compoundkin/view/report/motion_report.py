@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import degrees
 
 import numpy as np
 
 from compoundkin.analysis.checks import Check, Finding, verify
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.gaps import Gap, gaps
-from compoundkin.kinematics.quantities import Quantity
 from compoundkin.structure import Structure
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections
+from compoundkin.view.report.gaps_section import gaps_of, gaps_section
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.outputs_section import chosen_outputs, equivalent_section, moving_sections
 from compoundkin.view.report.published_section import Comparison, comparisons, published_section
@@ -22,41 +20,7 @@ from compoundkin.view.report.report_data import Alert, Column, Outcome, Paragrap
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.structure_sections import about_section, counted_sections, structure_in_short
-from compoundkin.view.report.wording import brief, counted, listed, number
-
-# A report lists this many gaps; a sweep may have thousands.
-MOST_GAPS = 10
-
-
-def gaps_section(sample: Sample, found: tuple[Gap, ...]) -> Section:
-    """Return the poses that cannot be assembled. Between which driver values, which group, and why."""
-    missing = int(np.count_nonzero(~sample.assembled))
-    text = f"{missing:,} of {counted(sample.poses, 'pose')} cannot be assembled."
-    alerts = [Alert(gap_sentence(sample, gap)) for gap in found[:MOST_GAPS]]
-    more = [Paragraph(f"... and {counted(len(found) - MOST_GAPS, 'gap')} more.")] if len(found) > MOST_GAPS else []
-    return Section("gaps", "Poses that cannot be assembled", (Paragraph(text), *alerts, *more))
-
-
-def gap_sentence(sample: Sample, gap: Gap) -> str:
-    """Return one gap in words. The drivers' interval, the group that does not close, and the reason."""
-    spans = [_span(driver, gap) for driver in sample.varying]
-    where = listed(spans) if spans else "At this pose"
-    where = where[:1].upper() + where[1:]
-    if gap.pair:
-        return f"{where}, {gap.reason}."
-    return f"{where}, the {gap.group} group of {listed(gap.links)} does not close: {gap.reason}."
-
-
-def _span(driver: Quantity, gap: Gap) -> str:
-    begin, end = (degrees(v[driver.name]) if driver.is_angle else v[driver.name] for v in (gap.begin, gap.end))
-    unit = f" {driver.unit}" if driver.unit != "length" else ""
-    if gap.open_begin and gap.open_end:
-        return f"in the whole motion, {driver.name} {begin:.9g} to {end:.9g}{unit}"
-    if gap.open_begin:
-        return f"from the start, {driver.name} {begin:.9g}{unit}, to {end:.9g}{unit}"
-    if gap.open_end:
-        return f"from {driver.name} {begin:.9g}{unit} to the end, {end:.9g}{unit}"
-    return f"between {driver.name} {begin:.9g} and {end:.9g}{unit}"
+from compoundkin.view.report.wording import brief, counted, number
 
 
 def checks_section(sample: Sample, check: Check) -> Section:
@@ -118,15 +82,6 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
         outputs,
         design,
     )
-
-
-def gaps_of(sample: Sample) -> tuple[Gap, ...]:
-    """Return the gaps of one design."""
-    if sample.assembled.all():
-        return ()
-    axes = sample.motion.shape[:-1]
-    design = tuple(int(i) for i in np.unravel_index(sample.design, axes)) if axes else ()
-    return tuple(gap for gap in gaps(sample.motion) if gap.design == design)
 
 
 def outcome_of(motion: Motion, check: Check, published: tuple[Comparison, ...] = ()) -> Outcome:

@@ -44,7 +44,7 @@ def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
         return mechanism.outputs
     used = {letter for pair in mechanism.written_pairs for letter in pair.letters}
     free = {k: links for k, links in mechanism.carriers.items() if k not in used and len(links) == 1}
-    driven = {drive.link for drive in mechanism.drives}
+    driven = {drive.link for drive in mechanism.drives} | mechanism.led_links
     tracers = [letter for letter, links in free.items() if links != (FRAME,)]
     tracers = [letter for letter in tracers if free[letter][0] not in driven] or tracers
     sliding = {pair.members[1]: pair.name for pair in mechanism.written_pairs

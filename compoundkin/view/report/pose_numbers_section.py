@@ -14,7 +14,7 @@ from compoundkin.analysis.equations.pose_values import given_values, pose_values
 from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_of
-from compoundkin.view.report.motion_report import gap_sentence, gaps_of
+from compoundkin.view.report.gaps_section import gap_sentence, gaps_of
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import listed, number

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.structure import Structure, links_by_pairs, pair_counts, roman
+from compoundkin.model.elements import FRAME
+from compoundkin.model.pairs import Pair
+from compoundkin.structure import Structure, links_by_pairs, pair_counts, roman, without_leads
 from compoundkin.view.report.loop_sections import loops_section
 from compoundkin.view.report.mobility_sections import chain_section, mobility_section
 from compoundkin.view.report.report_data import Alert, Block, Column, Paragraph, Section, TableBlock
@@ -23,14 +28,15 @@ MOST_NAMED = 12
 
 def links_section(structure: Structure, design: int = 0) -> Section:
     """Return the links. What each is called by its number of pairs, its points in its own frame, its pairs."""
+    itself = without_leads(structure)
     pairs, placed = _pairs_by_link(structure), not structure.mechanism.unplaced
     points = _places(structure, design) if placed else _letters(structure)
     rows = tuple(
-        (name, kind_of_link(count), points[name], ", ".join(pairs[name]))
-        for name, count in pair_counts(structure).items()
+        (name, kind_of_link(count), points[name], ", ".join(pairs[name])) for name, count in pair_counts(itself).items()
     )
     columns = (Column("link"), Column("kind"), Column(f"points{PLACED if placed else ''}"), Column("pairs"))
-    said = Paragraph(_by_kind(structure)), *([] if placed else [Paragraph(_without_places(structure))])
+    unplaced = [] if placed else [Paragraph(_without_places(structure))]
+    said = Paragraph(_by_kind(itself)), *_thought(structure), *unplaced
     return Section("links", "Links", (*said, TableBlock(columns, rows)))
 
 
@@ -55,6 +61,19 @@ def _by_kind(structure: Structure) -> str:
         f"{text} {which} are two of them; with its slide and its two pins they leave the mobility as it is: "
         "3 * 2 - 2 * 3 = 0."
     )
+
+
+def _thought(structure: Structure) -> Iterator[Block]:
+    """What is thought to lead points and to turn links."""
+    for item in structure.mechanism.leads.values():
+        on = f" on {item.on}" if item.on != FRAME else ""
+        if item.link:
+            text = f"The angle of {item.link}{on} is prescribed, as by a turntable on which it may shift"
+        elif len(item.drivers) > 1:
+            text = f"The point {item.point} is led{on}, as by a cross slide to which it is pinned"
+        else:
+            text = f"The point {item.point} is led{on} by {'x' if item.x else 'y'} alone, as by a slot across a slide"
+        yield Paragraph(f"{text} ({listed(item.links)}). That is only thought: it is not counted, and not drawn.")
 
 
 def _letters(structure: Structure) -> dict[str, str]:
@@ -85,7 +104,7 @@ def _pairs_by_link(structure: Structure) -> dict[str, list[str]]:
     """The pairs of every link: the pins by their letters, then those written out."""
     mechanism = structure.mechanism
     found: dict[str, list[str]] = {name: [] for name in mechanism.links}
-    named = [*mechanism.pins.items(), *((pair.name, pair.members) for pair in mechanism.written_pairs)]
+    named = [*mechanism.real_pins.items(), *((pair.name, pair.members) for pair in mechanism.real_pairs)]
     for name, links in named:
         for link in links:
             found[link].append(name)
@@ -98,14 +117,32 @@ def pairs_section(structure: Structure) -> Section:
     rows = tuple(
         (pair.name, f"{pair.code}, {pair.title.removesuffix(' pair')}", joined(pair.members),
          ", ".join(pair.letters), drivers.get(pair.name, ""))
-        for pair in structure.pairs
+        for pair in _real_pairs(structure)
     )  # fmt: skip
     columns = (Column("pair"), Column("kind"), Column("joins"), Column("at"), Column("driven by"))
     return Section("pairs", "Pairs", (*_multiple_pins(structure), TableBlock(columns, rows)))
 
 
+def _real_pairs(structure: Structure) -> Iterator[Pair]:
+    """All pairs but those that are only thought. A pin that is led joins its other links one after another."""
+    mechanism, thought = structure.mechanism, structure.mechanism.led_links
+    led = [letter for letter, names in mechanism.pins.items() if not thought.isdisjoint(names)]
+    written = {pair.name for pair in mechanism.written_pairs}
+    pins: dict[str, Any] = {}
+    for pair in structure.pairs:
+        if pair.name not in written and pair.letters[0] in led:
+            pins[pair.letters[0]] = pair
+        elif thought.isdisjoint(pair.members):
+            yield pair
+    for letter, pin in pins.items():
+        links = mechanism.real_pins.get(letter, ())
+        for first, second in pairwise(links):
+            name = letter if len(links) == 2 else f"{letter}({first}-{second})"
+            yield replace(pin, name=name, first=first, second=second)
+
+
 def _multiple_pins(structure: Structure) -> Iterator[Block]:
-    for letter, links in structure.mechanism.pins.items():
+    for letter, links in structure.mechanism.real_pins.items():
         if len(links) > 2:
             text = f"{letter} joins {listed(links)}: a multiple pin of {len(links)} links"
             yield Paragraph(f"{text}, counted as {len(links) - 1} pairs.")
@@ -123,8 +160,8 @@ def _sentence(text: str) -> str:
 
 def counted_sections(structure: Structure, design: int = 0, motion: Motion | None = None) -> tuple[Section, ...]:
     """Return the parts of a mechanism and what counting them tells."""
-    parts = links_section(structure, design), pairs_section(structure)
-    return (*parts, mobility_section(structure, motion), chain_section(structure), loops_section(structure))
+    parts = links_section(structure, design), pairs_section(structure), mobility_section(structure, motion)
+    return (*parts, chain_section(without_leads(structure)), loops_section(structure))
 
 
 def about_section(structure: Structure, in_short: str, more: str = "") -> Section:

@@ -8,23 +8,18 @@ from itertools import pairwise
 import numpy as np
 
 from compoundkin.model.elements import FRAME
-from compoundkin.model.pairs.symbols import Pin, Sliding, Track
-from compoundkin.structure import DrivenPair
+from compoundkin.model.pairs.symbols import Pin
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import (
-    HEAD,
-    ArcShape,
     CircleShape,
     Polygon,
     Polyline,
     Shape,
-    arrow,
-    arrow_head,
     direction,
     hatching,
 )
-from compoundkin.view.sketch.sketch_style import BLOCK, PIN, style_of
+from compoundkin.view.sketch.sketch_style import PIN, style_of
 from compoundkin.view.sketch.slide_shapes import Laid, Layer, Painter
 
 # Points nearer than this to a line, in picture units, lie on it; points nearer to each other are one.
@@ -34,12 +29,8 @@ SAME = 0.5
 Places = Sequence[complex]
 # A fixed pivot: its height and half its foot, in picture units.
 PIVOT, FOOT = 17.0, 11.0
-# The arrow around a driven pin: its radius and how far it goes, radians.
-TURN_RADIUS, TURN = 25.0, 1.9
 # The circle around an outer pair of a group that is drawn apart.
 OUTER = 17.0
-# The arrow beside a driven slide.
-PUSH = 34.0
 DOWNWARD = (1j, 1 + 0j, -1 + 0j, -1j)
 # How much more than the next direction a pivot may be in the way of bars before it is turned there.
 LEANING = 0.35
@@ -130,7 +121,10 @@ def pins(painter: Painter) -> Iterator[Laid]:
 def joints(painter: Painter, letter: str) -> tuple[str, ...]:
     """Return the names of the pins at a letter. One less than the links that it joins."""
     found = [s.pair for s in painter.scene.seen if isinstance(s.mark, Pin) and s.pair.letters[0] == letter]
-    return tuple(pair.name for pair in found)
+    thought = painter.scene.mechanism.led_links
+    seen = [pair.name for pair in found if thought.isdisjoint(pair.members)]
+    # what leads a pin is one of its links: the others are joined by it all the same
+    return tuple(seen if seen or not found else [pair.name for pair in found[1:] or found])
 
 
 def gliding(painter: Painter) -> frozenset[str]:
@@ -164,51 +158,3 @@ def _free_side(painter: Painter, letter: str, at: complex) -> complex:
         return max(0.0, share - 0.3) + LEANING * DOWNWARD.index(down) * 0.5
 
     return min(DOWNWARD, key=blocked)
-
-
-def drives(painter: Painter) -> Iterator[Laid]:
-    """Draw an arrow at every driven pair, in the sense of its speed."""
-    for step in painter.scene.driven:
-        if not painter.shows(step.link):
-            continue
-        speed = painter.scene.driver_value(step.drive.name, 1) or 1.0
-        marks = [s for s in painter.scene.seen if s.pair.name == step.pair.name]
-        straight = next((s for s in marks if isinstance(s.mark, Sliding | Track)), None)
-        letter = step.pair.letters[0]
-        at = complex(painter.window.at(painter.scene.letters[letter]))
-        if straight is None or step.pair.free_is_angle:
-            shapes = turning(painter, step, at, float(np.sign(speed)))
-        else:
-            mark, link = straight.mark, straight.members[0]
-            e = painter.along(link, mark.along) * float(np.sign(speed))  # type: ignore[union-attr]
-            shapes = pushing(painter, at, e)
-        # the arrow beside a wheel that is pushed along its track does not turn with it
-        rolls = straight is not None and isinstance(straight.mark, Track) and letter in painter.scene.points[step.link]
-        yield from (Laid(Layer.PIN, shape, step.link, letter if rolls else "") for shape in shapes)
-
-
-def turning(painter: Painter, step: DrivenPair, at: complex, sense: float) -> tuple[Shape, ...]:
-    """Draw a curved arrow around a pin, behind the driven link as it turns."""
-    link, letter = step.drive.link, step.pair.letters[0]
-    others = [painter.place(link, p) for k, p in painter.scene.points[link].items() if k != letter]
-    toward = direction(max((p - at for p in others), key=abs, default=1 + 0j))
-    # counterclockwise is clockwise in coordinates whose y points downward
-    way = -sense
-    start = toward * np.exp(1j * way * 0.45)
-    stop = start * np.exp(1j * way * TURN)
-    tip = at + stop * TURN_RADIUS
-    back = HEAD / TURN_RADIUS
-    end = at + stop * np.exp(-1j * way * back * 0.8) * TURN_RADIUS
-    heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
-    arc = ArcShape(at + start * TURN_RADIUS, complex(end), TURN_RADIUS, way > 0, "drive")
-    return arc, arrow_head(complex(tip), complex(heading), "drive-head")
-
-
-def pushing(painter: Painter, at: complex, e: complex) -> tuple[Shape, ...]:
-    """Draw a straight arrow beside a block."""
-    across = 1j * e
-    side = -1.0 if (np.conjugate(across) * (painter.middle - at)).real > 0 else 1.0
-    if abs(across.imag) > 0.5:
-        side = -1.0 if across.imag > 0 else 1.0
-    beside = at + across * side * (BLOCK[1] / 2.0 + 9.0)
-    return arrow(beside - e * PUSH / 2.0, beside + e * PUSH / 2.0, "drive")

@@ -144,7 +144,7 @@ def moving_sketch(
     window = window_on(scene, _sample(scene), tuple(scene.letters))
     painter = Painter(scene, window)
     lines = [line for letter in paths for line in path(scene, window, letter)]
-    laid = in_layers(painter)
+    laid = [one for one in in_layers(painter) if one.link not in scene.mechanism.led_links]
     parts = [*_carried(painter, laid), *_labelled(painter, laid, labels)]
     sketch = MovingSketch(motion, design, scene, window, (sheet(window.width, window.height), *lines), tuple(parts))
     return sketch.holding(_reach_of_labels(sketch), ROOM)

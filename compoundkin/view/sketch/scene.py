@@ -107,6 +107,11 @@ class Scene:
         return numbers_of(self.structure)
 
     @cached_property
+    def legend(self) -> Mapping[str, int]:
+        """The numbers of the links that there are to be seen."""
+        return {name: number for name, number in self.numbers.items() if name not in self.mechanism.led_links}
+
+    @cached_property
     def groups(self) -> Mapping[str, int]:
         """Which group each link belongs to. It is 0 for the frame and driven links, then in solving order."""
         return groups_of(self.structure)
@@ -154,8 +159,9 @@ class Scene:
 
 
 def numbers_of(structure: Structure) -> dict[str, int]:
-    """Return the numbers of the links. The frame is 1, the others follow as they are written."""
-    others = [name for name in structure.mechanism.links if name != FRAME]
+    """Return the numbers of the links. The frame is 1, the others follow as written, what leads points last."""
+    thought = structure.mechanism.led_links
+    others = sorted((name for name in structure.mechanism.links if name != FRAME), key=lambda name: name in thought)
     return {name: k for k, name in enumerate([FRAME, *others], start=1)}
 
 

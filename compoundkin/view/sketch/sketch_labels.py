@@ -50,7 +50,7 @@ def letters(painter: Painter) -> list[Label]:
 
 def numbered(painter: Painter) -> list[Label]:
     """Return a label for the number of every link but the frame. On its bar or plate, else beside it."""
-    return [_number(painter, name) for name in filter(painter.shows, painter.scene.mechanism.links) if name != FRAME]
+    return [_number(painter, name) for name in filter(painter.shows, painter.scene.legend) if name != FRAME]
 
 
 def _number(painter: Painter, name: str) -> Label:

@@ -13,8 +13,9 @@ from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Groove, Outline, Sliding, Strap, Track, Wheel
 from compoundkin.view.sketch.centre_pictures import centre_labels, centre_places, centre_shapes, shown_centres
+from compoundkin.view.sketch.driver_shapes import drives
 from compoundkin.view.sketch.label_places import placed
-from compoundkin.view.sketch.link_shapes import body, drives, edges, pins, skeleton
+from compoundkin.view.sketch.link_shapes import body, edges, pins, skeleton
 from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted, smooth, thinned, window_of
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import Polygon, Polyline, Shape, ShapeGroup, corners, sheet
@@ -130,7 +131,7 @@ def sketch(what: Drawable, wishes: Wishes) -> Picture:
     sketch = [*(line for letter in traced for line in path(scene, window, letter)), *layered(painter)]
     named = [*(numbered(painter) if "links" in asked else []), *(letters(painter) if "points" in asked else [])]
     notes = pose_notes(scene) if asked else []
-    notes += [f"{number} {name}" for name, number in scene.numbers.items()] if "links" in asked else []
+    notes += [f"{number} {name}" for name, number in scene.legend.items()] if "links" in asked else []
     if wishes.centres:
         found = shown_centres(scene, window)
         sketch += centre_shapes(found)

@@ -48,7 +48,7 @@ def groups_picture(scene: Scene, size: float | None) -> Picture:
     parts = [_part(scene, whole, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")]
     parts += [_part(scene, whole, frozenset(g.links), heading(g), outer_letters(g)) for g in scene.structure.groups]
     shapes, width, height = in_rows(parts, "+")
-    notes = [f"{number} {name}" for name, number in scene.numbers.items()]
+    notes = [f"{number} {name}" for name, number in scene.legend.items()]
     notes += ["dashed circles: outer pairs"] if scene.structure.groups else []
     texts, height = below(lines_of_text(notes, width - 32.0), height + LINE)
     paper = sheet(width, height)
@@ -84,7 +84,7 @@ def _part(
     tall = (high - low).imag
     shapes += label_shapes(scene, placed(own, shapes, wide, tall))
     named_part = Text(complex(wide / 2.0, HEADING / 2.0), title, "heading")
-    own_links = tuple(name for name in scene.numbers if name in links)
+    own_links = tuple(name for name in scene.legend if name in links)
     return PicturePart((ShapeGroup((named_part, *moved(shapes, HEADING * 1j)), links=own_links),), wide, tall + HEADING)
 
 

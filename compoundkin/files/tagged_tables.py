@@ -1,0 +1,118 @@
+"""Tables with a kind: laws, paths, profiles and programs as a file holds them, each with problems of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.files.document import DWELL, KIND, PROGRAM, RISING, SEGMENT
+from compoundkin.files.recovery import PROFILE, Recovery, Tagged
+from compoundkin.files.single_values import bad, described, wrong
+from compoundkin.model import laws, leads, profiles
+from compoundkin.model.fields import Key, Kind
+from compoundkin.model.laws import Law
+from compoundkin.model.laws.motion_programs import Program
+from compoundkin.model.laws.program_segments import ProgramSegment
+from compoundkin.model.leads import Path
+from compoundkin.model.profiles import Profile
+
+
+def law(log: Recovery, raw: Any, where: str, angle: bool | None) -> Law | None:
+    """Return the law that a table says. None where it is broken, which is reported."""
+    return of_kind(log, "law", laws.WRITTEN, raw, where, angle)
+
+
+def of_kind(
+    log: Recovery, word: str, known: Mapping[str, type[Any]], raw: Any, where: str, angle: bool | None
+) -> Any | None:
+    """Return an object from a table that says its kind, one of those known.
+
+    None where it is broken, which is reported.
+    """
+    how = f'write {{ {KIND} = "...", ... }}, the kind one of {", ".join(known)}'
+    if not isinstance(raw, dict):
+        log.report(wrong(where, raw, f"a {word}", how))
+        return None
+    kind = raw.get(KIND)
+    if not isinstance(kind, str) or kind not in known:
+        what = f"there is no {word} {described(kind)}" if KIND in raw else "it is missing"
+        log.report(bad(f"{where}.{KIND}", what, nearest(str(kind), list(known))))
+        return None
+    entries = {key: value for key, value in raw.items() if key != KIND}
+    return made(log, known[kind], entries, where, angle)
+
+
+def path(log: Recovery, raw: Any, where: str, angle: bool | None) -> Path | None:
+    """Return the path that a table says. None where it is broken, which is reported."""
+    return of_kind(log, "path", leads.WRITTEN, raw, where, False)
+
+
+def segments(
+    log: Recovery, raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] = ProgramSegment.keys
+) -> tuple[ProgramSegment, ...]:
+    """Return the segments of a program. Those that are broken are left out, which is reported."""
+    if not isinstance(raw, list):
+        log.report(wrong(where, raw, "a list of segments", 'write [{ law = "cycloidal", over = 1, rise = 90 }]'))
+        return ()
+    found = [made(log, ProgramSegment, table, f"{where}[{index}]", angle, keys) for index, table in enumerate(raw)]
+    for index, table in enumerate(raw):
+        if isinstance(table, dict) and "rise" not in table and table.get("law") in RISING:
+            log.report(bad(f"{where}[{index}].rise", "it is missing", f'write rise = 30, or law = "{DWELL}"'))
+    return tuple(segment for segment in found if segment is not None)
+
+
+def profile(log: Recovery, raw: Any, where: str, angle: bool | None) -> Profile:
+    """Return the profile that a table says. A disc where it is broken, which is reported.
+
+    Where the follower turns about a pivot, the rises of its program are angles.
+    """
+    found: Profile | None = of_kind(
+        log, "profile", profiles.WRITTEN, raw, where, isinstance(raw, dict) and "pivot" in raw
+    )
+    return PROFILE if found is None else found
+
+
+def program(log: Recovery, raw: Any, where: str, angle: bool | None) -> Program | None:
+    """Return a program over a turn of a cam. Its segments alone, or a table that also says where it starts."""
+    table = raw if isinstance(raw, dict) else {"segments": raw}
+    found: Program | None = made(log, Program, table, where, angle, PROGRAM)
+    return found
+
+
+def turned(log: Recovery, raw: Any, where: str, angle: bool | None) -> tuple[ProgramSegment, ...]:
+    """Return the segments of a cam's program."""
+    return segments(log, raw, where, angle, SEGMENT)
+
+
+def made(
+    log: Recovery, kind: type[Any], raw: Any, where: str, angle: bool | None, keys: tuple[Key, ...] | None = None
+) -> Any:
+    """Return an object of a kind from its table. None where the table is broken or what it says cannot be meant."""
+    before = len(log.problems)
+    found = log.table(raw, kind.keys if keys is None else keys, where, angle)
+    if len(log.problems) > before:
+        return None
+    try:
+        return kind(**found)
+    except InvalidMechanism as error:
+        log.report(InvalidMechanism([_placed(problem, where) for problem in error.problems]))
+        return None
+
+
+def _placed(problem: Problem, where: str) -> Problem:
+    """Return a problem of an object, "segment.over", at the place of its table."""
+    _, dot, rest = problem.where.partition(".")
+    return replace(problem, where=where + dot + rest)
+
+
+# What is read table by table, each with its own problems.
+TAGGED: dict[Kind, Tagged] = {
+    "law": law,
+    "path": path,
+    "segments": segments,
+    "profile": profile,
+    "program": program,
+    "turned": turned,
+}
