@@ -10,10 +10,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
+
 import compoundkin as ck
 from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.view.sketch.label_places import placed
-from compoundkin.view.sketch.shapes import Polygon
+from compoundkin.view.sketch.picture import fitted
+from compoundkin.view.sketch.shapes import Polygon, Polyline
 from compoundkin.view.sketch.shown_pose import scene_of
 from compoundkin.view.sketch.sketch_labels import label_shapes, letters
 from compoundkin.view.sketch.sketches import ghost, layered, window_on
@@ -65,6 +68,23 @@ def transmission() -> ck.results.Picture:
     return with_ghosts(*(ck.solve(mechanism, {"crank": [ck.deg(at)]}) for at in (0, 180)))
 
 
+def workspace() -> ck.results.Picture:
+    """The region that the tip of a five-bar reaches in the drawn mode, around the robot, and the lens of all modes."""
+    robot = load_named("five-bar")
+    motion = ck.solve(robot, {"left": [ck.deg(100)], "right": [ck.deg(75)]})
+    outlines = [ck.workspace(robot, "P", modes=modes, cells=160).outer[0] for modes in (None, "all")]
+    scene = scene_of(motion, None, None, 0)
+    window = window_on(scene)
+    window = fitted(window, np.concatenate([window.at(outline) for outline in outlines]))
+    painter = Painter(scene, window)
+    sketch = layered(painter)
+    names = label_shapes(scene, placed(letters(painter), sketch, window.width, window.height))
+    wide, high = complex(window.width), complex(0.0, window.height)
+    region, lens = (tuple(complex(z) for z in window.line(outline)) for outline in outlines)
+    shapes = Polygon((0j, wide, wide + high, high), "paper"), Polyline(lens, "ray"), Polyline(region, "path")
+    return ck.results.Picture((*shapes, *sketch, *names), window.width, window.height, robot.title, window=window)
+
+
 def with_ghosts(motion: ck.results.Motion, *others: ck.results.Motion) -> ck.results.Picture:
     """The sketch of a motion of one pose, others drawn faintly behind it."""
     shown, *ghosts = (scene_of(one, None, None, 0) for one in (motion, *others))
@@ -90,6 +110,7 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "led": lambda: ck.animate(load_named("five-bar-led"), paths="P"),
     "limit": limit,
     "transmission": transmission,
+    "workspace": workspace,
     "centres": lambda: ck.draw(SIX_BAR, AT, centres=True),
     "circle": lambda: ck.draw(SIX_BAR, kind="circle"),
     "velocities": lambda: ck.draw(SIX_BAR, AT, kind="polygon"),
