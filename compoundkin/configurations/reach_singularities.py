@@ -14,6 +14,8 @@ from compoundkin.configurations.reach import Reach
 from compoundkin.configurations.region_boundary import Lattice
 from compoundkin.kinematics.solving_order import run
 
+# So many places at once: their arrays stay in the caches.
+BLOCK = 16384
 # So many angles of the point's link are tried where any will do.
 ANGLES = 12
 
@@ -24,6 +26,11 @@ def inverse_rates(reach: Reach, z: Number, angle: Number, number: Number) -> Num
     They are free of units. Its coordinates are x, y and, where it is led, the angle of its link; `number` is the
     configuration of each place.
     """
+    cuts = [slice(k, k + BLOCK) for k in range(0, max(len(z), 1), BLOCK)]
+    return np.concatenate([_rates(reach, z[k], angle[k], number[k]) for k in cuts])
+
+
+def _rates(reach: Reach, z: Number, angle: Number, number: Number) -> Number:
     led, size = reach.led, reach.led.driven.size
     signs = LiveSigns({k: v[number][None] for k, v in (reach.live or {}).items()})
     columns = []

@@ -77,6 +77,10 @@ def test_the_drawn_mode_reaches_less_and_all_that_its_drivers_lead_to() -> None:
         motion = ck.solve(robot, {"left": turns[0], "right": turns[1]}, order=0)
     assert found.contains(np.asarray(motion.points["P"].position)[motion.assembled]).all()
     assert 0.98 < found.area / 60081.02 < 1.0
+    # below it ends where the outer links lie over each other, B on D: a circle about where the cranks meet
+    low = found.outer[0][found.outer[0].imag < -150.0]
+    assert len(low) > 20
+    np.testing.assert_allclose(np.abs(low - (59.0 - 1j * np.sqrt(90.0**2 - 59.0**2))), 90.0, rtol=1e-9)
     assert found.determinants.shape[0] == 4
 
 
