@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from compoundkin.model.attributes import is_angle_word
+from compoundkin.model.attributes import IMBALANCE, TIME_RATIO, course_figure, is_angle_word
 from compoundkin.model.elements import Drive
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws.program_segments import LIMITS, NAMES, ProgramSegment
@@ -111,4 +111,9 @@ def quantity_is_angle(quantity: object) -> bool:
     >>> quantity_is_angle("bar.angle"), quantity_is_angle("bar.angular_velocity")
     (True, False)
     """
-    return isinstance(quantity, str) and "." in quantity and is_angle_word(quantity.rpartition(".")[2])
+    if not isinstance(quantity, str):
+        return False
+    of, figure = course_figure(quantity)
+    if figure in (TIME_RATIO, IMBALANCE):
+        return figure == IMBALANCE
+    return "." in of and is_angle_word(of.rpartition(".")[2])

@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import degrees
+from compoundkin.base.display import way
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.kinematics.derived import FIGURES
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
@@ -25,6 +26,7 @@ from compoundkin.model.attributes import (
     Dimension,
     Kind,
     coordinate_dimension,
+    course_figure,
     readable,
     unit_of,
     vector_of,
@@ -103,7 +105,8 @@ def quantity(motion: HasQuantities, name: str) -> Quantity:
     y, speed; links angle, angular_velocity, angular_acceleration, angular_jerk; pairs and drivers value, rate, second,
     third (and angle or displacement for value). Links of dyads have transmission_angle, those of any group
     transmission_index; guides that turn coriolis, cams pressure_angle; what moves by one driver velocity_ratio and
-    advantage. A vector has parts: "G.velocity.x", ".y", ".length". Raises UnknownName with the nearest known name.
+    advantage. A vector has parts: "G.velocity.x", ".y", ".length". Over a whole motion numbers have .least, .greatest,
+    .stroke, .time_ratio, .imbalance_angle: one value for each design. Raises UnknownName with the nearest known name.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, link
@@ -121,6 +124,9 @@ def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
     """Return the quantity of a name, or a vector and which part is meant. Raises UnknownName."""
     if not isinstance(name, str):
         raise InvalidInput(Problem("quantity", f"{name!r} is no name", 'write "G.velocity", one text for each'))
+    of, figure = course_figure(name)
+    if figure:
+        return way("course")(motion, of, figure), ""
     try:
         return _whole(motion, name), ""
     except UnknownName:

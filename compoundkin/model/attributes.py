@@ -83,6 +83,10 @@ TABULATED: Mapping[Kind, tuple[str, ...]] = MappingProxyType(
 LENGTH = "length"
 PARTS: Mapping[str, Callable[[Number], Number]] = MappingProxyType({"x": np.real, "y": np.imag, LENGTH: np.abs})
 
+# What a quantity has over a whole motion, as it is called behind its name.
+OF_COURSES = ("least", "greatest", "stroke", "time_ratio", "imbalance_angle")
+LEAST, GREATEST, STROKE, TIME_RATIO, IMBALANCE = OF_COURSES
+
 # What may be the time derivative of an attribute, the first that there is; nothing means the attribute of a bare name.
 RATE_OF: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -148,9 +152,20 @@ def order_of(name: str) -> int:
     >>> order_of("G.velocity"), order_of("bar.angular_jerk"), order_of("G"), order_of("G.velocity.x")
     (1, 3, 0, 1)
     """
-    word = vector_of(name)[0].rpartition(".")[2] if "." in name else ""
+    of = course_figure(name)[0]
+    word = vector_of(of)[0].rpartition(".")[2] if "." in of else ""
     tables = (POINT, LINK, DRIVER, *DERIVED.values())
     return max((table[word].order for table in tables if word in table), default=0)
+
+
+def course_figure(name: str) -> tuple[str, str]:
+    """Return the quantity and the figure of its whole course. The figure is empty where none is named.
+
+    >>> course_figure("ram.displacement.stroke"), course_figure("ram.displacement")
+    (('ram.displacement', 'stroke'), ('ram.displacement', ''))
+    """
+    of, _, word = name.rpartition(".")
+    return (of, word) if of and word in OF_COURSES else (name, "")
 
 
 def vector_of(name: str) -> tuple[str, str]:

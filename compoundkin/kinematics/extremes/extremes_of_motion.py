@@ -137,9 +137,22 @@ def _extremes(
     constant = found.value[:, 1] - found.value[:, 0] <= found.slack
     made = []
     for k, one in enumerate(measures):
-        low, high = (
-            Extreme(found.value[k, sign], Places(motion, designs, found.place[k, sign]), found.place[k, sign])
-            for sign in range(2)
-        )
-        made.append(Extremes(one.name, one.unit, low, high, constant[k]))
+        sides = []
+        for sign in range(2):
+            at = Places(motion, designs, found.place[k, sign])
+            until = _kept(search.values[k], found.value[k, sign], at, found.slack[k])
+            sides.append(Extreme(found.value[k, sign], at, until))
+        made.append(Extremes(one.name, one.unit, sides[0], sides[1], constant[k]))
     return tuple(made)
+
+
+def _kept(values: Number, value: Number, at: Places, slack: Number) -> Number:
+    """Return to which pose values are kept from their places on; `values` are those at poses, (designs, poses)."""
+    until, last = at.place.copy(), values.shape[1] - 1
+    for k in np.flatnonzero(np.isfinite(at.place) & (at.place < last)):
+        row = values[at.design[k], int(np.ceil(at.place[k])) :]
+        level = np.abs(row - value[k]) <= slack[k]
+        count = len(level) if level.all() else int(np.argmin(level))
+        if count > 1:
+            until[k] = last - len(row) + count
+    return until

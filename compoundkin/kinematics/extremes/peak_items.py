@@ -12,7 +12,10 @@ from compoundkin.kinematics.extremes.windows import FINE, SAMPLES, Windows, vert
 
 
 class PeakItems(NamedTuple):
-    """Windows in which a quantity is searched in one sense: quantity, sign, stretch, and from where to where in t."""
+    """Windows in which a quantity is searched in one sense.
+
+    Quantity, sign, stretch, and from where to where in t.
+    """
 
     m: Number
     s: Number

@@ -21,7 +21,7 @@ from compoundkin.view.page.html_document import Document, asset, vendored
 from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.markup import data_script, element, safe
 from compoundkin.view.page.viewer import Viewer, viewer_of
-from compoundkin.view.report.outputs_section import chosen_outputs, outputs_table
+from compoundkin.view.report.outputs_section import chosen_outputs, outputs_at_poses, outputs_table
 from compoundkin.view.report.report_data import Outcome, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch import Picture, draw
@@ -110,7 +110,7 @@ def all_poses(
     if len(sample.rows) == sample.poses or sample.poses * len(table.columns) > MOST_CELLS:
         return sections, sample.rows
     every = Whole(motion, design)
-    whole = outputs_table(every, [every.quantity(name) for name in chosen_outputs(motion, outputs)])
+    whole = outputs_table(every, outputs_at_poses(every, chosen_outputs(motion, outputs)))
     if [c.name for c in whole.columns] != [c.name for c in table.columns]:
         # the report is about other outputs
         return sections, sample.rows

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, NotAssembled
 from compoundkin.kinematics import Motion
-from compoundkin.model.attributes import ACCELERATION, OF_LINKS, OF_POINTS, VELOCITY
+from compoundkin.model.attributes import ACCELERATION, OF_LINKS, OF_POINTS, VELOCITY, course_figure
 from compoundkin.model.elements import FRAME
 from compoundkin.view.page.markup import element, hidden, lines, safe
 from compoundkin.view.page.moving_data import MotionData
@@ -52,7 +52,8 @@ class Viewer:
 def viewer_of(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> Viewer | None:
     """Return `viewer` with the outputs that a report has where none are named. None where nothing can move."""
     try:
-        return viewer(motion, design, chosen_outputs(motion, outputs))
+        chosen = chosen_outputs(motion, outputs)
+        return viewer(motion, design, tuple(name for name in chosen if not course_figure(name)[1]))
     except (InvalidInput, NotAssembled):
         return None
 

@@ -12,7 +12,18 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity, known_owners, whole_and_part
-from compoundkin.model.attributes import ADVANTAGE, LENGTH, PARTS, RATE_OF, SPEED, TIME, VALUE, unit_of, vector_of
+from compoundkin.model.attributes import (
+    ADVANTAGE,
+    LENGTH,
+    PARTS,
+    RATE_OF,
+    SPEED,
+    TIME,
+    VALUE,
+    course_figure,
+    unit_of,
+    vector_of,
+)
 
 POSE, DRIVEN = "pose", "driver"
 # The scale of angles, in degrees.
@@ -140,7 +151,7 @@ def driver(motion: Motion) -> Plotted:
 
 def all_of(motion: Motion, names: Sequence[str]) -> tuple[Plotted, ...]:
     """Return the quantities of names, else the mechanism's outputs. The outputs are what it states as such."""
-    chosen = names or motion.mechanism.outputs
+    chosen = names or [name for name in motion.mechanism.outputs if not course_figure(name)[1]]
     if not chosen:
         raise InvalidInput(Problem("quantities", "nothing is named", "name some: plot(motion, 'G.velocity')"))
     return tuple(shown(motion, name) for name in chosen)

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import degrees
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Places, between, extremes, places_of_jumps
-from compoundkin.kinematics.quantities import degrees, quantity
-from compoundkin.model.attributes import TIME, order_of
+from compoundkin.kinematics.quantities import quantity
+from compoundkin.model.attributes import TIME, course_figure, order_of
 from compoundkin.view.plot.marked_places import CONSTANT
 from compoundkin.view.plot.plotted_rows import POSE, Plotted
 
@@ -35,7 +36,7 @@ def plotted_extremes(
 
     Rates that grow without limit towards a limit position have none there.
     """
-    named = {curve.name: curve for curve in curves}
+    named = {curve.name: curve for curve in curves if not course_figure(curve.name)[1]}
     found = {}
     for one in extremes(motion, *named):
         curve, rows = named[one.name], []
@@ -95,7 +96,7 @@ class PlottedCourse:
         if len(cuts):
             return np.insert(x.astype(float), cuts, np.nan), np.insert(y.astype(float), cuts, np.nan)
         mine = self.jumps.design == design
-        if not mine.any():
+        if not mine.any() or course_figure(curve.name)[1]:
             return x, y
         at = self.jumps.some(mine)
         place = np.arange(len(x), dtype=float)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import islice
@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.cam_analysis import CamAnalysis, cam_analysis, cam_pairs
+from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Extreme, Extremes, Measure, Places, extremes, pieces
-from compoundkin.kinematics.quantities import Quantity, degrees
+from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import DEGREES, LENGTH, RADIANS, TIME, unit_of
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import ROUNDING, Sample
@@ -178,16 +179,18 @@ def _cam_row(sample: Sample, measure: Measure, found: Extremes | None) -> tuple[
 def _cam_measures(sample: Sample, found: CamAnalysis) -> Iterator[Measure]:
     """What is listed of a cam. A radius of curvature is without limit where the profile is straight."""
     unit = unit_of(sample.motion.mechanism.unit, "length")
-    listed = [("pressure angle", RADIANS, "pressure_angle"),
-              ("radius of curvature of the profile", unit, "radius_of_curvature")]  # fmt: skip
+    listed: list[tuple[str, str, Callable[[CamAnalysis], Any]]] = [
+        ("pressure angle", RADIANS, lambda cam: cam.pressure_angle),
+        ("radius of curvature of the profile", unit, lambda cam: cam.radius_of_curvature),
+    ]
     if found.pitch_radius is not None and found.roller_rate is not None:
-        listed.append(("radius of curvature of the pitch curve", unit, "pitch_radius"))
-    listed.append(("sliding at the contact", f"{unit}/s", "sliding"))
+        listed.append(("radius of curvature of the pitch curve", unit, lambda cam: cam.pitch_radius))
+    listed.append(("sliding at the contact", f"{unit}/s", lambda cam: cam.sliding))
     if found.roller_rate is not None:
-        listed.append(("spin of a roller that rolls", "rad/s", "roller_rate"))
+        listed.append(("spin of a roller that rolls", "rad/s", lambda cam: cam.roller_rate))
     kept = _LastAnalysis(found.pair.name)
-    for title, its_unit, word in listed:
-        yield Measure(title, its_unit, 1, partial(kept.of, word))
+    for title, its_unit, asked in listed:
+        yield Measure(title, its_unit, 1, partial(kept.of, asked))
 
 
 class _LastAnalysis:
@@ -197,9 +200,9 @@ class _LastAnalysis:
         self.name = name
         self.last: CamAnalysis | None = None
 
-    def of(self, word: str, motion: Motion) -> Any:
+    def of(self, asked: Callable[[CamAnalysis], Any], motion: Motion) -> Any:
         """Return something of the analysis over a motion; what is infinite is left out."""
         if self.last is None or self.last.motion is not motion:
             self.last = cam_analysis(motion, self.name)
-        values = np.asarray(getattr(self.last, word))
+        values = np.asarray(asked(self.last))
         return np.where(np.isfinite(values), values, np.nan)

@@ -8,20 +8,21 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.equivalents import replaced
-from compoundkin.base.errors import CompoundkinError
+from compoundkin.base.errors import CompoundkinError, InvalidInput
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import (
     ANGLE,
     DISPLACEMENT,
     POSITION,
+    course_figure,
     order_of,
 )
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose, roman
 from compoundkin.view.report.extremes_blocks import SampleExtremes, cams_sections, extremes_blocks
-from compoundkin.view.report.report_data import Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import counted, listed, ordinal
 
@@ -64,11 +65,32 @@ def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ..
 
 def moving_sections(sample: Sample, outputs: Sequence[str]) -> tuple[Section, ...]:
     """Return the sections of the outputs, with their extremes, and of cams."""
-    found = [sample.quantity(name) for name in outputs]
+    found = outputs_at_poses(sample, outputs)
     known = SampleExtremes(sample, found)
+    figures = figures_blocks(sample, [name for name in outputs if course_figure(name)[1]])
     blocks = (Paragraph(_introduction(sample)), outputs_table(sample, found)) if found else _NOTHING
-    moving = Section("outputs", "Outputs over the cycle", (*blocks, *extremes_blocks(known)))
+    moving = Section("outputs", "Outputs over the cycle", (*blocks, *extremes_blocks(known), *figures))
     return moving, *cams_sections(known)
+
+
+def outputs_at_poses(sample: Sample, outputs: Sequence[str]) -> list[Quantity]:
+    """Return the outputs without figures of the whole motion."""
+    return [sample.quantity(name) for name in outputs if not course_figure(name)[1]]
+
+
+def figures_blocks(sample: Sample, names: Sequence[str]) -> Iterator[Block]:
+    """Yield the figures of the whole motion, or why one is not told."""
+    rows: list[tuple[Cell, ...]] = []
+    for name in names:
+        try:
+            found = sample.quantity(name)
+        except InvalidInput as error:
+            rows.append((name, "", None, error.problems[0].what))
+            continue
+        rows.append((name, found.unit, _cell(found.values[0]), ""))
+    if rows:
+        yield Paragraph("Over the whole motion:")
+        yield TableBlock((Column("figure"), Column("unit"), Column("value", style="each"), Column("")), tuple(rows))
 
 
 def outputs_table(sample: Sample, found: Sequence[Quantity]) -> TableBlock:

@@ -15,7 +15,7 @@ from compoundkin.base.arrays import first_entry, wrapped
 from compoundkin.base.errors import NotAssembled, UnassembledPoses, UnknownName
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import HIGHEST_ORDER, RATES, TIME
+from compoundkin.model.attributes import HIGHEST_ORDER, RATES, TIME, course_figure
 from compoundkin.model.elements import Expectation
 from compoundkin.structure import Structure
 from compoundkin.view.report.report_data import Cell, Column, Paragraph, Section, TableBlock
@@ -67,12 +67,13 @@ def comparisons(structure: Structure) -> tuple[Comparison, ...]:
     >>> comparisons(decompose(Mechanism("m", *crank, expect("B.position", 2j, 1e-9, crank=np.pi / 2))))[0].passed
     True
     """
-    solved: dict[tuple[tuple[str, float], ...], Motion | None] = {}
+    solved: dict[tuple[tuple[tuple[str, float], ...], bool], Motion | None] = {}
     found = []
     for index, expectation in enumerate(structure.mechanism.expectations):
-        if expectation.at not in solved:
-            solved[expectation.at] = _solved(structure, dict(expectation.at))
-        found.append(_compared(expectation, solved[expectation.at], f"expected[{index}].quantity"))
+        key = expectation.at, bool(course_figure(expectation.quantity)[1])
+        if key not in solved:
+            solved[key] = (_solved_whole if key[1] else _solved)(structure, dict(expectation.at))
+        found.append(_compared(expectation, solved[key], f"expected[{index}].quantity"))
     return tuple(found)
 
 
@@ -89,6 +90,14 @@ def _solved(structure: Structure, at: Mapping[str, float]) -> Motion | None:
     return _pose(structure, values, **rates)
 
 
+def _solved_whole(structure: Structure, at: Mapping[str, float]) -> Motion | None:
+    """The motion over the drivers' own range; those that are given stand still, and rates are as given."""
+    names = [drive.name for drive in structure.mechanism.drives]
+    values = {name: at[name] for name in names if name in at} or None
+    rates = {rate: {name: at[f"{name}.{rate}"] for name in names if f"{name}.{rate}" in at} for rate in RATES}
+    return _pose(structure, values, **{rate: given for rate, given in rates.items() if given})
+
+
 def _solved_at_time(structure: Structure, at: Mapping[str, float]) -> Motion | None:
     """The single pose at a time; what else is given goes before the driver's own."""
     values = {drive.name: at[drive.name] for drive in structure.mechanism.drives if drive.name in at}
@@ -97,8 +106,8 @@ def _solved_at_time(structure: Structure, at: Mapping[str, float]) -> Motion | N
     return _pose(structure, values, time=at[TIME], **rates)
 
 
-def _pose(structure: Structure, values: Mapping[str, float], **how: Any) -> Motion | None:
-    """A single pose; None where it cannot be assembled."""
+def _pose(structure: Structure, values: Mapping[str, float] | None, **how: Any) -> Motion | None:
+    """What is solved, a single pose or a motion; None where it cannot be assembled."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UnassembledPoses)
