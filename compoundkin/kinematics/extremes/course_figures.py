@@ -22,8 +22,8 @@ SAME = 1e-6
 def course_quantity(motion: Motion, of: str, figure: str) -> Quantity:
     """Return a figure of a quantity over the whole motion.
 
-    It is the same at all poses of a design. Raises InvalidInput for a single pose; of strokes, where the motion is no closed cycle or the quantity rests at an
-    end of its stroke.
+    It is the same at all poses of a design. Raises InvalidInput for a single pose; of strokes, where the motion is
+    no closed cycle or the quantity rests at an end of its stroke.
     """
     name = f"{of}.{figure}"
     if not isinstance(motion, Motion) or isinstance(motion, MotionBetween):

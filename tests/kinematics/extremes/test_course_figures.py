@@ -106,7 +106,8 @@ def test_a_program_in_time_rests_at_its_dead_points() -> None:
 def test_designs_have_a_stroke_each() -> None:
     rods = ck.Mechanism(
         "rods", ck.link("frame", O=0), ck.link("crank", O=0, A=CRANK),
-        ck.link("rod", A=0, B=np.array([[100.0], [120.0]])), ck.link("piston", B=0), ck.slide("piston", on="frame", through="O", angle=0), ck.drive("crank"),
+        ck.link("rod", A=0, B=np.array([[100.0], [120.0]])), ck.link("piston", B=0),
+        ck.slide("piston", on="frame", through="O", angle=0), ck.drive("crank"),
     )  # fmt: skip
     found = ck.quantity(ck.solve(rods), "B.x.stroke")
     assert np.allclose(found.values, 2.0 * CRANK, rtol=1e-13)
