@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from compoundkin.kinematics.extremes.dead_points import DeadPoints, dead_points, driver_dead_points
 from compoundkin.kinematics.extremes.extremes_of_motion import AssembledPieces, Extreme, Extremes, extremes, pieces
-from compoundkin.kinematics.extremes.measures import Measure
+from compoundkin.kinematics.extremes.measures import Measure, driver_pace
 from compoundkin.kinematics.extremes.motion_between import MotionBetween, between
 from compoundkin.kinematics.extremes.places import Places, closed_cycles, places_of_jumps
 from compoundkin.kinematics.extremes.zeros_of_motion import Zeros, zeros
@@ -22,6 +22,7 @@ __all__ = [
     "closed_cycles",
     "dead_points",
     "driver_dead_points",
+    "driver_pace",
     "extremes",
     "pieces",
     "places_of_jumps",

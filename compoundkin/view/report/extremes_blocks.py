@@ -13,7 +13,7 @@ import numpy as np
 from compoundkin.analysis.cam_analysis import CamAnalysis, cam_analysis, cam_pairs
 from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.extremes import Extreme, Extremes, Measure, Places, extremes, pieces
+from compoundkin.kinematics.extremes import Extreme, Extremes, Measure, Places, driver_pace, extremes, pieces
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import DEGREES, LENGTH, RADIANS, TIME, unit_of
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
@@ -188,21 +188,22 @@ def _cam_measures(sample: Sample, found: CamAnalysis) -> Iterator[Measure]:
     listed.append(("sliding at the contact", f"{unit}/s", lambda cam: cam.sliding))
     if found.roller_rate is not None:
         listed.append(("spin of a roller that rolls", "rad/s", lambda cam: cam.roller_rate))
-    kept = _LastAnalysis(found.pair.name)
+    kept = _LastAnalysis(found)
+    pace = driver_pace(sample.motion)
+    natural = {RADIANS: 1.0, unit: sample.motion.size, f"{unit}/s": sample.motion.size * pace, "rad/s": pace}
     for title, its_unit, asked in listed:
-        yield Measure(title, its_unit, 1, partial(kept.of, asked))
+        yield Measure(title, its_unit, 1, partial(kept.of, asked), scale=natural[its_unit])
 
 
 class _LastAnalysis:
     """The analysis of a cam over the last motion that was asked for: of one motion several things are asked."""
 
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self.last: CamAnalysis | None = None
+    def __init__(self, last: CamAnalysis) -> None:
+        self.last = last
 
     def of(self, asked: Callable[[CamAnalysis], Any], motion: Motion) -> Any:
         """Return something of the analysis over a motion; what is infinite is left out."""
-        if self.last is None or self.last.motion is not motion:
-            self.last = cam_analysis(motion, self.name)
+        if self.last.motion is not motion:
+            self.last = cam_analysis(motion, self.last.pair.name)
         values = np.asarray(asked(self.last))
         return np.where(np.isfinite(values), values, np.nan)
