@@ -38,7 +38,7 @@ def real_numbers(where: str, value: Any, error: type[CompoundkinError] = Invalid
     given = _array(where, value, None, error)
     if given.dtype.kind in _BENT:
         raise error(Problem(where, *_BENT[given.dtype.kind]))
-    return np.asarray(_array(where, given, float, error), dtype=float)
+    return np.asarray(_array(where, _given(value, given), float, error), dtype=float)
 
 
 def planar_numbers(where: str, value: Any, error: type[CompoundkinError] = InvalidInput) -> NDArray[np.complex128]:
@@ -46,7 +46,12 @@ def planar_numbers(where: str, value: Any, error: type[CompoundkinError] = Inval
     given = _array(where, value, None, error)
     if given.dtype.kind in _BENT and given.dtype.kind != "c":
         raise error(Problem(where, *_BENT[given.dtype.kind]))
-    return np.asarray(_array(where, given, complex, error), dtype=complex)
+    return np.asarray(_array(where, _given(value, given), complex, error), dtype=complex)
+
+
+def _given(value: Any, array: NDArray[Any]) -> Any:
+    """The array that is converted; what is an object stays itself, to be shown where it is no number."""
+    return value if array.dtype.kind == "O" else array
 
 
 def _array(where: str, value: Any, dtype: type | None, error: type[CompoundkinError]) -> NDArray[Any]:

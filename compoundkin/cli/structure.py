@@ -86,6 +86,10 @@ def _hold_together(equations: bool, asked: dict[str, Any]) -> None:
     given = [option for name, option in OF_EQUATIONS.items() if asked[name]]
     if given and not equations:
         raise InvalidInput(Problem(given[0], "it goes with the equations", "add --equations"))
+    for name, order in (("speeds", 1), ("accelerations", 2)):
+        if asked[name] and asked["order"] < order:
+            what = f"without --order {order} there is nothing that it changes"
+            raise InvalidInput(Problem(OF_EQUATIONS[name], what, f"add --order {order}"))
     if asked["estimates"] and not asked["newton"]:
         raise InvalidInput(Problem("--estimate", "nothing is estimated without iterations", "add --newton"))
 

@@ -159,6 +159,9 @@ def test_what_does_not_fit_is_refused_by_its_name() -> None:
     calls: tuple[tuple[Callable[[], Any], str], ...] = (
         (lambda: coupler.link_position(motion, "coupler", 1000), "at: it is not the index of a pose; 0 to"),
         (lambda: coupler.link_position(motion, "coupler", 0.5), "at: it is not"),
+        (lambda: coupler.link_position(motion, "coupler", np.nan), "at: it is not"),
+        (lambda: coupler.link_position(motion, "coupler", [0.0, -np.inf]), "at: it is not"),
+        (lambda: coupler.link_position(motion, "coupler", motion), "at: Motion"),
         (lambda: coupler.link_position(motion, "coupler", 0, on="coupler"), "on: "),
         (lambda: Position((0, np.inf), 0.0), "point: it is infinite"),
         (lambda: Position(np.zeros(2), np.zeros(3)), "shapes: "),

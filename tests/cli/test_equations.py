@@ -121,6 +121,8 @@ def test_a_limit_position_is_said(run: Run) -> None:
         (("--equations", "--newton", "--estimate", "rod=x"), "'x' is not a number"),
         (("--equations", "--newton", "--estimate", "rod=1", "--estimate", "rod=2"), "twice"),
         (("--equations", "--at", "35", "--design", "2"), "there is no design 2"),
+        (("--equations", "--at", "35", "--speed", "3"), "add --order 1"),
+        (("--equations", "--order", "1", "--acceleration", "3"), "add --order 2"),
     ],
 )
 def test_what_does_not_go_together(run: Run, options: tuple[str, ...], said: str) -> None:

@@ -89,9 +89,9 @@ def link_position(motion: Motion, link: str, at: Any, on: str = FRAME) -> LinkPo
     seen = relative_link(motion, link, on)
     poses = motion.inputs.poses
     wanted = numbers_of("at", at)
-    index = np.asarray(wanted).astype(int)
-    if not index.size or np.any(index != wanted) or np.any((index < -poses) | (index >= poses)):
+    if not np.size(wanted) or not np.all((wanted >= -poses) & (wanted < poses) & (np.floor(wanted) == wanted)):
         raise InvalidInput(Problem("at", "it is not the index of a pose", f"0 to {poses - 1}"))
+    index = np.asarray(wanted).astype(int)
     angle, point = (np.reshape(value, (*motion.shape[:-1], poses))[..., index]
                     for value in (seen.angle, np.asarray(seen.origin.position)))  # fmt: skip
     if np.isnan(angle).all():

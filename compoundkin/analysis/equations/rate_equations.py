@@ -6,8 +6,9 @@ sections 6.7 and 7.3.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -17,11 +18,13 @@ from compoundkin.analysis.equations.pose_values import given_values, pose_values
 from compoundkin.analysis.equations.rate_solution import RateSolution, Scales, solution_of
 from compoundkin.analysis.equations.reduced_system import ReducedSystem
 from compoundkin.analysis.equations.row_derivatives import bend, slope
+from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.moving_lines import shape_of
 from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Values
 from compoundkin.structure import Structure
 
@@ -61,14 +64,17 @@ class SymbolArray(PrintsShort):
         rows = r" \\ ".join(" & ".join(entry.latex for entry in row) for row in self.entries)
         return rf"\begin{{bmatrix}} {rows} \end{{bmatrix}}"
 
-    def at(self, values: Values) -> Number:
-        """Return the numbers, (..., rows, columns). Those of unknowns and rates go by their keys."""
-        numbers = {
-            (k, j): entry.at(values)
-            for k, row in enumerate(self.entries)
-            for j, entry in enumerate(row)
-            if not entry.is_zero
-        }
+    @checked
+    def at(self, values: Mapping[str, Any]) -> Number:
+        """Return the numbers, (..., rows, columns). Those of unknowns and rates go by their keys.
+
+        Raises InvalidInput for what has no value.
+        """
+        entries = {(k, j): own for k, row in enumerate(self.entries) for j, own in enumerate(row) if not own.is_zero}
+        try:
+            numbers = {place: own.at(values) for place, own in entries.items()}
+        except KeyError as error:
+            raise InvalidInput(Problem("values", f"{error.args[0]} has none", "give all that is in it")) from None
         shape = np.broadcast_shapes(*map(np.shape, numbers.values()))
         found = np.zeros((*shape, len(self.entries), len(self.entries[0]) if self.entries else 0))
         for (k, j), number in numbers.items():
@@ -118,12 +124,14 @@ class RateEquations(PrintsShort):
             for row, (right,) in zip(self.matrix.entries, self.right_side.entries, strict=True)
         )
 
-    def at(self, where: Motion | Values) -> RateSolution:
+    @checked
+    def at(self, where: Motion | Mapping[str, Any]) -> RateSolution:
         """Return matrix, right-hand side and solution in numbers, at all poses of a motion.
 
         Arrays are of the motion's shape, with axes for rows and columns at the end; NaN where a pose is not assembled.
         Instead of a motion it may be the values of all unknowns and the rates of those given, by their keys.
-        Raises InvalidInput for a motion that was not solved to the order of the equations, and for values left out.
+        Raises InvalidInput for a motion that was not solved to the order of the equations or is of another mechanism,
+        and for values left out or that do not broadcast.
 
         >>> from compoundkin.analysis.equations import loop_equations
         >>> from compoundkin.files.shipped_mechanisms import load_named
@@ -136,20 +144,26 @@ class RateEquations(PrintsShort):
         np.float64(-0.6)
         """
         if not isinstance(where, Motion):
-            return self._solved(np.broadcast_shapes(*map(np.shape, where.values())), self._checked(where))
+            values = self._checked(where)
+            return self._solved(shape_of(**values), values)
+        if where.mechanism != self.structure.mechanism:
+            remedy = "write the equations of its .mechanism"
+            raise InvalidInput(Problem("where", "the motion is one of another mechanism", remedy))
         where.grid.require(self.order)
         values = pose_values(where)
         for order in range(1, self.order + 1):
             values.update(given_values(where, self.system, order))
         return self._solved(where.shape, values)
 
-    def _checked(self, values: Values) -> Values:
+    def _checked(self, values: Mapping[str, Any]) -> dict[str, Number]:
         rated = [own.rate_key(k) for own in self.system.given for k in range(1, self.order + 1)]
         placed = [own.key for own in (*self.unknowns, *self.system.given) if own.kind != "given"]
         missing = [key for key in (*placed, *rated) if key not in values]
         if missing:
             raise InvalidInput(Problem("values", f"{missing[0]} has none", "give all unknowns, and the rates given"))
-        return {key: real_numbers(key, value) for key, value in values.items()}
+        found = {key: real_numbers(key, value) for key, value in values.items()}
+        # what is infinite is nowhere
+        return {key: np.where(np.isinf(value), np.nan, value) for key, value in found.items()}
 
     def _solved(self, shape: tuple[int, ...], values: Values) -> RateSolution:
         found = {**values}

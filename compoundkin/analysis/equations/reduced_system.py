@@ -85,8 +85,11 @@ class ReducedSystem(PrintsShort):
 
     def scales(self, size: float) -> Scales:
         """Return what makes pure numbers of rows and columns."""
-        lengths = (row.is_length for row in self.rows), (unknown.is_length for unknown in self.unknowns)
-        return Scales(*(np.array([size if is_length else 1.0 for is_length in own]) for own in lengths))
+        profiles = [term for row in self.rows for term in row.terms if isinstance(term, Curved)]
+        known = {unknown: own.scale for own in profiles for _, unknown in own.argument.parts}
+        rows = [size if row.is_length else 1.0 for row in self.rows]
+        columns = [size if unknown.is_length else known.get(unknown, 1.0) for unknown in self.unknowns]
+        return Scales(np.array(rows), np.array(columns))
 
     def given_by(self, unknown: Unknown, value: Number, order: int = 0) -> Number:
         """Return a given unknown, or a rate of it, from that of its driver."""

@@ -150,8 +150,9 @@ class Cam(Profiled, Guided):
             return None
         free, on, curve = Unknown("parameter", self.name), angle_of(self.on), self.curve
         away, parameter = ends[1].measure * self.outward, Sum(0.0, ((1.0, free),))
-        contact = Curved(f"profile({free.key})", curve.at, parameter, on)
-        normal = Curved(f"normal({free.key})", lambda s: away * curve.normal(s), parameter, on)
+        scale = self.coordinate_scale
+        contact = Curved(f"profile({free.key})", curve.at, parameter, on, scale=scale)
+        normal = Curved(f"normal({free.key})", lambda s: away * curve.normal(s), parameter, on, scale=scale)
         arms = (contact, normal) if np.any(away != 0.0) else (contact,)
         return LoopTerms((ends[0].point, ends[1].point), (f"origin of {self.on}", self.at), arms, (free,))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -121,7 +121,8 @@ class Vector:
 class Curved:
     """A profile's vector in a link's frame, turned by `angle`; `symbol` names it.
 
-    Its `place` in that frame is a function of one number, the `argument`: a parameter, or the angle of a face.
+    Its `place` in that frame is a function of one number, the `argument`: a parameter, or the angle of a face. `scale`
+    makes a pure number of it, a radian of an angle.
     """
 
     symbol: str
@@ -129,6 +130,7 @@ class Curved:
     argument: Sum
     angle: Sum
     sign: int = 1
+    scale: float = 1.0
 
     def at(self, values: Values) -> Number:
         """Return its value, complex."""
@@ -139,7 +141,7 @@ class Curved:
 
     def reversed(self) -> Curved:
         """Return the vector the other way round."""
-        return Curved(self.symbol, self.place, self.argument, self.angle, -self.sign)
+        return replace(self, sign=-self.sign)
 
 
 Term: TypeAlias = Vector | Curved

@@ -28,7 +28,8 @@ ALONG = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2)
 BESIDE = 12.0
 # On the side of the other link a length is worse than outside by this.
 INSIDE = 24.0
-# Around a dyad of fewer points than would show it, such as two blocks on one pin, so much of the mechanism is shown.
+# A dyad without circles, such as two blocks on one pin, that reaches over less than this part of the mechanism's size
+# is shown with the mechanism around it.
 NARROW = 0.2
 # A guide that is used for more than so many sizes of the mechanism is drawn where the pose needs it.
 LONG = 10.0
@@ -120,7 +121,8 @@ def _window(scene: Scene, group: Group, modes: Sequence[Loci]) -> Window:
     places = [scene.at(link, p) for link in group.links for p in scene.points[link].values()]
     places += [loci.meeting for loci in modes]
     places += [circle.centre + circle.radius * e for circle in circles for e in (1, 1j, -1, -1j)]
-    if np.ptp(np.abs(np.array(places) - modes[0].meeting)) < NARROW * (size := scene.mechanism.geometry.size):
+    apart = np.ptp(np.abs(np.array(places) - modes[0].meeting))
+    if not circles and apart < NARROW * (size := scene.mechanism.geometry.size):
         places += [modes[0].meeting + size * e / 2.0 for e in (1 + 1j, -1 - 1j)]
     first = window_of([np.array(places)], [])
     points = first.at(np.array(places))
@@ -204,7 +206,7 @@ def _finished(drawn: DrawnDyad, shapes: Sequence[Shape], size: float | None) -> 
     """The picture with the construction in words below it, on paper over all that is drawn."""
     scene, window, own = drawn.scene, drawn.window, drawn.modes[0]
     notes = _notes(scene, drawn.modes)
-    if drawn.modes[-1].meeting != own.meeting:
+    if abs(drawn.modes[-1].meeting - own.meeting) > SAME * scene.mechanism.geometry.size:
         notes.append("dashed: the other mode")
     texts, height = below(lines_of_text(notes, window.width - 2.0 * SIDE), window.height)
     strip = Polygon((1j * window.height, window.width + 1j * window.height, complex(window.width, height),

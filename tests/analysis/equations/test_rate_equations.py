@@ -10,6 +10,7 @@ from compoundkin.analysis.equations import Unknown
 from compoundkin.analysis.equations.pose_values import pose_values
 from compoundkin.files.shipped_mechanisms import load_named, names
 from tests import catalog
+from tests.scaled import scaled
 
 # Rates of both ways agree to this part of the fastest one, times what the matrix makes of rounding.
 CLOSE = 1e-10
@@ -207,3 +208,32 @@ def test_values_stand_for_a_motion() -> None:
         equations.at({key: value for key, value in values.items() if key != "crank''"})
     with pytest.raises(ck.errors.InvalidInput, match="no number"):
         equations.at({**values, "rod": "x"})
+    assert np.isnan(equations.at({**values, "rod": np.inf}).solution).all()
+    with pytest.raises(ck.errors.InvalidInput, match=r"do not broadcast: .*rod \(3,\)"):
+        equations.at({**values, "rod": [1.0, 2.0, 3.0]})
+    with pytest.raises(ck.errors.InvalidInput, match="rod has none"):
+        equations.matrix.at({"crank": 1.0})
+    for wrong in (None, "x", [1.0], mechanism):
+        with pytest.raises(ck.errors.InvalidInput, match="no motion or table by name"):
+            equations.at(wrong)
+
+
+def test_the_motion_is_one_of_the_same_mechanism() -> None:
+    """A motion whose links have the same names gave numbers of neither mechanism."""
+    equations = ck.loop_equations(load_named("four-bar-norton"), order=1).velocity
+    for name in ("crank-rocker", "slider-crank"):
+        with pytest.raises(ck.errors.InvalidInput, match="another mechanism"):
+            equations.at(ck.solve(load_named(name)))
+    assert equations.at(ck.solve(load_named("four-bar-norton"))).solution.shape == (73, 2)
+
+
+@pytest.mark.parametrize("name", ["groove-cam-plate", "slider-crank-offset"])
+def test_conditions_do_not_depend_on_the_unit(name: str) -> None:
+    """Along a profile through points the parameter is a length: in other units all poses were singular."""
+    found = []
+    for factor in (1.0, 1e-9, 1e9):
+        mechanism = scaled(load_named(name), factor)
+        found.append(ck.loop_equations(mechanism, order=1).velocity.at(ck.solve(mechanism)))
+        assert not found[-1].singular.any()
+    assert np.allclose(found[1].condition, found[0].condition, rtol=1e-6)
+    assert np.allclose(found[2].condition, found[0].condition, rtol=1e-6)

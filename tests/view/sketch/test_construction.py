@@ -128,6 +128,22 @@ def test_a_guide_used_far_beyond_the_mechanism_is_drawn_where_the_pose_needs_it(
     assert max(picture.width, picture.height) < 800
 
 
+def test_a_small_dyad_fills_its_picture() -> None:
+    """The bucket of an excavator reaches over a seventh of the arm; circles show it without the rest."""
+    picture = ck.draw(catalog.motion("excavator-arm"), kind="construction", link="bucket")
+    radii = [shape.radius for shape in leaves(picture.shapes) if isinstance(shape, CircleShape)]
+    assert max(radii) > 0.15 * max(picture.width, picture.height)
+
+
+def test_nothing_is_said_of_another_mode_that_is_the_same() -> None:
+    """The guide of an RPR dyad runs through its pins in both modes, which differ by rounding."""
+    for name, link in (("dixon-mechanism", "cf"), ("double-parallelogram-lift", "lower-3")):
+        texts = [shape.text for shape in leaves(ck.draw(catalog.motion(name), kind="construction", link=link).shapes)
+                 if isinstance(shape, Text)]  # fmt: skip
+        assert any("runs through" in text for text in texts)
+        assert not any("dashed" in text for text in texts)
+
+
 def pose_of(motion: ck.results.Motion) -> int:
     """The pose that pictures show where none is asked for."""
     from compoundkin.view.sketch.shown_pose import scene_of
