@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from compoundkin import profiles as profiles
     from compoundkin import results as results
     from compoundkin.analysis.centres import instant_centres
+    from compoundkin.analysis.characteristics.characteristics_of_motion import characteristics
     from compoundkin.analysis.checks import verify
     from compoundkin.analysis.equations import loop_equations
     from compoundkin.configurations.circuit_search import circuits
@@ -65,6 +66,7 @@ __all__ = [
     "arc",
     "belt",
     "cam",
+    "characteristics",
     "circuits",
     "configurations",
     "cylinder",
@@ -110,6 +112,7 @@ globals().pop("configurations", None)
 _LATE = {
     "alternatives": "synthesis.alternatives",
     "animate": "view.animation",
+    "characteristics": "analysis.characteristics.characteristics_of_motion",
     "circuits": "configurations.circuit_search",
     "configurations": "configurations.enumeration",
     "decompose": "structure",

@@ -8,6 +8,7 @@ True
 from __future__ import annotations
 
 from compoundkin.analysis.centres import Centres
+from compoundkin.analysis.characteristics.characteristics_of_motion import Characteristics
 from compoundkin.analysis.checks import Check, Finding
 from compoundkin.analysis.equations import LoopEquations
 from compoundkin.configurations.circuit_search import Circuits
@@ -31,6 +32,7 @@ from compoundkin.view.sketch import Picture
 __all__ = [
     "Animation",
     "Centres",
+    "Characteristics",
     "Check",
     "Circuits",
     "Configuration",

@@ -1,4 +1,4 @@
-"""The pages on pictures and on circuits are true: read from the top, their Python runs."""
+"""The pages on pictures, on circuits and on a press drive are true: read from the top, their Python runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import compoundkin as ck
 DOCS = Path(__file__).parents[1] / "docs"
 
 
-@pytest.mark.parametrize("page", ["pictures.md", "circuits.md"])
+@pytest.mark.parametrize("page", ["pictures.md", "circuits.md", "press-drive.md"])
 def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     lines = [line[4:] for line in (DOCS / page).read_text("utf-8").splitlines() if line.startswith("    ")]

@@ -24,7 +24,7 @@ def answers(name: str) -> Iterator[tuple[str, Any]]:
     yield from {"Mechanism": mechanism, "solve": motion, "report": catalog.report_of(name)}.items()
     for word in ("decompose", "mobility_analysis", "loop_equations", "configurations", "circuits", "alternatives"):
         yield word, getattr(ck, word)(mechanism)
-    for word in ("gaps", "verify", "instant_centres", "draw", "animate", "page"):
+    for word in ("gaps", "verify", "instant_centres", "draw", "animate", "page", "characteristics"):
         yield word, getattr(ck, word)(motion)
     yield "plot", ck.plot(motion, f"{link}.angle")
     yield "quantity", ck.quantity(motion, f"{link}.angle")

@@ -75,6 +75,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "belt": {"first": "a", "second": "b", "radii": (1.0, 2.0), "name": "n", "carrier": "frame", "teeth": None,
                  "phase": None, "first_at": "A", "second_at": "B", "crossed": False},
         "cam": {"link": "a", "on": "b", "at": "A", "profile": ck.profiles.disc(1), "radius": 0.0, "inside": False},
+        "characteristics": {"motion": motion, "outputs": (), "design": 0, "dwell": 0.01, "straight": 0.001},
         "circuits": {"mechanism": m, "driver": "crank", "values": None, "between": None, "design": 0},
         "configurations": {"mechanism": m, "values": {"crank": 1.0}},
         "cylinder": {"link": "a", "point": "A", "to": "b", "at": "B", "stroke": None, "name": "n"},

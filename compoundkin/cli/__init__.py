@@ -24,6 +24,7 @@ VERBS = {
     "configurations": "Every way in which it can be assembled at one pose.",
     "circuits": "Circuits, branches and limit positions; whether the driver turns fully.",
     "workspace": "The region that a point reaches by two or three drivers.",
+    "characteristics": "Stroke, dead points, time ratio, transmission, advantage, dwells.",
     "check": "Verify a motion: a table of all findings.",
     "catalog": "List, show or copy the shipped mechanisms.",
     "atlas": "All kinematic chains, trusses and Assur groups of a size.",

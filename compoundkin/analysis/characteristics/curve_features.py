@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.analysis.characteristics.path_fits import Fit, fitted_circles, fitted_lines, longest_stretch
 from compoundkin.analysis.characteristics.path_stretches import Stretch, stretch_of
-from compoundkin.analysis.characteristics.point_places import path_of, resting_places
+from compoundkin.analysis.characteristics.point_places import path_of
 from compoundkin.analysis.characteristics.traced_path import TracedPath, around
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
@@ -61,10 +61,10 @@ class PathFeatures:
         """Whether the path is closed."""
         return self.path.closed
 
-    @cached_property
+    @property
     def length(self) -> float:
         """The length of the path."""
-        return self.path.samples.length(lambda s: np.abs(self.path.derivatives(s, 1)[1]))
+        return self.path.length
 
     @cached_property
     def line(self) -> Stretch:
@@ -101,7 +101,7 @@ class PathFeatures:
         """The places where the point stands still and its path turns sharply."""
         if self.is_straight or self.is_circular:
             return ()
-        s, cusp = resting_places(self.path)
+        s, cusp = self.path.rests
         where = self.path.derivatives(s[cusp], 0)[0]
         return tuple(PathPlace(complex(p), (self.path.drivers(x),)) for p, x in zip(where, s[cusp], strict=True))
 

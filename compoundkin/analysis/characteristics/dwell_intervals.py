@@ -92,6 +92,19 @@ def _overlap(one: tuple[float, float], other: tuple[float, float], cycle: float)
     return any(min(one[1], other[1] + shift) > max(one[0], other[0] + shift) for shift in {-cycle, 0.0, cycle})
 
 
+def longest_run(values: Number, tolerance: float, closed: bool) -> int:
+    """Return over how many samples values differ by no more than a tolerance.
+
+    A closed row goes on at its beginning. Samples that are not known are left out.
+
+    >>> longest_run(np.array([0.0, 5.0, 9.0, 9.1, 9.0, 0.1]), 0.2, True)
+    2
+    """
+    known = values[np.isfinite(values)]
+    row = np.concatenate([known, known[1:]]) if closed else known
+    return max((b - a for a, b in _windows(row, tolerance)), default=0) if len(row) else 0
+
+
 def _windows(values: Number, tolerance: float) -> list[tuple[int, int]]:
     """Return the longest runs of samples, first and last, in which values differ by no more than a tolerance."""
     found: list[tuple[int, int]] = []

@@ -70,6 +70,21 @@ class FourBar:
         return self.code[:1] in ("G", "S")
 
     @property
+    def turns(self) -> tuple[str, ...]:
+        """The links that can turn fully against the base."""
+        letters = self.code[1:] if self.code[:1] in ("G", "S") and "X" not in self.code else ""
+        if self.code.endswith("X"):
+            letters = "".join("C" if self._may_turn(k) else "R" for k in (1, 2, 3))
+        return tuple(link for link, letter in zip(self.links[1:], letters, strict=False) if letter == "C")
+
+    def _may_turn(self, k: int) -> bool:
+        """Tell whether a link can be beside the base in both directions."""
+        base, own = self.lengths[0], self.lengths[k]
+        one, other = (length for i, length in enumerate(self.lengths) if i not in (0, k))
+        near = EQUAL * sum(self.lengths)
+        return base + own <= one + other + near and abs(base - own) >= abs(one - other) - near
+
+    @property
     def shortest(self) -> str:
         """The shortest link, the first of several."""
         return self.links[int(np.argmin(self.lengths))]

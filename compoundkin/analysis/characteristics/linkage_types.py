@@ -35,6 +35,8 @@ class SliderCrank:
     lengths: tuple[float, float]
     offset: float
     driven: str
+    # Barker's codes are those of four-bars only
+    code: str = ""
 
     @property
     def shortest(self) -> str:

@@ -14,6 +14,8 @@ from compoundkin.base.arrays import Number, cross, dot
 CUTS = 16
 # A stretch is judged by so many of its samples.
 JUDGED = 33
+# Stretches are first begun at every so many samples, then at all beside the best.
+COARSE = 6
 # Turned this often into the fitted direction: slopes are measured from there, which is exact for the last one.
 ROUNDS = 2
 
@@ -113,20 +115,29 @@ def longest_stretch(points: Number, closed: bool, tolerance: float, fit: Callabl
     Returned are its first sample and its last. On a closed curve, whose last sample is the one before the first, the
     last index may run past the end.
     """
-    count = len(points)
     around = np.concatenate([points, points]) if closed else points
-    first = np.arange(count)
+    run = np.append(0.0, np.cumsum(np.abs(np.diff(around))))
+    best, last = _longest_from(np.arange(0, len(points), COARSE), around, run, closed, tolerance, fit)
+    near = np.arange(best - COARSE + 1, best + COARSE)
+    near = near % len(points) if closed else near[(near >= 0) & (near < len(points))]
+    finer = _longest_from(near, around, run, closed, tolerance, fit)
+    return finer if run[finer[1]] - run[finer[0]] > run[last] - run[best] else (best, last)
+
+
+def _longest_from(
+    first: Number, around: Number, run: Number, closed: bool, tolerance: float, fit: Callable[[Number], Fit]
+) -> tuple[int, int]:
+    """Find the longest stretch of those that begin at some samples."""
     near = np.minimum(first + 2, len(around) - 1)
-    far = first + count - 1 if closed else np.full(count, count - 1)
+    far = first + len(around) // 2 - 1 if closed else np.full(len(first), len(around) - 1)
     far = np.maximum(far, near)
     while np.any(far > near):
         middle = (near + far + 1) // 2
         good = fit(around[_of(first, middle)]).deviation <= tolerance
         near, far = np.where(good, middle, near), np.where(good, far, middle - 1)
-    run = np.append(0.0, np.cumsum(np.abs(np.diff(around))))
     fits = fit(around[_of(first, near)]).deviation <= tolerance
     best = int(np.argmax(np.where(fits, run[near] - run[first], -1.0)))
-    return best, int(near[best])
+    return int(first[best]), int(near[best])
 
 
 def _of(first: Number, last: Number) -> Number:

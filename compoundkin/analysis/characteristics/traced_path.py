@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from math import factorial
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number, entry
+from compoundkin.base.arrays import Number, cross, dot
 from compoundkin.base.curves.samples import Samples
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
-from compoundkin.model.elements import FRAME
 
 # A path is shown by about so many samples: loops and stretches that are shorter are not seen.
 SAMPLES = 360
 # Two poses are one where they differ by less than this part of the size: rounding of a full turn of many groups.
 SAME = 1e-9
+
+
+# A point stands still where it is slower than this part of its fastest: books print dimensions of cusps to six digits.
+STANDS = 1e-6
+# Beside a place where it stands still the way from sample to sample is shorter than this part of the longest.
+SLOW = 0.3
+# Newton from the middle of the shortest way: its error is squared with every step.
+STEPS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +81,74 @@ class TracedPath:
 
         Of a closed path the last is left out.
         """
+        s, points, _ = self._sampled
+        return Samples(s, points, self.closed)
+
+    @cached_property
+    def _sampled(self) -> tuple[Number, Number, Number]:
+        """Places, the points there, and how fast they move by the place."""
         poses = round(self.period)
-        count = poses * max(1, -(-SAMPLES // max(poses, 1))) + 1
+        count = 2 * (max(poses, 1) * max(1, -(-SAMPLES // (2 * max(poses, 1))))) + 1
         s = np.linspace(self.first, self.last, count)
         s = s[:-1] if self.closed else s
-        return Samples(s, self.derivatives(s, 0)[0], self.closed)
+        points, rates = self.derivatives(s, 1)
+        return s, points, np.abs(rates)
+
+    @cached_property
+    def length(self) -> float:
+        """The length of the path.
+
+        It is by Simpson's rule, around a cycle by that of trapezoids, which is better there.
+        """
+        speed, step = self._sampled[2], self.samples.step
+        if self.closed:
+            return float(np.sum(speed) * step)
+        return float(step / 3.0 * (4.0 * np.sum(speed[1::2]) + 2.0 * np.sum(speed[::2]) - speed[0] - speed[-1]))
+
+    @cached_property
+    def rests(self) -> tuple[Number, Number]:
+        """Where the point stands still, and which of the places are cusps.
+
+        At a cusp acceleration and jerk have different directions; where they have one, the point turns back as it came.
+        """
+        step, chords = self.samples.step, np.abs(np.diff(around(self)))
+        fastest = float(np.nanmax(chords)) / step
+        if self.closed:
+            before, after = np.roll(chords, 1), np.roll(chords, -1)
+        else:
+            before, after = np.append(np.inf, chords[:-1]), np.append(chords[1:], np.inf)
+        slow = np.flatnonzero((chords <= before) & (chords <= after) & (chords < SLOW * fastest * step))
+        s = self._slowest(self.samples.s[0] + (slow + 0.5) * step)
+        if not s.size:
+            return s, np.empty(0, dtype=bool)
+        _, v, a, j = self.derivatives(s, 3)
+        still = np.abs(v) <= STANDS * fastest
+        bend = np.abs(cross(a, j)) > STANDS * np.abs(a) * (np.abs(j) + np.abs(a) ** 2 / fastest)
+        return self._distinct(s[still], bend[still])
+
+    def _slowest(self, start: Number) -> Number:
+        """Return where the point is slowest near those places beside which it may stop."""
+        step = self.samples.step
+        if start.size:
+            _, v, a = self.derivatives(start, 2)
+            # it may stop where its acceleration leads to rest within two samples
+            start = start[np.abs(v) <= 2.0 * step * np.abs(a)]
+        s = start
+        for _ in range(STEPS if start.size else 0):
+            _, v, a, j = self.derivatives(s, 3)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                change = dot(v, a) / (np.abs(a) ** 2 + dot(v, j))
+            s = np.clip(np.where(np.isfinite(change), s - change, s), start - 1.5 * step, start + 1.5 * step)
+            s = s if self.closed else np.clip(s, self.first, self.last)
+        return s
+
+    def _distinct(self, s: Number, cusp: Number) -> tuple[Number, Number]:
+        """Return places once that were found from both sides, in order."""
+        s = self.first + (s - self.first) % self.period if self.closed else s
+        s, index = np.unique(s, return_index=True)
+        before = s[-1:] - self.period if self.closed else s[:1] - np.inf
+        apart = (np.diff(s, prepend=before) > 0.5 * self.samples.step) | (len(s) == 1)
+        return s[apart], cusp[index][apart]
 
     def part(self, first: float, last: float) -> TracedPath:
         """Return a stretch of it."""
@@ -92,63 +160,3 @@ def around(path: TracedPath) -> Number:
     """Return the samples of a path; a closed one ends with its first."""
     points = path.samples.points
     return np.append(points, points[0]) if path.closed else points
-
-
-def pieces(motion: Motion, design: int) -> Iterator[tuple[int, int]]:
-    """Find the first and the last of each run of assembled poses.
-
-    >>> import compoundkin as ck
-    >>> list(pieces(ck.solve(ck.catalog.load_named("crank-rocker")), 0))
-    [(0, 72)]
-    """
-    good = np.broadcast_to(motion.failed == 0, (motion.inputs.designs, motion.inputs.poses))[design]
-    edge = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
-    yield from zip(edge[::2].tolist(), (edge[1::2] - 1).tolist(), strict=True)
-
-
-def stretches(motion: Motion, design: int) -> Iterator[tuple[int, int, bool]]:
-    """Find stretches of assembled poses along which no driver turns back.
-
-    Returned are first pose, last pose, and whether it is a cycle. Of drivers that turn on after a cycle, after which
-    all links are where they were, the first one.
-
-    >>> import compoundkin as ck
-    >>> list(stretches(ck.solve(ck.catalog.load_named("crank-rocker")), 0))
-    [(0, 72, True)]
-    """
-    drives = _driven(motion, design)
-    way = np.sign(np.diff(drives, axis=1))
-    for begin, end in pieces(motion, design):
-        turns_back = 1 + np.flatnonzero(np.any(way[:, begin + 1 : end] != way[:, begin : end - 1], axis=0))
-        cuts = [begin, *(begin + turns_back).tolist(), end]
-        for first, last in pairwise(cuts):
-            if last > first and np.any(way[:, first]):
-                yield _first_cycle(motion, design, drives, first, last)
-
-
-def _driven(motion: Motion, design: int) -> Number:
-    """Return the values of the drivers of a design, (drivers, poses)."""
-    shape = motion.inputs.designs, motion.inputs.poses
-    return np.array([np.broadcast_to(v[0], shape)[design] for v in motion.inputs.drives.values()])
-
-
-def _first_cycle(motion: Motion, design: int, drives: Number, first: int, last: int) -> tuple[int, int, bool]:
-    """Return a stretch up to where all links are where they were, drivers of angles having turned fully."""
-    gone = np.abs(drives[:, first : last + 1] - drives[:, first : first + 1])
-    moving = gone[:, -1] > 0
-    if all(one.is_angle for one, moves in zip(motion.drives.values(), moving, strict=True) if moves):
-        turns = np.floor(gone[moving] / TURN + SAME).min(axis=0)
-        for k in (first + 1 + np.flatnonzero(np.diff(turns) > 0)).tolist():
-            if is_same_pose(motion, design, first, k):
-                return first, k, True
-    return first, last, False
-
-
-def is_same_pose(motion: Motion, design: int, one: int, other: int) -> bool:
-    """Tell whether all links are at two poses at the same place."""
-    for name, pose in motion.poses.items():
-        for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
-            a, b = (entry(series.c[0], (design, k)) for k in (one, other))
-            if name != FRAME and not abs(a - b) <= SAME * size:
-                return False
-    return True

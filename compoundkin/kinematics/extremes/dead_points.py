@@ -64,7 +64,9 @@ def dead_points(motion: Motion, quantity: str) -> DeadPoints:
         driver = moving_driver(motion)
         moving = share_stretches(motion, moved_alone(motion, driver))
     found = zeros(moving, row.rate).crossings()
-    at = Places(motion, found.at.design, found.at.place)
+    # a rest through the seam of a cycle begins before its beginning, which is also before its end
+    last = motion.inputs.poses - 1.0
+    at = Places(motion, found.at.design, np.where(found.at.place < 0.0, found.at.place + last, found.at.place))
     if motion.time is None:
         forward = _forward(motion, driver, at)
     value = solved(motion, [measure], at.design, at.place)[0]

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar, TypeAlias
 
+from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.suffixes import Kind, suffix_for
 from compoundkin.base.version import VERSION
@@ -21,7 +22,7 @@ from compoundkin.view.page.html_document import Document, asset, vendored
 from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.markup import data_script, element, safe
 from compoundkin.view.page.viewer import Viewer, viewer_of
-from compoundkin.view.report.outputs_section import chosen_outputs, outputs_at_poses, outputs_table
+from compoundkin.view.report.outputs_section import outputs_at_poses, outputs_table
 from compoundkin.view.report.report_data import Outcome, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch import Picture, draw

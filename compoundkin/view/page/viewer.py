@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
 from compoundkin.base.errors import InvalidInput, NotAssembled
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import ACCELERATION, OF_LINKS, OF_POINTS, VELOCITY, course_figure
 from compoundkin.model.elements import FRAME
 from compoundkin.view.page.markup import element, hidden, lines, safe
 from compoundkin.view.page.moving_data import MotionData
-from compoundkin.view.report.outputs_section import chosen_outputs
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch
 from compoundkin.view.sketch.svg import FONT, NATURAL, elements, link_names, number

@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from compoundkin.analysis.characteristics.characteristics_of_motion import characteristics
+from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
 from compoundkin.analysis.checks import Check, Finding, verify
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
@@ -14,7 +16,8 @@ from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections
 from compoundkin.view.report.gaps_section import gaps_of, gaps_section
 from compoundkin.view.report.groups_section import drivers_section, solving_section
-from compoundkin.view.report.outputs_section import chosen_outputs, equivalent_section, moving_sections
+from compoundkin.view.report.outputs_section import equivalent_section, moving_sections
+from compoundkin.view.report.performance_section import performance_section
 from compoundkin.view.report.published_section import Comparison, comparisons, published_section
 from compoundkin.view.report.report_data import Alert, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
@@ -60,7 +63,8 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
     """Report one design of a motion."""
     sample, structure = Sample(motion, design), motion.structure
     # outputs first: an unknown name is said before the slower work is done
-    moving = moving_sections(sample, chosen_outputs(motion, outputs))
+    chosen = chosen_outputs(motion, outputs)
+    moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen, design)
     check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
     outcome = outcome_of(motion, check, published)
     return Report(
@@ -73,6 +77,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
             *([equivalent] if (equivalent := equivalent_section(sample)) else []),
             *assembly_sections(motion, design),
             *moving,
+            performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
             *([gaps_section(sample, missing)] if missing else []),
             checks_section(sample, check),
             *([published_section(structure, published)] if published else []),

@@ -9,17 +9,8 @@ import numpy as np
 
 from compoundkin.analysis.equivalents import replaced
 from compoundkin.base.errors import CompoundkinError, InvalidInput
-from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
-from compoundkin.model.attributes import (
-    ANGLE,
-    DISPLACEMENT,
-    POSITION,
-    course_figure,
-    order_of,
-)
-from compoundkin.model.elements import FRAME
-from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.attributes import course_figure
 from compoundkin.structure import decompose, roman
 from compoundkin.view.report.extremes_blocks import SampleExtremes, cams_sections, extremes_blocks
 from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, TableBlock
@@ -29,38 +20,6 @@ from compoundkin.view.report.wording import counted, listed, ordinal
 _NOTHING = (Paragraph("No outputs are named."),)
 # A mechanical advantage at a toggle position.
 INFINITE = "inf"
-# How many outputs a report chooses where the mechanism names none.
-MOST_OUTPUTS = 6
-
-
-def default_outputs(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the outputs of a mechanism that names none. Tracer points and links without a driver, a few.
-
-    >>> from compoundkin.model.elements import drive, link
-    >>> crank = link("crank", A=0, B=1), link("rod", B=0, P=2), link("frame", A=0)
-    >>> default_outputs(Mechanism("m", *crank, drive("crank")))
-    ('P.position', 'rod.angle')
-    """
-    if mechanism.outputs:
-        return mechanism.outputs
-    used = {letter for pair in mechanism.written_pairs for letter in pair.letters}
-    free = {k: links for k, links in mechanism.carriers.items() if k not in used and len(links) == 1}
-    driven = {drive.link for drive in mechanism.drives} | mechanism.led_links
-    tracers = [letter for letter, links in free.items() if links != (FRAME,)]
-    tracers = [letter for letter in tracers if free[letter][0] not in driven] or tracers
-    sliding = {pair.members[1]: pair.name for pair in mechanism.written_pairs
-               if pair.is_simple and not pair.free_is_angle and pair.members[0] == FRAME}  # fmt: skip
-    moving = [name for name in mechanism.links if name != FRAME and name not in driven]
-    lines = [f"{sliding[name]}.{DISPLACEMENT}" if name in sliding else f"{name}.{ANGLE}" for name in moving]
-    return tuple([*(f"{name}.{POSITION}" for name in tracers), *lines][:MOST_OUTPUTS])
-
-
-def chosen_outputs(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the outputs asked for, else the mechanism's by default.
-
-    The motion must have been solved for the latter.
-    """
-    return tuple(outputs) or tuple(n for n in default_outputs(motion.mechanism) if order_of(n) <= motion.order)
 
 
 def moving_sections(sample: Sample, outputs: Sequence[str]) -> tuple[Section, ...]:

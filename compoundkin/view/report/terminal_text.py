@@ -91,7 +91,8 @@ def _(block: TableBlock, width: int) -> Iterator[RenderableType]:
     for number, panel in enumerate(_panels(block, heads, cells, width)):
         if number:
             yield Text("")
-        yield _grid([block.columns[k] for k in panel], [heads[k] for k in panel], [cells[k] for k in panel])
+        parts = [block.columns[k] for k in panel], [heads[k] for k in panel], [cells[k] for k in panel]
+        yield _lines(*parts) if _is_plain(*parts, width) else _grid(*parts)
 
 
 def _panels(block: TableBlock, heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> list[list[int]]:
@@ -119,6 +120,29 @@ def _inseparable(block: TableBlock) -> list[list[int]]:
 
 def _width(texts: Iterable[str]) -> int:
     return max(len(line) for text in texts for line in text.split("\n"))
+
+
+def _is_plain(columns: Sequence[Column], heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> bool:
+    """Whether nothing of a table is to be wrapped or coloured, so that it need not be measured cell by cell."""
+    wide = sum(_width((head, *column)) + GAP for head, column in zip(heads, cells, strict=True)) - GAP
+    texts = [cell for column in cells for cell in column]
+    plain = all(cell.isascii() and "\n" not in cell and cell not in STYLES for cell in texts)
+    return wide <= width and plain and all(head.isascii() for head in heads)
+
+
+def _lines(columns: Sequence[Column], heads: Sequence[str], cells: Sequence[Sequence[str]]) -> Text:
+    """Return a table as lines that are written as they are: many times faster than a grid, and the same."""
+    wide = [_width((head, *column)) for head, column in zip(heads, cells, strict=True)]
+    sides = [str.rjust if column.is_number else str.ljust for column in columns]
+    tall = max(head.count("\n") for head in heads)
+    above = ["\n" * (tall - head.count("\n")) + head for head in heads]
+    titles = zip(*(head.split("\n") for head in above), strict=True)
+    rows = [*titles, ("-" * (sum(wide) + GAP * (len(wide) - 1)),), *zip(*cells, strict=True)]
+    gap = " " * GAP
+    lines = [gap.join(side(cell, w) for side, cell, w in zip(sides, row, wide, strict=False)) for row in rows]
+    found = Text("\n".join(lines), no_wrap=True, overflow="ignore")
+    found.stylize("bold", 0, len("\n".join(lines[: tall + 1])))
+    return found
 
 
 def _grid(columns: Sequence[Column], heads: Sequence[str], cells: Sequence[Sequence[str]]) -> Grid:

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
 from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes import between, extremes, zeros
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.view.report.outputs_section import chosen_outputs
 from tests.catalog import NAMES, mechanism
 from tests.catalog import motion as solved
 

@@ -1,0 +1,162 @@
+"""`characteristics`: the figures that engineers ask of a motion, put together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.analysis.characteristics.advantage_figures import AdvantageFigures, advantages, ratio_names
+from compoundkin.analysis.characteristics.figure import Range, moving_drivers, ranges_of
+from compoundkin.analysis.characteristics.four_bar_types import FourBar
+from compoundkin.analysis.characteristics.group_figures import (
+    GroupFigures,
+    coriolis_names,
+    group_figures,
+    groups_on_the_way,
+    index_names,
+    pressure_names,
+)
+from compoundkin.analysis.characteristics.limit_positions import DriverDeadPoint, limits_of
+from compoundkin.analysis.characteristics.linkage_types import SliderCrank, linkage_types
+from compoundkin.analysis.characteristics.output_figures import OutputFigures
+from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs, outputs_of
+from compoundkin.base.arguments import checked
+from compoundkin.base.display import counted, short
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.extremes import Measure
+
+# A dwell changes by no more than this part of the stroke; a straight stretch is off by no more than that of the path.
+DWELL, STRAIGHT = 0.01, 0.001
+
+
+@dataclass(frozen=True, eq=False)
+class Characteristics:
+    """The figures of one design of a motion. Outputs are had by their names: `found["ram.displacement"].stroke`.
+
+    `groups` have transmission angles or indices, `pressure_angles` and `coriolis` are ranges by the names of pairs'
+    quantities, `advantages` those of outputs over the only driver that moves. `dead_points` are the driver's own: limit
+    positions. `types` are those of four-bars and slider-cranks, `notes` say what is not defined, and why.
+    """
+
+    motion: Motion
+    design: int
+    outputs: tuple[OutputFigures, ...]
+    groups: tuple[GroupFigures, ...]
+    pressure_angles: Mapping[str, Range]
+    coriolis: Mapping[str, Range]
+    advantages: tuple[AdvantageFigures, ...]
+    dead_points: tuple[DriverDeadPoint, ...]
+    notes: tuple[str, ...]
+
+    @cached_property
+    def types(self) -> tuple[FourBar | SliderCrank, ...]:
+        """The types of its loops of four links."""
+        return linkage_types(self.motion.structure, self.design if self._has_designs else 0)
+
+    @property
+    def _has_designs(self) -> bool:
+        return self.motion.inputs.designs > 1
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is poor: transmission angles below 40 degrees on the way to an output."""
+        return tuple(
+            f"{one.name} falls to {np.rad2deg(one.range.least.number):.3g} degrees on the way to the output"
+            for one in self.groups
+            if one.is_poor
+        )
+
+    def __getitem__(self, name: str) -> OutputFigures:
+        """Return the figures of an output; raises UnknownName with the nearest there is."""
+        named = {one.output.owner: one for one in reversed(self.outputs)} | {one.name: one for one in self.outputs}
+        if name in named:
+            return named[name]
+        try:
+            meant = outputs_of(self.motion, [name])[0]
+        except UnknownName:
+            raise UnknownName(Problem(name, "there is no such output", nearest(name, list(named)))) from None
+        if meant.name in named:
+            return named[meant.name]
+        asked = f"ask for it: characteristics(motion, [{name!r}])"
+        raise UnknownName(Problem(name, f"it is none of the outputs {', '.join(self.names) or '(none)'}", asked))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the outputs."""
+        return tuple(one.name for one in self.outputs)
+
+    def __repr__(self) -> str:
+        parts = [counted(len(self.outputs), "output"), counted(len(self.groups), "group")]
+        parts += [counted(len(self.warnings), "warning")] if self.warnings else []
+        return f"Characteristics({self.motion.mechanism.title!r}: {', '.join(parts)})"
+
+
+@checked
+def characteristics(
+    motion: Motion, outputs: Sequence[str] = (), design: int = 0, dwell: float = DWELL, straight: float = STRAIGHT
+) -> Characteristics:
+    """Return the figures of a motion that engineers ask for.
+
+    They are stroke, time ratio, dead points, transmission, advantage and others. `outputs` are names of quantities,
+    those that the mechanism names if left out. A dwell stays within the part `dwell` of its stroke, a straight stretch
+    of a path within the part `straight` of the path's size. Everything is solved for between the poses too. What is not
+    defined is left out, and said in `notes`: of a single pose, of a motion with gaps, of several drivers.
+
+    Raises UnknownName for an output that is not there, InvalidInput for a design that is not.
+
+    >>> import compoundkin as ck
+    >>> found = characteristics(ck.solve(ck.catalog.load_named("whitworth-quick-return")))
+    >>> round(found["ram.value"].stroke.values, 9), round(float(found["ram.value"].time_ratio.values), 9)
+    (150.0, 2.0)
+    """
+    _check(motion, design, dwell, straight)
+    asked = outputs_of(motion, chosen_outputs(motion, outputs))
+    groups = index_names(motion)
+    pressures, guides = pressure_names(motion), coriolis_names(motion)
+    moving = moving_drivers(motion, design)
+    ratios = ratio_names(motion, asked, design)
+    found = (one for output in asked for one in output.measures(motion))
+    measures = {one.name if isinstance(one, Measure) else one: one for one in found}
+    besides = dict.fromkeys((*groups, *pressures, *guides, *ratios.values()))
+    ranges = ranges_of(motion, design, [*measures.values(), *(name for name in besides if name not in measures)])
+    way = groups_on_the_way(motion.structure, asked)
+    figures = tuple(OutputFigures(motion, design, one, ranges, dwell, straight) for one in asked)
+    return Characteristics(
+        motion,
+        design,
+        figures,
+        group_figures(motion, groups, ranges, way),
+        {name: ranges[name] for name in pressures if name in ranges},
+        {name: ranges[name] for name in guides if name in ranges},
+        advantages(motion, design, asked, ratios, ranges),
+        limits_of(motion, design, figures),
+        tuple(_notes(motion, design, moving)),
+    )
+
+
+def _check(motion: Motion, design: int, dwell: float, straight: float) -> None:
+    if not 0 <= design < motion.inputs.designs:
+        known = f"0 to {motion.inputs.designs - 1}" if motion.inputs.designs > 1 else "there is only 0"
+        raise InvalidInput(Problem("design", f"there is no design {short(design)}", known))
+    for name, part in (("dwell", dwell), ("straight", straight)):
+        if not 0 < part < 1:
+            raise InvalidInput(Problem(name, f"{part:g} is no part of a stroke", "give a number between 0 and 1"))
+
+
+def _notes(motion: Motion, design: int, moving: tuple[str, ...]) -> list[str]:
+    """Return what is not defined for such a motion, and why."""
+    told = []
+    if motion.inputs.poses < 2:
+        told.append("A single pose: strokes, dead points, time ratios, dwells and paths take a motion over several.")
+    missing = int(np.count_nonzero(np.broadcast_to(motion.failed, motion.failed.shape)[design]))
+    if missing:
+        told.append(f"{missing:,} of {motion.inputs.poses:,} poses cannot be assembled: figures are of what can be,"
+                    " time ratios are not defined.")  # fmt: skip
+    if len(moving) > 1:
+        told.append(f"Several drivers move ({', '.join(moving)}): time ratios by a driver's angle, velocity ratios and"
+                    " mechanical advantage are not defined.")  # fmt: skip
+    return told

@@ -1,0 +1,141 @@
+"""Figures of a motion: single values, and where along the motion they are taken; ranges of quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.extremes import Extreme, Measure, Places, extremes
+from compoundkin.kinematics.quantities import Quantity, whole_and_part
+from compoundkin.model.attributes import TIME, coordinate_dimension, unit_of
+
+GREATEST, LEAST = "greatest", "least"
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedFigure:
+    """A value with what the drivers are there; angles in radians.
+
+    Where the motion is in time it has the time too. `place` counts the poses of the motion from 0.
+    """
+
+    value: Quantity
+    at: Mapping[str, Quantity]
+    place: float
+
+    @property
+    def number(self) -> float:
+        """The value as a number, in the unit of the quantity."""
+        return float(self.value.values)
+
+    def __repr__(self) -> str:
+        return f"PlacedFigure({told(self.value)} at {', '.join(map(told, self.at.values()))})"
+
+
+@dataclass(frozen=True, eq=False)
+class Range:
+    """The least and the greatest value of a quantity over a motion. None of a motion that is nowhere assembled."""
+
+    least: PlacedFigure
+    greatest: PlacedFigure
+    is_constant: bool
+
+    @property
+    def absolute(self) -> PlacedFigure:
+        """The value farther from zero."""
+        return self.greatest if abs(self.greatest.number) >= abs(self.least.number) else self.least
+
+
+def told(one: Quantity) -> str:
+    """Return a quantity of one value as it is told, angles in degrees.
+
+    >>> told(Quantity("crank", "rad", np.pi))
+    'crank 180 deg'
+    """
+    found = one.shown
+    return f"{found.name} {float(found.values) + 0.0:.6g} {found.unit}".rstrip()
+
+
+def number(one: Quantity) -> float:
+    """Return the number of a quantity of one value."""
+    return float(one.values)
+
+
+def scalar(name: str, value: float, unit: str) -> Quantity:
+    """Return a quantity of one value.
+
+    >>> scalar("ram.stroke", 52.0, "mm")
+    Quantity('ram.stroke', 1 values in mm)
+    """
+    return Quantity(name, unit, float(value))
+
+
+def drivers_at(motion: Motion, design: int, places: Sequence[float]) -> list[dict[str, Quantity]]:
+    """Return the values of the moving drivers at places.
+
+    Where the motion is in time that comes first. Of all drivers where none moves.
+    """
+    found = Places(motion, np.full(len(places), design), np.array(places, dtype=float))
+    columns = {}
+    if found.time is not None:
+        columns[TIME] = found.time, unit_of("", "time")
+    for name in moving_drivers(motion, design) or tuple(motion.drives):
+        dimension = coordinate_dimension(motion.drives[name].is_angle)
+        columns[name] = found.drives[name], unit_of(motion.mechanism.unit, dimension)
+    return [{name: scalar(name, v[k], unit) for name, (v, unit) in columns.items()} for k in range(len(places))]
+
+
+def moving_drivers(motion: Motion, design: int) -> tuple[str, ...]:
+    """Return the drivers whose values change along the motion."""
+    shape = motion.inputs.designs, motion.inputs.poses
+    rows = {name: np.broadcast_to(v[0], shape)[design] for name, v in motion.inputs.drives.items()}
+    return tuple(name for name, row in rows.items() if np.ptp(row) > 0)
+
+
+def ranges_of(motion: Motion, design: int, asked: Sequence[str | Measure]) -> dict[str, Range]:
+    """Return the ranges of real quantities, solved for between poses.
+
+    Of a single pose they are the values there. Quantities that the motion cannot have, such as ratios where several
+    drivers move, are left out.
+    """
+    if motion.inputs.poses < 2:
+        return _at_pose(motion, design, [one if isinstance(one, str) else one.name for one in asked])
+    found = extremes(motion, *asked) if asked else ()
+    ends = [(one, word, getattr(one, word)) for one in found for word in (LEAST, GREATEST)]
+    known = [(one.name, word, one.unit, _number(end, design), float(end.at.place[design])) for one, word, end in ends]
+    known = [row for row in known if not np.isnan(row[3])]
+    at = drivers_at(motion, design, [place for *_, place in known])
+    figures = {
+        (name, word): PlacedFigure(scalar(f"{name}.{word}", value, unit), where, place)
+        for (name, word, unit, value, place), where in zip(known, at, strict=True)
+    }
+    return {
+        one.name: Range(figures[one.name, LEAST], figures[one.name, GREATEST], bool(one.is_constant[design]))
+        for one in found
+        if (one.name, LEAST) in figures and (one.name, GREATEST) in figures
+    }
+
+
+def _number(end: Extreme, design: int) -> float:
+    return float(end.value[design])
+
+
+def _at_pose(motion: Motion, design: int, names: Sequence[str]) -> dict[str, Range]:
+    """Return the values at the only pose."""
+    found = {}
+    (where,) = drivers_at(motion, design, [0.0])
+    for name in names:
+        try:
+            whole, part = whole_and_part(motion, name)
+        except InvalidInput:
+            continue  # of an order that the motion was not solved to
+        one = whole.part(part) if part else whole
+        value = np.broadcast_to(one.values, motion.shape).reshape(-1)[design]
+        if np.isfinite(value):
+            figure = PlacedFigure(scalar(name, float(value), one.unit), where, 0.0)
+            found[name] = Range(figure, figure, True)
+    return found

@@ -1,0 +1,186 @@
+"""The figures of one output: stroke, dead points, time ratio, greatest rates, dwells, and the path of a point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.analysis.characteristics.curve_features import PathFeatures, path_features
+from compoundkin.analysis.characteristics.figure import (
+    PlacedFigure,
+    Range,
+    drivers_at,
+    moving_drivers,
+    number,
+    scalar,
+    told,
+)
+from compoundkin.analysis.characteristics.output_dwells import Dwell, OutputCourse
+from compoundkin.analysis.characteristics.outputs_of_motion import Output
+from compoundkin.analysis.characteristics.quick_return import QuickReturn, quick_return_between
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import CompoundkinError
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.extremes import between, closed_cycles, dead_points
+from compoundkin.kinematics.quantities import Quantity, quantity
+from compoundkin.model.attributes import unit_of
+
+
+@dataclass(frozen=True, eq=False)
+class OutputFigures:
+    """The figures of one output over a motion, with where along it each is.
+
+    Of a point that moves in the plane there is no least and no greatest value, but a `path`. None, or nothing, stands
+    for what is not defined: the time ratio of what does not go to and fro in a cycle of one driver, for one. Dwells
+    are intervals within the part `dwell` of the stroke, stretches of paths are within the part `straight` of its size.
+    """
+
+    motion: Motion
+    design: int
+    output: Output
+    ranges: Mapping[str, Range]
+    dwell: float
+    straight: float
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        return self.output.name
+
+    @property
+    def least(self) -> PlacedFigure | None:
+        """The least value, where it is first taken."""
+        return self.ranges[self.output.coordinate].least if self.output.coordinate in self.ranges else None
+
+    @property
+    def greatest(self) -> PlacedFigure | None:
+        """The greatest value, where it is first taken."""
+        return self.ranges[self.output.coordinate].greatest if self.output.coordinate in self.ranges else None
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it does not change."""
+        known = self.ranges.get(self.output.coordinate or self.output.rate)
+        return known is None or (known.is_constant and not (self.output.is_point and known.greatest.number > 0))
+
+    @cached_property
+    def stroke(self) -> Quantity | None:
+        """The greatest less the least value.
+
+        Of a point that goes to and fro along a line it is how far.
+        """
+        if self.motion.inputs.poses < 2:
+            return None
+        if self.least is not None and self.greatest is not None:
+            far, unit = self.greatest.number - self.least.number, self.least.value.unit
+            return scalar(f"{self.name}.stroke", far, unit)
+        if self.path is not None and self.path.is_straight and not self.path.closed:
+            return scalar(f"{self.name}.stroke", self.path.line.length, unit_of(self.motion.mechanism.unit, "length"))
+        return None
+
+    @property
+    def speed(self) -> PlacedFigure | None:
+        """The rate of greatest absolute value."""
+        return self.ranges[self.output.rate].absolute if self.output.rate in self.ranges else None
+
+    @property
+    def acceleration(self) -> PlacedFigure | None:
+        """The second rate of greatest absolute value."""
+        return self.ranges[self.output.second].absolute if self.output.second in self.ranges else None
+
+    @cached_property
+    def dead_points(self) -> tuple[PlacedFigure, ...]:
+        """Where it turns back: its values there, in the order of the motion."""
+        if not self.moves or self.output.rate not in self.ranges:
+            return ()
+        if (turning := self._at_extremes()) is not None:
+            return turning
+        if self.motion.time is None and len(moving_drivers(self.motion, self.design)) != 1:
+            return ()
+        found = dead_points(self.motion, self.output.coordinate).at
+        return self._figures(np.sort(found.place[found.design == self.design]))
+
+    @cached_property
+    def quick_return(self) -> QuickReturn | None:
+        """How long the stroke takes forth and back in a cycle."""
+        if not self.moves or not self.cycle or len(self.dead_points) < 2:
+            return None
+        assert self.least is not None
+        assert self.greatest is not None
+        return quick_return_between(self.motion, self.design, self.cycle, self.name, (self.least, self.greatest))
+
+    @property
+    def time_ratio(self) -> Quantity | None:
+        """The longer way of the driver, forth or back, by the shorter one."""
+        return self.quick_return.time_ratio if self.quick_return else None
+
+    @cached_property
+    def dwells(self) -> tuple[Dwell, ...]:
+        """Where it changes by no more than the part `dwell` of its stroke."""
+        return self._course.dwells() if self.moves and self.stroke is not None else ()
+
+    def may_dwell(self, part: float) -> bool:
+        """Tell from the poses whether a dwell may take a part of the motion."""
+        return self.moves and self.stroke is not None and self._course.may_dwell(part)
+
+    @property
+    def _course(self) -> OutputCourse:
+        assert self.stroke is not None
+        return OutputCourse(self.motion, self.design, self.output.coordinate, self.cycle, self.stroke.unit,
+                      self.dwell * number(self.stroke), tuple(one.place for one in self.dead_points))  # fmt: skip
+
+    @cached_property
+    def path(self) -> PathFeatures | None:
+        """The features of the path of a point that moves; None for others."""
+        if not self.output.is_point:
+            return None
+        try:
+            found = path_features(self.motion, self.output.owner, None, self.design)
+        except CompoundkinError:
+            return None
+        return replace(found, tolerance=self.straight * found.size)
+
+    @cached_property
+    def cycle(self) -> float:
+        """How many poses a closed cycle has; 0 where the motion is none."""
+        closed = self.motion.inputs.poses > 1 and bool(closed_cycles(self.motion)[self.design])
+        return float(self.motion.inputs.poses - 1) if closed else 0.0
+
+    @property
+    def moves(self) -> bool:
+        """Whether it has a coordinate that changes along the motion."""
+        return not self.output.is_point and not self.is_constant and self.motion.inputs.poses > 1
+
+    def _figures(self, places: Number) -> tuple[PlacedFigure, ...]:
+        """Return the values of its coordinate at places."""
+        if not len(places):
+            return ()
+        found = quantity(between(self.motion, self.design, places, 0), self.output.coordinate)
+        at, values = drivers_at(self.motion, self.design, places.tolist()), np.ravel(found.values)
+        return tuple(
+            PlacedFigure(scalar(found.name, values[k], found.unit), at[k], float(place))
+            for k, place in enumerate(places.tolist())
+        )
+
+    def _at_extremes(self) -> tuple[PlacedFigure, ...] | None:
+        """Return the dead points where the least and the greatest value are all there are; None where they are not."""
+        if self.motion.order < 1 or self.motion.time is not None:
+            return None
+        found = quantity(self.motion, self.output.rate).values
+        shape = self.motion.inputs.designs, self.motion.inputs.poses
+        rates = np.broadcast_to(found, self.motion.shape).reshape(shape)[self.design]
+        assert self.least is not None
+        assert self.greatest is not None
+        inside = [one for one in (self.least, self.greatest) if 0.0 < one.place < shape[1] - 1.0]
+        turns = np.count_nonzero(rates[:-1] * rates[1:] < 0.0)
+        if np.any(rates == 0.0) or not np.isfinite(rates).all() or turns != len(inside):
+            return None
+        values = [replace(one, value=replace(one.value, name=self.output.coordinate)) for one in inside]
+        return tuple(sorted(values, key=lambda one: one.place))
+
+    def __repr__(self) -> str:
+        parts = [one for one in (self.stroke, self.time_ratio) if one is not None]
+        return f"OutputFigures({', '.join([self.name, *map(told, parts)])})"

@@ -1,0 +1,200 @@
+"""The section Performance: strokes, dead points, time ratios, transmission, advantage, paths and types of linkages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from compoundkin.analysis.characteristics.characteristics_of_motion import Characteristics
+from compoundkin.analysis.characteristics.curve_features import PathFeatures, simple_shape
+from compoundkin.analysis.characteristics.figure import PlacedFigure, Range
+from compoundkin.analysis.characteristics.four_bar_types import FourBar
+from compoundkin.analysis.characteristics.linkage_types import SliderCrank
+from compoundkin.analysis.characteristics.output_figures import OutputFigures
+from compoundkin.kinematics.quantities import Quantity
+from compoundkin.model.attributes import ADVANTAGE, DEGREES, LENGTH, RADIANS, TIME, VELOCITY_RATIO
+from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.wording import counted, listed
+from compoundkin.view.report.wording import number as written
+
+# Dwells are told that take at least this part of the motion: a slider-crank stays at its dead points for less.
+LONG = 0.125
+# A straight stretch, or an arc, is told that is at least this part of the path's extent.
+STRETCH = 0.25
+# An arc of a greater radius, by the path's extent, is told as straight.
+FLAT = 10.0
+# So many loops of four links are told one by one.
+MOST_LOOPS = 12
+NO_LIMIT = "no limit"
+# Places are found to about this (degrees, lengths or seconds): nearer to zero they are shown as zero.
+NEARLY = 1e-6
+# A value below this part of the other end is zero but for rounding.
+FLOOR = 1e-12
+
+
+def performance_section(
+    sample: Sample, found: Characteristics, told: Sequence[str] = (), named: bool = True
+) -> Section:
+    """Return the figures of a motion.
+
+    Extremes of quantities that are told elsewhere are left out. Warnings are of outputs that somebody named.
+    """
+    return Section("performance", "Performance", tuple(_blocks(sample, found, told, named)))
+
+
+def _blocks(sample: Sample, found: Characteristics, told: Sequence[str], named: bool) -> Iterator[Block]:
+    yield from (Paragraph(note) for note in found.notes)
+    yield from (Alert(f"{warning}.") for warning in found.warnings if named)
+    yield from _strokes(found)
+    yield from _dead_points(sample, found)
+    yield from _ranges(sample, found, told)
+    yield from _dwells(found)
+    yield from _paths(found)
+    yield from _types(found)
+
+
+def _strokes(found: Characteristics) -> Iterator[Block]:
+    """How far each output goes, and how much longer one way takes than the other."""
+    rows = []
+    for one in found.outputs:
+        if not one.output.is_point and one.stroke is not None:
+            back = one.quick_return
+            ways = (back.forth, back.back, back.time_ratio, back.imbalance) if back else (None,) * 4
+            rows.append((one.name, _unit(one.stroke), *map(_number, (one.stroke, *ways))))
+    if not rows:
+        return
+    way = next((_unit(one.quick_return.forth) for one in found.outputs if one.quick_return), "")
+    columns = Column("output"), Column("unit"), *(Column(name, unit, "each") for name, unit in
+               (("stroke", ""), ("forth", way), ("back", way), ("time ratio", ""), ("imbalance", DEGREES)))  # fmt: skip
+    yield TableBlock(columns, tuple(rows))
+
+
+def _dead_points(sample: Sample, found: Characteristics) -> Iterator[Block]:
+    """Where outputs turn back, and where the driver cannot go on."""
+    place = sample.places[0]
+    rows = [(one.name, _unit(point.value), _number(point.value), _at(point)) for one in found.outputs
+            for point in one.dead_points]  # fmt: skip
+    if rows:
+        columns = Column("dead point of"), Column("unit"), Column("value", style="each"), _place(place, "at")
+        yield TableBlock(columns, tuple(rows))
+    for limit in found.dead_points:
+        told = f"{place.name} {written(_first(limit.at))} {place.unit}".rstrip()
+        values = [f"{name} {written(_shown(value))} {_unit(value)}".rstrip() for name, value in limit.values.items()]
+        reason = f", where {limit.reason}" if limit.reason else ""
+        yield Paragraph(f"A dead point of the driver is at {told}{reason}{': ' + listed(values) if values else ''}.")
+
+
+def _ranges(sample: Sample, found: Characteristics, told: Sequence[str]) -> Iterator[Block]:
+    """Rates, transmission, pressure angles, Coriolis accelerations and ratios, from the least to the greatest."""
+    known = {*told, *(f"{name}.{LENGTH}" for name in told)}
+    rows = [_range(name, one) for name, one in _named_ranges(found) if name not in known]
+    for ratio in found.advantages:
+        least, greatest = ratio.least, ratio.greatest
+        most = (NO_LIMIT, None) if greatest is None else (abs(greatest.number), _at(greatest))
+        rows.append((f"|{ratio.owner}.{ADVANTAGE}|", least.value.unit, abs(least.number), _at(least), *most))
+    if not rows:
+        return
+    place = sample.places[0]
+    ends = Column("least", style="each"), _place(place, "at"), Column("greatest", style="each"), _place(place, "at")
+    yield TableBlock((Column("quantity"), Column("unit"), *ends), tuple(rows), keys=1)
+
+
+def _named_ranges(found: Characteristics) -> Iterator[tuple[str, Range]]:
+    for one in found.outputs:
+        for name in (one.output.rate, one.output.second):
+            if name in one.ranges:
+                yield name, one.ranges[name]
+    yield from ((one.name, one.range) for one in found.groups)
+    yield from found.pressure_angles.items()
+    yield from found.coriolis.items()
+    yield from ((f"{one.owner}.{VELOCITY_RATIO}", one.ratio) for one in found.advantages)
+
+
+def _range(name: str, one: Range) -> tuple[Cell, ...]:
+    least, greatest = one.least, one.greatest
+    if one.is_constant:
+        return name, _unit(least.value), _number(least.value), "always", _number(greatest.value), "always"
+    floor = FLOOR * max(abs(least.number), abs(greatest.number))
+    low, high = (0.0 if abs(end.number) <= floor else _number(end.value) for end in (least, greatest))
+    return name, _unit(least.value), low, _at(least), high, _at(greatest)
+
+
+def _dwells(found: Characteristics) -> Iterator[Block]:
+    """Where outputs rest for long."""
+    for one in found.outputs:
+        if one.may_dwell(LONG):
+            far = LONG * (one.motion.inputs.poses - 1)
+            for dwell in (dwell for dwell in one.dwells if dwell.poses >= far):
+                (name, begin), (_, end) = next(iter(dwell.begin.items())), next(iter(dwell.end.items()))
+                way = f"from {name} {written(_shown(begin))} to {written(_shown(end))} {_unit(begin)}".rstrip()
+                span = f"{written(_shown(dwell.span))} {_unit(dwell.span)}".rstrip()
+                value = f"{written(_shown(dwell.value))} {_unit(dwell.value)}".rstrip()
+                yield Paragraph(f"{one.name} dwells at {value} within {one.dwell:.3g} of its stroke {way}, for {span}.")
+
+
+def _paths(found: Characteristics) -> Iterator[Block]:
+    """What the curves of points have: straight stretches, arcs, cusps, points passed twice."""
+    points = [one for one in found.outputs if one.output.is_point and not one.is_constant]
+    for one in points:
+        if not simple_shape(found.motion, one.output.owner, found.design) and one.path is not None:
+            unit = f" {found.motion.mechanism.unit}".rstrip()
+            yield Paragraph(f"{one.name} describes {listed(_features(one, one.path, unit))}.")
+
+
+def _features(one: OutputFigures, path: PathFeatures, unit: str) -> Iterator[str]:
+    yield f"{'a closed' if path.closed else 'an open'} curve, {written(path.length)}{unit} long"
+    for stretch in (path.straight, path.arc):
+        long = stretch.length >= STRETCH * path.size and (stretch.is_straight or stretch.radius <= FLAT * path.size)
+        if long and (stretch.is_straight or stretch.length > path.straight.length):
+            kind = "straight" if stretch.is_straight else f"an arc of radius {written(stretch.radius)}"
+            (name, a), b = next(iter(stretch.begin.items())), next(iter(stretch.end.values()))
+            turned = one.motion.drives[name].is_angle
+            begin, end = (written(float(np.rad2deg(v)) if turned else v) for v in (a, b))
+            far = f"{written(stretch.length)}{unit}, {name} {begin} to {end}"
+            yield f"{kind} within {stretch.deviation:.2g} over {far}"
+    yield from (counted(len(what), name) for what, name in
+                ((path.cusps, "cusp"), (path.double_points, "double point")) if what)  # fmt: skip
+
+
+def _types(found: Characteristics) -> Iterator[Block]:
+    """What four-bars and slider-cranks there are."""
+    loops = found.types[:MOST_LOOPS]
+    rows = tuple(
+        (", ".join(one.links), f"{one.name} ({one.code})" if one.code else one.name, _turns(one)) for one in loops
+    )
+    if rows:
+        yield TableBlock((Column("loop of four links"), Column("type"), Column("full turns")), rows)
+    if len(found.types) > MOST_LOOPS:
+        yield Paragraph(f"... and {counted(len(found.types) - MOST_LOOPS, 'loop')} of four links more.")
+
+
+def _turns(one: FourBar | SliderCrank) -> str:
+    """Which links turn fully against the first one of a loop."""
+    return ", ".join(one.turns) or "none"
+
+
+def _place(place: Column, word: str) -> Column:
+    return Column(f"{word} {place.name}", place.unit, "each", NEARLY, follows=True)
+
+
+def _at(figure: PlacedFigure) -> float:
+    """Where a figure is: the time, the driver's value, or the number of the pose where several drivers move."""
+    return figure.place if len(figure.at) > 1 and TIME not in figure.at else _first(figure.at)
+
+
+def _first(at: Mapping[str, Quantity]) -> float:
+    return _shown(next(iter(at.values())))
+
+
+def _shown(one: Quantity) -> float:
+    return float(one.shown.values)
+
+
+def _number(one: Quantity | None) -> float | None:
+    return None if one is None else _shown(one)
+
+
+def _unit(one: Quantity) -> str:
+    return DEGREES if one.unit == RADIANS else one.unit
