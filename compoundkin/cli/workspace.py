@@ -112,5 +112,6 @@ def told(found: Workspace) -> list[str]:
         f"  in {found.modes}"
         + ("" if found.orientation is None else f", {found.link} at {degrees(found.orientation):.6g}°"),
         f"  area {found.area:.4g}{area}; x {x[0]:.4g} to {x[1]:.4g}{length}, y {y[0]:.4g} to {y[1]:.4g}{length}",
-        f"  boundary: {len(found.outer)} outer, {len(found.inner)} inner; corners and details within {found.step:.2g}{length}",
+        f"  boundary: {len(found.outer)} outer, {len(found.inner)} inner;"
+        f" corners and details within {found.step:.2g}{length}",
     ]
