@@ -18,7 +18,7 @@ Examples:
   compoundkin characteristics crank-shaper
   compoundkin characteristics toggle-press --output press.value --dwell 0.02
   compoundkin characteristics hoecken-straight-line --straight 0.0005
-  compoundkin characteristics linkage.toml --from 0 --to 180 --step 2 --format json
+  compoundkin characteristics linkage.toml --from 0 --to 180 --format json
   compoundkin characteristics whitworth-quick-return -o figures.md
 """
 )
