@@ -20,6 +20,7 @@ from compoundkin.analysis.characteristics.figure import (
 )
 from compoundkin.analysis.characteristics.output_dwells import Dwell, OutputCourse
 from compoundkin.analysis.characteristics.outputs_of_motion import Output
+from compoundkin.analysis.characteristics.piece_strokes import PieceStroke, strokes_by_piece
 from compoundkin.analysis.characteristics.quick_return import QuickReturn, quick_return_between
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError
@@ -80,6 +81,14 @@ class OutputFigures:
         if self.path is not None and self.path.is_straight and not self.path.closed:
             return scalar(f"{self.name}.stroke", self.path.line.length, unit_of(self.motion.mechanism.unit, "length"))
         return None
+
+    @cached_property
+    def pieces(self) -> tuple[PieceStroke, ...]:
+        """Its strokes over the assembled pieces of the motion, where that is not one."""
+        failed = np.broadcast_to(self.motion.failed != 0, (self.motion.inputs.designs, self.motion.inputs.poses))
+        if self.least is None or self.motion.inputs.poses < 2 or not failed[self.design].any():
+            return ()
+        return strokes_by_piece(self.motion, self.design, self.output.coordinate)
 
     @property
     def speed(self) -> PlacedFigure | None:

@@ -48,6 +48,7 @@ def _blocks(sample: Sample, found: Characteristics, told: Sequence[str], named: 
     yield from (Paragraph(note) for note in found.notes)
     yield from (Alert(f"{warning}.") for warning in found.warnings if named)
     yield from _strokes(found)
+    yield from _pieces(found)
     yield from _dead_points(sample, found)
     yield from _ranges(sample, found, told)
     yield from _dwells(found)
@@ -69,6 +70,16 @@ def _strokes(found: Characteristics) -> Iterator[Block]:
     columns = Column("output"), Column("unit"), *(Column(name, unit, "each") for name, unit in
                (("stroke", ""), ("forth", way), ("back", way), ("time ratio", ""), ("imbalance", DEGREES)))  # fmt: skip
     yield TableBlock(columns, tuple(rows))
+
+
+def _pieces(found: Characteristics) -> Iterator[Block]:
+    """How far each output goes in each part of the motion that can be assembled."""
+    for one in found.outputs:
+        for piece in one.pieces if len(one.pieces) > 1 else ():
+            (name, begin), end = next(iter(piece.begin.items())), next(iter(piece.end.values()))
+            way = f"from {name} {written(_shown(begin))} to {written(_shown(end))} {_unit(end)}".rstrip()
+            ends = f"{written(_shown(piece.least))} to {written(_shown(piece.greatest))} {_unit(piece.least)}".rstrip()
+            yield Paragraph(f"{one.name} goes {way} over {ends}, a stroke of {written(_shown(piece.stroke))}.")
 
 
 def _dead_points(sample: Sample, found: Characteristics) -> Iterator[Block]:

@@ -142,6 +142,18 @@ def test_gaps_are_told_with_the_dead_points_of_the_driver() -> None:
     assert all(one.time_ratio is None for one in found.outputs)
 
 
+def test_strokes_are_told_piece_by_piece() -> None:
+    """From 0 to 600 degrees the triple rocker moves in two parts; the second has both limits."""
+    motion = ck.solve(catalog.mechanism("triple-rocker"), {"driver": ck.deg(np.arange(0, 601, 5))})
+    (rocker,) = ck.characteristics(motion, ["rocker"]).outputs
+    limit = np.arccos((7**2 + 4**2 - 8**2) / (2 * 7 * 4))
+    begins = [value(piece.begin["driver"]) for piece in rocker.pieces]
+    assert begins == pytest.approx([0.0, 2 * np.pi - limit], abs=1e-8)
+    assert value(rocker.pieces[1].end["driver"]) == pytest.approx(2 * np.pi + limit, abs=1e-8)
+    part = ck.solve(motion.mechanism, {"driver": np.linspace(-limit + 1e-9, limit - 1e-9, 4001)}, order=0)
+    assert value(rocker.pieces[1].stroke) == pytest.approx(np.ptp(part.links["rocker"].angle), abs=1e-5)
+
+
 def test_a_single_pose_and_several_drivers_say_what_is_not_defined() -> None:
     pose = ck.characteristics(ck.solve(catalog.mechanism("four-bar-norton"), {"crank": [1.0]}))
     assert pose.notes[0].startswith("A single pose")
