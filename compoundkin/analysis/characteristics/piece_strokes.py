@@ -15,7 +15,10 @@ from compoundkin.kinematics.quantities import Quantity
 
 @dataclass(frozen=True, eq=False)
 class PieceStroke:
-    """The stroke of an output over one assembled piece of a motion: from `begin` to `end` of its drivers."""
+    """The stroke of an output over one assembled piece of a motion.
+
+    The piece goes from `begin` to `end` of the drivers.
+    """
 
     begin: Mapping[str, Quantity]
     end: Mapping[str, Quantity]
@@ -30,7 +33,7 @@ class PieceStroke:
 
 
 def strokes_by_piece(motion: Motion, design: int, coordinate: str) -> tuple[PieceStroke, ...]:
-    """Return the strokes of an output over the assembled pieces of a motion, in their order."""
+    """Return the strokes of an output over the assembled pieces of a motion."""
     whole, (found,) = pieces(motion), extremes(motion, coordinate, by_piece=True)
     made = []
     for k in np.flatnonzero(whole.begin.design == design).tolist():

@@ -150,8 +150,9 @@ def test_strokes_are_told_piece_by_piece() -> None:
     begins = [value(piece.begin["driver"]) for piece in rocker.pieces]
     assert begins == pytest.approx([0.0, 2 * np.pi - limit], abs=1e-8)
     assert value(rocker.pieces[1].end["driver"]) == pytest.approx(2 * np.pi + limit, abs=1e-8)
+    # next to a limit the rocker goes with the square root: 1e-9 of the driver is 4e-5 of the rocker
     part = ck.solve(motion.mechanism, {"driver": np.linspace(-limit + 1e-9, limit - 1e-9, 4001)}, order=0)
-    assert value(rocker.pieces[1].stroke) == pytest.approx(np.ptp(part.links["rocker"].angle), abs=1e-5)
+    assert value(rocker.pieces[1].stroke) == pytest.approx(np.ptp(part.links["rocker"].angle), abs=1e-4)
 
 
 def test_a_single_pose_and_several_drivers_say_what_is_not_defined() -> None:
