@@ -54,6 +54,15 @@ def _given(value: Any, array: NDArray[Any]) -> Any:
     return value if array.dtype.kind == "O" else array
 
 
+def plain(value: Any) -> Any:
+    """Return a single number of NumPy as that of Python which it is. All else is returned as it is.
+
+    >>> plain(np.array(3.0)), plain(np.float32(0.5)), plain(3)
+    (3.0, 0.5, 3)
+    """
+    return value.item() if isinstance(value, np.generic | np.ndarray) and value.ndim == 0 else value
+
+
 def _array(where: str, value: Any, dtype: type | None, error: type[CompoundkinError]) -> NDArray[Any]:
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise error(Problem(where, "some of the numbers are masked", "leave those out, or fill them"))

@@ -160,8 +160,8 @@ def _whole(motion: HasQuantities, name: str) -> Quantity:
     for lack in filter(None, (one.lack(word) for one in found)):
         raise UnknownName(Problem(name, f"{owner!r} has no {word!r}: {lack.reason}", lack.remedy))
     words = list(dict.fromkeys(word for one in found for word in one.words))
-    others = [f"only {kind} have" for kind in DERIVED if word in DERIVED[kind]]
-    what = f"{owner!r} has no {word!r}{', which ' if others else ''}{' and '.join(others)}"
+    others = ", ".join(kind for kind in DERIVED if word in DERIVED[kind])
+    what = f"{owner!r} has no {word!r}{f', which only {others} have' if others else ''}"
     raise UnknownName(Problem(name, what, _nearest(owner, word, words)))
 
 

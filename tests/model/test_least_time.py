@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import inf, sqrt
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -118,6 +119,22 @@ def test_stretched_and_synchronised_axes_end_together_within_their_limits() -> N
     assert program(rise(0.0, law="least-time", jerk=1.0, over=2.0)).coordinate(1.0, 1).c == (0.0, 0.0)
 
 
+def test_a_short_segment_is_stretched_as_much_as_a_long_one() -> None:
+    """What rounding leaves of the whole time would be a great part of a last segment that takes nanoseconds."""
+    short = program(dwell(1000.0 / 3.0), rise(1e-18, law="least-time", acceleration=1.0))
+    long, stretched = synchronised(least_time(1e5, acceleration=1.0), short)
+    assert stretched.period == pytest.approx(long.period, rel=1e-15)
+    assert stretched.segments[1].over == pytest.approx(2e-9 * long.period / short.period, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.array, np.float64])
+def test_numbers_of_numpy_are_read_as_numbers(kind: Any) -> None:
+    law = least_time(kind(8.0), acceleration=kind(2.0))
+    assert law == least_time(8.0, acceleration=2.0)
+    assert hash(law) == hash(least_time(8.0, acceleration=2.0))
+    assert "np." not in repr(law)
+
+
 def arm(law: Program) -> ck.Mechanism:
     frame, bar = ck.link("frame", A=(0, 0)), ck.link("arm", A=(0, 0), B=(1, 0))
     return ck.Mechanism("Arm", frame, bar, ck.drive("arm", law=law))
@@ -166,6 +183,8 @@ def test_a_cam_may_be_made_for_it(tmp_path: object) -> None:
         (lambda: least_time(0.0, jerk=1.0), "rise", "write a dwell"),
         (lambda: least_time(8.0, acceleration=2.0, over=3.9), "over", "it takes 4"),
         (lambda: least_time(1e300, acceleration=1e-300), "over", "other units"),
+        # ramps that are no part of the whole time any more
+        (lambda: least_time(1e50, speed=1e-50, acceleration=1e50, jerk=1e50), "over", "other units"),
         (lambda: rise(1.0, over=1.0, speed=3.0), "speed", "no such limit"),
         (lambda: rise(1.0), "over", "there is no span"),
         (lambda: ProgramSegment("least-tim", rise=1.0), "law", "least-time"),

@@ -27,7 +27,7 @@ from compoundkin.base.errors import CompoundkinError
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between, closed_cycles, dead_points
 from compoundkin.kinematics.quantities import Quantity, quantity
-from compoundkin.model.attributes import unit_of
+from compoundkin.model.attributes import order_of, unit_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,13 +69,15 @@ class OutputFigures:
 
     @cached_property
     def stroke(self) -> Quantity | None:
-        """The greatest less the least value.
+        """The greatest less the least value. None where it passes infinity.
 
         Of a point that goes to and fro along a line it is how far.
         """
         if self.motion.inputs.poses < 2:
             return None
         if self.least is not None and self.greatest is not None:
+            if not np.isfinite([self.least.number, self.greatest.number]).all():
+                return None
             far, unit = self.greatest.number - self.least.number, self.least.value.unit
             return scalar(f"{self.name}.stroke", far, unit)
         if self.path is not None and self.path.is_straight and not self.path.closed:
@@ -167,7 +169,9 @@ class OutputFigures:
         """Return the values of its coordinate at places."""
         if not len(places):
             return ()
-        found = quantity(between(self.motion, self.design, places, 0), self.output.coordinate)
+        found = quantity(
+            between(self.motion, self.design, places, order_of(self.output.coordinate)), self.output.coordinate
+        )
         at, values = drivers_at(self.motion, self.design, places.tolist()), np.ravel(found.values)
         return tuple(
             PlacedFigure(scalar(found.name, values[k], found.unit), at[k], float(place))

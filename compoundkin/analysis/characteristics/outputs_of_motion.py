@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.errors import UnknownName
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure
 from compoundkin.kinematics.extremes.measures import driver_pace
@@ -105,13 +104,19 @@ def _output(motion: Motion, name: str) -> Output:
                 known = owner_of(motion, kind, owner).attributes
                 if not word or word in known:
                     return _of(motion, kind, owner, word or next(iter(known)), part)
-    try:
-        quantity(motion, name)
-    except UnknownName:
-        raise
-    owner = name.rpartition(".")[0]
-    kind = next(kind for kind in CATALOGUE if owner in getattr(motion, kind))
-    return Output(name, kind, owner, name)
+    return _derived(motion, name)
+
+
+def _derived(motion: Motion, name: str) -> Output:
+    """Return what is derived of an owner as an output; a vector goes by its length."""
+    found = quantity(motion, name)
+    owner, kind = next(
+        (owner, kind)
+        for owner, word, _ in _readings(name)
+        for kind in CATALOGUE
+        if owner in getattr(motion, kind) and owner_of(motion, kind, owner).has(word)
+    )
+    return Output(name, kind, owner, f"{name}.{LENGTH}" if found.is_vector else name)
 
 
 def _readings(name: str) -> list[tuple[str, str, str]]:

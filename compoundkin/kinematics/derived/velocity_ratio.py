@@ -20,7 +20,9 @@ from compoundkin.model.elements import FRAME
 # carried over the groups of the solving order. What is smaller than this part of that scale is rounding, not motion:
 # a pole farther away than 1e12 times the mechanism is at infinity.
 SMALL = 1e-12
-WHAT = "velocity ratio"
+# A link that turns by less than this part of that scale at every pose of a motion only translates. Next to change
+# points, and in accelerations, rounding is some thousand times as large as elsewhere.
+UNTURNED = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,7 +78,7 @@ def ratio_of(motion: HasQuantities, kind: Kind, name: str) -> Advantage:
 
     Raises InvalidInput where none moves, or several do, and for a link that does not turn.
     """
-    driver = rate_of(motion, motion.drives, mover(motion))
+    driver = rate_of(motion, motion.drives, mover(motion, name))
     own = rate_of_link(motion, name) if kind == "links" else rate_of(motion, getattr(motion, kind), name)
     return balance(own, driver, motion.regular.reshape(motion.grid.shape))
 
@@ -84,7 +86,7 @@ def ratio_of(motion: HasQuantities, kind: Kind, name: str) -> Advantage:
 def unit_of_ratio(motion: HasQuantities, kind: Kind, name: str, inverse: bool = False) -> str:
     """Return the unit of a velocity ratio, or of its inverse."""
     own: Dimension = "angle" if kind == "links" else coordinate_dimension(getattr(motion, kind)[name].is_angle)
-    pair = own, coordinate_dimension(motion.drives[mover(motion)].is_angle)
+    pair = own, coordinate_dimension(motion.drives[mover(motion, name)].is_angle)
     return ratio_unit(motion.mechanism.unit, *(pair[::-1] if inverse else pair))
 
 
@@ -101,11 +103,11 @@ def rate_of_link(motion: HasQuantities, name: str, where: str = "") -> PortRate:
 def _translates(motion: HasQuantities, name: str) -> bool:
     """Tell whether a link moves and turns at no pose. At a toggle position it rests, and turns all the same."""
     link, scale = motion.links[name], fastest(motion)
-    turns = np.abs(link.angular_velocity) > SMALL * scale
+    turns = np.abs(link.angular_velocity) > UNTURNED * scale
     if motion.grid.order > 1:
         drivers = (d.second if d.is_angle else d.second / motion.solving_order.size for d in motion.drives.values())
         hardest = np.maximum.reduce(np.broadcast_arrays(scale**2, *map(np.abs, drivers)))
-        turns = turns | (np.abs(link.angular_acceleration) > SMALL * hardest)
+        turns = turns | (np.abs(link.angular_acceleration) > UNTURNED * hardest)
     moves = np.abs(np.asarray(link.origin.velocity)) > SMALL * scale * motion.solving_order.size
     return bool(np.any(moves) and not np.any(turns))
 
@@ -115,16 +117,16 @@ def rate_of(motion: HasQuantities, table: Mapping[str, Any], name: str) -> PortR
     return PortRate(table[name].rate, fastest(motion) * (1.0 if table[name].is_angle else motion.solving_order.size))
 
 
-def mover(motion: HasQuantities) -> str:
-    """Return the driver that moves. Raises InvalidInput where none does, or several do."""
+def mover(motion: HasQuantities, where: str) -> str:
+    """Return the driver that moves. Raises InvalidInput, naming `where`, if none does or several do."""
     motion.grid.require(1)
     moving = [name for name, drive in motion.drives.items() if np.any(drive.rate != 0)]
     if len(moving) > 1:
         text = f"several drivers move ({', '.join(moving)}): the ratio depends on all of them"
-        raise InvalidInput(Problem(WHAT, text, "solve(..., speed={one: 1, the others: 0})"))
+        raise InvalidInput(Problem(where, text, "solve(..., speed={one: 1, the others: 0})"))
     if not moving:
         remedy = "solve(..., speed=1): it does not depend on the driver's speed"
-        raise InvalidInput(Problem(WHAT, "no driver moves: every driver's speed is zero", remedy))
+        raise InvalidInput(Problem(where, "no driver moves: every driver's speed is zero", remedy))
     return moving[0]
 
 

@@ -151,7 +151,9 @@ def _kept(values: Number, value: Number, at: Places, slack: Number) -> Number:
     until, last = at.place.copy(), values.shape[1] - 1
     for k in np.flatnonzero(np.isfinite(at.place) & (at.place < last)):
         row = values[at.design[k], int(np.ceil(at.place[k])) :]
-        level = np.abs(row - value[k]) <= slack[k]
+        # what is infinite differs from itself by nothing that is a number
+        with np.errstate(invalid="ignore"):
+            level = (row == value[k]) | (np.abs(row - value[k]) <= slack[k])
         count = len(level) if level.all() else int(np.argmin(level))
         if count > 1:
             until[k] = last - len(row) + count

@@ -57,10 +57,14 @@ class LeastTime:
         return self._time(min(self.speed / self.peak, until_half_way) - self.ramp)
 
     @cached_property
+    def growth(self) -> float:
+        """The time in which the acceleration grows and holds."""
+        return self.ramp + self.hold
+
+    @cached_property
     def cruise(self) -> float:
         """The time at the greatest speed."""
-        growth = self.ramp + self.hold
-        return self._time(self.distance / (self.peak * growth) - growth - self.ramp)
+        return self._time(self.distance / (self.peak * self.growth) - self.growth - self.ramp)
 
     @property
     def duration(self) -> float:

@@ -208,10 +208,11 @@ def synchronised(*programs: Program) -> tuple[Program, ...]:
 
 
 def _stretched(one: Program, period: float) -> Program:
-    """Return a program that takes a given time, to the last digit."""
+    """Return a program that takes a given time."""
     if one.period == period:
         return one
-    spans = [segment.over * (period / one.period) for segment in one.segments]
-    before = float(np.cumsum([0.0, *spans[:-1]])[-1])
-    spans[-1] = period - before
-    return replace(one, segments=tuple(replace(s, over=over) for s, over in zip(one.segments, spans, strict=True)))
+    spans = np.array([segment.over for segment in one.segments]) * (period / one.period)
+    # what rounding leaves goes to the longest, of which it is the least part
+    spans[np.argmax(spans)] += period - np.cumsum(spans)[-1]
+    changed = (replace(s, over=over) for s, over in zip(one.segments, spans.tolist(), strict=True))
+    return replace(one, segments=tuple(changed))

@@ -10,7 +10,9 @@ from typing import ClassVar
 
 from compoundkin.base.argument_forms import is_finite_real
 from compoundkin.base.arguments import checked
+from compoundkin.base.display import short
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+from compoundkin.base.given_numbers import plain
 from compoundkin.model.fields import Key
 from compoundkin.model.laws.cam_laws import LAWS, PositionPiece, unit_pieces
 from compoundkin.model.laws.least_time import LeastTime
@@ -57,6 +59,8 @@ class ProgramSegment:
     )
 
     def __post_init__(self) -> None:
+        for name in ("over", "rise", *LIMITS):
+            object.__setattr__(self, name, plain(getattr(self, name)))
         problems = list(self._problems())
         if problems:
             raise InvalidMechanism(problems)
@@ -79,7 +83,7 @@ class ProgramSegment:
         elif law != LEAST_TIME and not self.over:
             yield Problem("segment.over", "there is no span", "give a positive number")
         if not is_finite_real(self.rise):
-            yield Problem("segment.rise", f"{self.rise!r} is not a finite number")
+            yield Problem("segment.rise", f"{short(self.rise)} is not a finite number")
         elif law == "dwell" and self.rise != 0.0:
             yield Problem("segment.rise", "a dwell rises by 0", "choose another law, or leave the rise out")
 
@@ -93,7 +97,8 @@ class ProgramSegment:
         for name in LIMITS:
             value = getattr(self, name)
             if value is not None and (not is_finite_real(value) or value <= 0.0):
-                yield Problem(f"segment.{name}", f"{value!r} is not a limit", "give a positive number, or leave it out")
+                what = f"{short(value)} is not a limit"
+                yield Problem(f"segment.{name}", what, "give a positive number, or leave it out")
         if self.acceleration is None and self.jerk is None:
             what = "nothing limits the acceleration: it would take no time to gain speed"
             yield Problem("segment.acceleration", what, "give the greatest acceleration, the greatest jerk or both")
@@ -104,7 +109,8 @@ class ProgramSegment:
                 yield Problem("segment.rise", "a rise of 0 takes no time", "give a distance, or write a dwell")
             return
         sizes = [abs(self.rise), *(value for value in (self.speed, self.acceleration, self.jerk) if value is not None)]
-        if not all(LEAST < value < MOST for value in sizes):
+        # nor beside a time that is as much longer
+        if not all(LEAST < value < MOST for value in sizes) or self._fastest.growth < LEAST * self._fastest.duration:
             yield Problem("segment.over", f"{min(sizes):g} and {max(sizes):g} are too far from 1", "take other units")
         elif 0.0 < self.over < self._fastest.duration * (1.0 - ROUNDING):
             what = f"{self.over:g} is too short: within these limits it takes {self._fastest.duration:.6g}"

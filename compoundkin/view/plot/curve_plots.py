@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -136,10 +137,10 @@ def polar(
         for k, one in enumerate(radii):
             for d in range(shared.designs):
                 colour = shades[k if shared.designs == 1 else d]
-                _line(axes[0], shared, d, np.deg2rad(angle.values[d]), one, colour)
+                _line(axes[0], shared, d, angle, one, colour)
         _rings(axes[0], radii)
         axes[0].set_rlabel_position(_free_angle(axes[0]))
-        axes[0].set_xlabel(f"{', '.join(one.name for one in radii)} [{readable(radii[0].unit)}] over {angle.label}")
+        axes[0].set_xlabel(f"{replace(radii[0], name=', '.join(one.name for one in radii)).label} over {angle.label}")
         planar.finish(figure, axes, shared, False)
         return canvas.finished(figure, [])
 
@@ -153,10 +154,11 @@ def _check(radii: Sequence[Plotted], angle: Plotted) -> None:
             raise InvalidInput(Problem(one.name, told, "draw them one by one"))
 
 
-def _line(axes: Any, shared: planar.SharedCurves, d: int, angle: Any, radius: Plotted, colour: Any) -> None:
-    axes.plot(angle, radius.values[d], color=colour, label=radius.name)
-    beside = shared.happened.beside(d, len(angle))
-    canvas.ring(axes, angle[beside], radius.values[d][beside], colour)
+def _line(axes: Any, shared: planar.SharedCurves, d: int, angle: Plotted, radius: Plotted, colour: Any) -> None:
+    around, out = radius.curve(d, angle)
+    axes.plot(np.deg2rad(around), out, color=colour, label=radius.name)
+    beside = shared.happened.beside(d, angle.values.shape[1])
+    canvas.ring(axes, np.deg2rad(angle.values[d][beside]), radius.values[d][beside], colour)
 
 
 def _rings(axes: Any, radii: Sequence[Plotted]) -> None:

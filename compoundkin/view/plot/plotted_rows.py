@@ -56,6 +56,11 @@ class Plotted(Quantity):
         ahead = np.sign(self.values[:, :-1].real) * np.sign(self.values[:, 1:].real)
         return (ahead < 0) if self.has_poles else np.zeros(np.shape(ahead), dtype=bool)
 
+    def curve(self, d: int, across: Self) -> tuple[Number, Number]:
+        """Return the curve of a design over another quantity, a gap at each pole."""
+        cuts = np.flatnonzero(self.poles[d] | across.poles[d]) + 1
+        return np.insert(across.values[d].astype(float), cuts, np.nan), np.insert(self.values[d], cuts, np.nan)
+
     def part(self, name: str) -> Self:
         """Return a component or the length of a vector."""
         return replace(super().part(name), vector=self.values if name == LENGTH else None)

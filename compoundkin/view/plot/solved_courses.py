@@ -91,10 +91,9 @@ class PlottedCourse:
 
     def line(self, curve: Plotted, design: int) -> tuple[Number, Number]:
         """Return x and y of a curve. A pose at a jump gives way to its two sides; NaN parts what passes infinity."""
+        if (curve.poles[design] | self.x.poles[design]).any():
+            return curve.curve(design, self.x)
         x, y = self.x.values[design], curve.values[design]
-        cuts = np.flatnonzero(curve.poles[design]) + 1
-        if len(cuts):
-            return np.insert(x.astype(float), cuts, np.nan), np.insert(y.astype(float), cuts, np.nan)
         mine = self.jumps.design == design
         if not mine.any() or course_figure(curve.name)[1]:
             return x, y

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arrays import first_entry, wrapped
-from compoundkin.base.errors import NotAssembled, UnassembledPoses, UnknownName
+from compoundkin.base.errors import InvalidInput, NotAssembled, UnassembledPoses, UnknownName
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import HIGHEST_ORDER, RATES, TIME, course_figure
@@ -58,7 +58,8 @@ class Comparison:
 def comparisons(structure: Structure) -> tuple[Comparison, ...]:
     """Return every published number, solved at its driver values. The assembly modes are those that the mechanism says.
 
-    Raises UnknownName for a published quantity that the mechanism does not have.
+    Raises UnknownName for a published quantity that the mechanism does not have, InvalidInput for one that means
+    nothing there, such as an advantage while the driver rests.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, expect, link
@@ -121,8 +122,8 @@ def _compared(expectation: Expectation, motion: Motion | None, where: str) -> Co
         return Comparison(expectation, complex("nan"))
     try:
         found = quantity(motion, expectation.quantity)
-    except UnknownName as error:
-        raise UnknownName([replace(problem, where=where) for problem in error.problems]) from None
+    except (UnknownName, InvalidInput) as error:
+        raise type(error)([replace(problem, where=where) for problem in error.problems]) from None
     value = complex(first_entry(found.values))
     if found.is_angle and isfinite(value.real):
         published = expectation.value.real

@@ -188,3 +188,15 @@ def test_designs_have_figures_of_their_own() -> None:
     motion = ck.solve(m, {"crank": ck.deg(np.arange(0, 361, 5))})
     strokes = [value(ck.characteristics(motion, ["block/frame"], design)["block/frame"].stroke) for design in (0, 1)]
     assert strokes == pytest.approx([2.0, 3.0])
+
+
+def test_vectors_and_ratios_are_outputs_too() -> None:
+    """The Coriolis part goes by its length, as a velocity does; an advantage that passes infinity has no stroke."""
+    coriolis = ck.characteristics(catalog.motion("six-bar"), outputs=["slot.coriolis"])["slot.coriolis"]
+    longest = np.abs(ck.quantity(catalog.motion("six-bar"), "slot.coriolis").values).max()
+    assert value(coriolis.stroke) == pytest.approx(longest, rel=1e-2)
+    for name, owner in (("slider-crank", "stroke"), ("crank-rocker", "rocker")):
+        through = ck.characteristics(catalog.motion(name), outputs=[f"{owner}.advantage"])[f"{owner}.advantage"]
+        assert (through.stroke, through.dwells) == (None, ())
+    with pytest.raises(ck.errors.UnknownName, match="has no 'z'"):
+        ck.characteristics(catalog.motion("six-bar"), outputs=["slot.coriolis.z"])

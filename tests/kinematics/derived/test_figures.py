@@ -11,6 +11,7 @@ import compoundkin as ck
 from compoundkin.analysis.mechanical_advantage import mechanical_advantage
 from compoundkin.kinematics.derived.translation import translating_links
 from tests import catalog
+from tests.scaled import scaled
 
 WITH_GUIDES = ("oscillating-guide", "crank-shaper", "geneva-wheel", "six-bar", "hydraulic-crane", "oldham-coupling",
                "oscillating-cylinder", "disc-cam-roller-program", "whitworth-quick-return")  # fmt: skip
@@ -83,16 +84,24 @@ def test_what_has_no_ratio_is_told_what_has() -> None:
     # of a parallelogram the coupler moves in a circle without turning
     told = refused(catalog.motion("parallelogram"), "coupler.advantage", ck.errors.InvalidInput)
     assert "does not turn in this motion" in told
+    # rounding next to its change points, and in its accelerations, is larger in other units
+    larger = ck.solve(scaled(catalog.mechanism("parallelogram"), 1e9))
+    assert "does not turn in this motion" in refused(larger, "coupler.advantage", ck.errors.InvalidInput)
     # at a toggle position the rocker rests, and turns all the same
     alone = ck.solve(catalog.mechanism("slider-crank"), {"crank": [0.0]}, speed=1.0)
     assert np.isposinf(values(alone, "stroke.advantage")[0])
     five = catalog.motion("five-bar")
-    assert "several drivers move (left, right)" in refused(five, "left.advantage", ck.errors.InvalidInput)
+    assert "left: several drivers move (left, right)" in refused(five, "left.advantage", ck.errors.InvalidInput)
     resting = ck.solve(catalog.mechanism("crank-rocker"), {"crank": [1.0]}, speed=0.0)
     assert "no driver moves" in refused(resting, "rocker.advantage", ck.errors.InvalidInput)
     for name in ("rocker.advantage", "rocker.velocity_ratio"):
         at_rest = ck.solve(catalog.mechanism("crank-rocker"), order=0)
         assert "solve(..., order=1)" in refused(at_rest, name, ck.errors.InvalidInput)
+
+
+def test_who_has_a_word_is_said_once() -> None:
+    told = refused(catalog.motion("six-bar"), "G.advantage")
+    assert "'G' has no 'advantage', which only links, pairs, drives have" in told
 
 
 def test_one_of_two_drivers_may_move() -> None:

@@ -34,6 +34,24 @@ def test_an_advantage_is_not_drawn_through_its_poles() -> None:
     assert not np.isnan(crank.lines[0].get_ydata()).any()
 
 
+def test_poles_are_gaps_in_polar_plots_and_along_the_axis_too() -> None:
+    motion = catalog.motion("crank-rocker")
+    polar = ck.plots.polar(motion, "rocker.advantage").figure.axes[0]
+    assert np.isnan(polar.lines[0].get_ydata()).sum() == 2
+    assert polar.get_xlabel() == "rocker.advantage over crank [deg]"
+    across = ck.plot(motion, "rocker.transmission_angle", against="rocker.advantage").figure.axes[0]
+    assert np.isnan(across.lines[0].get_xdata()).sum() == 2
+
+
+def test_a_published_advantage_of_a_driver_at_rest_says_which_it_is() -> None:
+    crank_rocker = catalog.mechanism("crank-rocker")
+    published = ck.expect("rocker.advantage", 1.0, 1.0, **{"crank.speed": 0.0})
+    rests = ck.Mechanism("Rests", *crank_rocker.items, published)
+    where = rf"expected\[{len(rests.expectations) - 1}\].quantity: no driver moves"
+    with pytest.raises(ck.errors.InvalidInput, match=where):
+        report(ck.solve(rests))
+
+
 def test_a_report_says_infinite_where_it_is() -> None:
     """At both dead points of a slider-crank, in the table and among the extremes; not a dash, as of no pose."""
     text = report(catalog.motion("slider-crank"), ["stroke.advantage"]).text()
