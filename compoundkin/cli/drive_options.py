@@ -1,4 +1,4 @@
-"""The options that drive a mechanism and those of its sketch, and the motion they ask for."""
+"""The options that drive a mechanism and those of its sketch, the motion they ask for, and estimates of a pose."""
 
 from __future__ import annotations
 
@@ -154,3 +154,27 @@ def _pass_on(warning: warnings.WarningMessage, motion: Motion) -> None:
 
 PATHS = click.option("--path", "paths", multiple=True, metavar="POINT", callback=lambda _c, _p, given: names(given),
                      help="Draw the path of a point: its coupler curve. Repeat it, or write commas.")  # fmt: skip
+
+
+def of_unknowns(unknowns: Mapping[str, bool], given: Sequence[str]) -> dict[str, float]:
+    """Return estimates of unknowns, radians or lengths. It is told of each whether it is an angle.
+
+    >>> of_unknowns({"rod": True, "s(stroke)": False}, ["s(stroke)=0.2"])
+    {'s(stroke)': 0.2}
+    """
+    from math import radians
+
+    from compoundkin.base.errors import InvalidInput, Problem, nearest
+    from compoundkin.cli.typed_values import number
+
+    found = {}
+    for text in given:
+        where, (name, _, value) = f"--estimate {text}", text.rpartition("=")
+        if name not in unknowns:
+            what = f"there is no unknown {name!r}" if name else "it is not said of what"
+            raise InvalidInput(Problem(where, what, nearest(name, list(unknowns)) if name else "write NAME=VALUE"))
+        if name in found:
+            raise InvalidInput(Problem(where, "the unknown is estimated twice", "leave one of them out"))
+        estimate = number(value, where, "write one number, degrees or a length")
+        found[name] = radians(estimate) if unknowns[name] else estimate
+    return found

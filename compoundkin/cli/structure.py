@@ -131,8 +131,8 @@ def _newton(structure: Structure, driven: dict[str, float], motion: Motion, esti
     from compoundkin.analysis.equations import loop_equations
     from compoundkin.analysis.equations.newton_iterations import newton_iterations
     from compoundkin.analysis.equations.pose_values import pose_values
-    from compoundkin.cli.typed_estimates import of_unknowns
-    from compoundkin.view.report.newton_section import newton_section
+    from compoundkin.cli.drive_options import of_unknowns
+    from compoundkin.view.report.pose_numbers_section import newton_section
 
     unknowns = loop_equations(structure).system.unknowns
     start = of_unknowns({own.key: own.is_angle for own in unknowns}, estimates)

@@ -13,13 +13,11 @@ from compoundkin.base.bracketing import bisected, least
 from compoundkin.base.series import Number
 from compoundkin.configurations.segment_poses import Sweep
 from compoundkin.configurations.segments import AWAY, CHANGE, END, LIMIT, NONE, TOUCHING, Segments
-from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.block import BLOCK, Block
 
 # Each segment is sampled in so many cells; the curve of a margin between two samples is that of half a turn of the
 # driver or less, divided by it.
 CELLS = 72
-# So many places at once keep arrays in a cache.
-BLOCK = 16384
 # A margin whose neighbours exceed it by less than this part of itself does not come near zero between them.
 SHALLOW = 0.25
 HALVINGS = 52

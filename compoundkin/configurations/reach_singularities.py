@@ -12,10 +12,9 @@ from compoundkin.base.arrays import TURN, Number
 from compoundkin.configurations.led_point import ACROSS, ALONG, TURN_OF, LiveSigns
 from compoundkin.configurations.reach import Reach
 from compoundkin.configurations.region_boundary import Lattice
+from compoundkin.kinematics.block import BLOCK
 from compoundkin.kinematics.solving_order import run
 
-# So many places at once: their arrays stay in the caches.
-BLOCK = 16384
 # So many angles of the point's link are tried where any will do.
 ANGLES = 12
 

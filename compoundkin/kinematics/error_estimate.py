@@ -33,8 +33,6 @@ COPIES = 8
 # no sample in a hundred, and is a hundred times less in few.
 SAFETY = 2.5
 SEED = 20261122
-# Poses are solved again in blocks of so many: their arrays stay in a second-level cache.
-BLOCK = 16384
 
 # By link: the errors of the derivatives 0 .. order, each an array of the poses that were solved again.
 LinkErrors: TypeAlias = dict[str, list[Number]]
@@ -43,7 +41,7 @@ LinkErrors: TypeAlias = dict[str, list[Number]]
 def errors_of(tracker: Tracker, given: Inputs, order: int) -> list[Number]:
     """Return the largest error of any link in each derivative, (designs, poses) each."""
     found = [np.zeros((given.designs, given.poses)) for _ in range(order + 1)]
-    for d, m in blocks(given.designs, given.poses, BLOCK):
+    for d, m in blocks(given.designs, given.poses):
         part = errors_at(tracker, given.cut(d, m), order, *places(d, m))
         for whole, errors in zip(found, _largest(part, order), strict=True):
             whole[d, m] = errors

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
+from compoundkin.kinematics.block import BLOCK, Block, JoinedBlocks, blocks, places
 from compoundkin.kinematics.branch import Begin, TrackedBranch
 from compoundkin.kinematics.change_points import pass_through
 from compoundkin.kinematics.double_roots import NEARLY, expanded
@@ -18,9 +18,6 @@ from compoundkin.kinematics.tracking import Tracker
 
 # Up to so many poses are solved at once: gathering blocks would copy more than the caches save.
 WHOLE = 65536
-# Longer motions are solved in blocks of so many poses: their arrays stay in a second-level cache of 2 MB, and the
-# calls take far less time than the work.
-BLOCK = 16384
 
 
 def settled(solving_order: SolvingOrder, given: Inputs, tracker: Tracker, order: int) -> tuple[Motion, Number]:

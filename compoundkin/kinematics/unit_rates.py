@@ -18,9 +18,6 @@ from compoundkin.kinematics.tracking import Tracker
 from compoundkin.model.attributes import LENGTH, RATE_OF, order_of, unit_of
 from compoundkin.structure.kinematic_structure import Structure
 
-# Poses that are solved at once.
-BLOCK = 16384
-
 
 class Solved(AtPoses, Protocol):
     """A solved motion, which can be solved again with other inputs."""
@@ -137,7 +134,7 @@ def _solved(motion: Solved, given: Inputs, s: Number | None) -> Any:
     designs, poses = given.designs, given.poses
     store = JoinedBlocks(designs, poses)
     with np.errstate(all="ignore"):
-        for d, m in blocks(designs, poses, BLOCK):
+        for d, m in blocks(designs, poses):
             at, index = places(d, m)
             store.take(motion.block(given.cut(d, m), 1, at if s is None else s[None, m], index), d, m)
     again: Any = motion

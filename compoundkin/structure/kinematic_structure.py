@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from compoundkin.base.display import ShowsPicture
+from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.structure.graph import Loop, independent_loops, kinematic_graph
@@ -52,6 +53,22 @@ class Structure(ShowsPicture):
     def driven_angles(self) -> dict[str, bool]:
         """Which drivers drive an angle; the others drive a length."""
         return {name: step.pair.free_is_angle for name, step in self.driven.items()}
+
+    @cached_property
+    def translating_links(self) -> dict[str, str]:
+        """The links that cannot turn, only slides joining them to the frame. Each with its slide, the frame without.
+
+        >>> from compoundkin.files.shipped_mechanisms import load_named
+        >>> from compoundkin.structure import decompose
+        >>> decompose(load_named("slider-crank")).translating_links
+        {'frame': '', 'piston': 'stroke'}
+        """
+        found = {FRAME: ""}
+        slides = [pair for pair in self.pairs if pair.is_simple and not pair.free_is_angle]
+        while reached := [pair for pair in slides if len(found.keys() & set(pair.members)) == 1]:
+            for pair in reached:
+                found.update({name: pair.name for name in pair.members if name not in found})
+        return found
 
     @cached_property
     def redundant(self) -> tuple[Pair, ...]:

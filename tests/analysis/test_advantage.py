@@ -9,7 +9,6 @@ import compoundkin as ck
 from compoundkin.analysis import coupler
 from compoundkin.analysis.mechanical_advantage import ForcePort, TorquePort, mechanical_advantage
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.kinematics.derived.translation import translating_links
 from tests.analysis.relative_motions import catalog, random_mechanism
 from tests.support import differences, drawn_values
 
@@ -67,7 +66,7 @@ def test_ratios_against_differences_of_the_positions(seed: int) -> None:
     mechanism, step = random_mechanism(seed), 5e-4
     motion = ck.solve(mechanism, {k: v + step * np.arange(-4, 5) for k, v in drawn_values(mechanism).items()})
     driver = mechanism.drives[0].name
-    translating = translating_links(motion.structure)
+    translating = motion.structure.translating_links
     for link in [name for name in motion.links if name != "frame"]:
         ratio = mechanical_advantage(motion, translating.get(link, link), driver).velocity_ratio
         place = motion.pairs[translating[link]].value if link in translating else motion.links[link].angle

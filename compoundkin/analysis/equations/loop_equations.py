@@ -8,11 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from compoundkin.analysis.equations.loop_walk import LoopWalk
 from compoundkin.analysis.equations.pair_terms import pair_terms, shortest_way
 from compoundkin.analysis.equations.rate_equations import RateEquations, rate_equations
 from compoundkin.analysis.equations.reduced_system import ReducedSystem, reduced
-from compoundkin.analysis.equations.vector_loops import DriverEquation, VectorLoop
+from compoundkin.analysis.equations.vector_loops import DriverEquation, LoopWalk, VectorLoop
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number

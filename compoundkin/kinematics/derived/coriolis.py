@@ -5,7 +5,6 @@ from __future__ import annotations
 from compoundkin.base.series import Number
 from compoundkin.kinematics.derived.cam_follower import velocity_at
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
-from compoundkin.kinematics.derived.translation import translating_links
 from compoundkin.model.pairs.optional_answers import guided_point
 
 
@@ -31,6 +30,6 @@ def no_coriolis(motion: HasQuantities, name: str) -> Lack | None:
     pair = order.pairs[name]
     if guided_point(pair, motion.inputs.ends[name]) is None:
         return Lack(f"no point of a {pair.title} slides along a guide")
-    if pair.members[0] in translating_links(order.structure):
+    if pair.members[0] in order.structure.translating_links:
         return Lack(f"its guide on {pair.members[0]!r} does not turn")
     return None

@@ -12,7 +12,6 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
-from compoundkin.kinematics.derived.translation import translating_links
 from compoundkin.model.attributes import Dimension, Kind, coordinate_dimension, ratio_unit
 from compoundkin.model.elements import FRAME
 
@@ -134,7 +133,7 @@ def no_turning(motion: HasQuantities, name: str) -> Lack | None:
     """Return why a link has no velocity ratio."""
     if name == FRAME:
         return Lack("the frame does not move")
-    slide = translating_links(motion.solving_order.structure).get(name)
+    slide = motion.solving_order.structure.translating_links.get(name)
     return Lack(f"the link {name!r} does not turn", f"name its slide {slide!r}, or {_force(name)}") if slide else None
 
 

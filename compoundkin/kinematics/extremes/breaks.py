@@ -9,6 +9,7 @@ import numpy as np
 from compoundkin.base.arrays import whole_turns
 from compoundkin.base.bracketing import false_position
 from compoundkin.base.series import Number
+from compoundkin.kinematics.extremes.inputs_between import times_of
 from compoundkin.kinematics.extremes.motion_between import between
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.laws.law_corners import corners
@@ -34,7 +35,7 @@ def _of_laws(motion: Motion) -> list[Number]:
     laws = [drive.law for drive in motion.mechanism.drives if drive.law is not None]
     if motion.time is None or not laws or motion.inputs.poses < 2:
         return []
-    times = np.broadcast_to(motion.time, motion.shape).reshape(motion.failed.shape)
+    times = times_of(motion)
     low, high = float(np.min(times)), float(np.max(times))
     at = np.unique(np.concatenate([corners(law, low, high) for law in laws]))
     slack = SAME * (high - low) / motion.inputs.poses

@@ -11,8 +11,16 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.measures import ROUNDING, Measure, values_at_poses
-from compoundkin.kinematics.extremes.offers import BOTH, SIGNS, Offers, Peaks, best_of
-from compoundkin.kinematics.extremes.peak_items import PeakItems, narrowed, trusted_vertices
+from compoundkin.kinematics.extremes.peaks import (
+    BOTH,
+    SIGNS,
+    Offers,
+    PeakItems,
+    Peaks,
+    best_of,
+    narrowed,
+    trusted_vertices,
+)
 from compoundkin.kinematics.extremes.stretches import Stretches
 from compoundkin.kinematics.extremes.windows import Windows, sampled, solved
 from compoundkin.kinematics.motion import Motion
@@ -68,11 +76,7 @@ class ExtremeSearch(PrintsShort):
     @cached_property
     def ends(self) -> Number:
         """The values at the ends of stretches that are poses, (quantities, stretches, 2)."""
-        return self._at_ends(self.values)
-
-    def _at_ends(self, values: Number) -> Number:
-        s = self.stretches
-        return np.stack([np.where(at >= 0, values[:, s.design, at], np.nan) for at in (s.first, s.last)], axis=-1)
+        return self.stretches.at_ends(self.values)
 
     @cached_property
     def _candidates(self) -> Number:
@@ -92,11 +96,7 @@ class ExtremeSearch(PrintsShort):
     @property
     def _added(self) -> Number:
         """How far stretches may rise beyond their ends, (quantities, stretches); not known where an end is no pose."""
-        bend = np.abs(np.diff(self.values, 2, axis=-1))
-        if not bend.shape[-1]:
-            return np.full(self.ends.shape[:2], np.nan)
-        bend = np.concatenate([bend[..., :1], bend, bend[..., -1:]], axis=-1)
-        return MOST_ADDED * np.fmax(*np.moveaxis(self._at_ends(bend), -1, 0))
+        return MOST_ADDED * self.stretches.bends(self.values)
 
     @cached_property
     def _slack(self) -> Number:

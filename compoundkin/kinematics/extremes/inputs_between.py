@@ -22,15 +22,15 @@ def interval(inputs: Inputs, places: Number) -> tuple[Number, Number]:
     return k, places - k
 
 
-def _times(motion: Motion) -> Number:
-    """The times of all poses, (designs, poses)."""
+def times_of(motion: Motion) -> Number:
+    """Return the times of all poses of a motion in time, (designs, poses)."""
     times: Number = motion.time
     return np.broadcast_to(times, motion.shape).reshape(motion.failed.shape)
 
 
 def times_between(motion: Motion, designs: Number, places: Number) -> Number:
     """Return the times at places of a motion in time. They are linear between poses."""
-    rows = _times(motion)
+    rows = times_of(motion)
     k, weight = interval(motion.inputs, places)
     after = np.minimum(k + 1, motion.inputs.poses - 1)
     return rows[designs, k] * (1.0 - weight) + rows[designs, after] * weight
@@ -65,7 +65,7 @@ def _by_law(motion: Motion, law: Any, designs: Number, times: Number, order: int
     starts = np.cumsum(counts) - counts
     index = np.empty(len(designs), dtype=int)
     index[in_order] = np.arange(len(designs)) - starts[designs[in_order]]
-    rows = _times(motion)
+    rows = times_of(motion)
     table = np.repeat(rows[:, :1], counts.max() + 2, axis=1)
     table[:, -1] = rows[:, -1]
     table[designs, index] = times

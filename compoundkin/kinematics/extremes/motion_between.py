@@ -13,20 +13,16 @@ from compoundkin.base.arrays import whole_turns
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, poses_at
+from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, poses_at, with_poses
 from compoundkin.kinematics.extremes.inputs_between import inputs_between, interval, times_between
 from compoundkin.kinematics.extremes.near_change_points import (
     next_to_change_points,
     passing_groups,
-    replaced_poses,
     through_double_roots,
 )
 from compoundkin.kinematics.inputs import Inputs, fit, mapped
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import LinkMotion, PairMotion, PointMotion
-
-# So many poses are solved at once.
-BLOCK = 16384
 
 
 @dataclass(frozen=True, repr=False)
@@ -57,7 +53,7 @@ class MotionBetween(Motion):
         return PointMotion(self.grid, lambda k: self.poses[link].derivative(p, k), name)
 
     def _pair(self, name: str) -> PairMotion:
-        return _PairBetween(super()._pair(name), self, "pairs", name)
+        return _PairBetween(super()._pair(name), self, name)
 
     def near(self, angles: Number) -> Number:
         """Return about what angles are at the places, from those at the poses."""
@@ -95,9 +91,9 @@ class _LinkBetween(LinkMotion):
 class _PairBetween(PairMotion):
     """A pair between the poses of a motion. Its angle is in the turn of the poses beside it."""
 
-    def __init__(self, own: PairMotion, motion: MotionBetween, kind: str, name: str) -> None:
+    def __init__(self, own: PairMotion, motion: MotionBetween, name: str) -> None:
         super().__init__(motion.grid, own.coordinate, own.is_angle, counted=True)
-        self._motion, self._whole = motion, getattr(motion.whole, kind)[name]
+        self._motion, self._whole = motion, motion.whole.pairs[name]
 
     def derivative(self, k: int) -> Number:
         """Return the k-th time derivative; raises InvalidInput beyond the order solved for."""
@@ -167,7 +163,7 @@ def _solved(
     """Solve poses in a column, and return them as a row."""
     count, store, groups = len(places), JoinedBlocks(len(places), 1), passing_groups(motion)
     near: Number = np.zeros(count, dtype=bool)
-    for d, m in blocks(count, 1, BLOCK):
+    for d, m in blocks(count, 1):
         block = motion.block(part.cut(d, m), order, places[d, None], designs[d, None])
         near[d] = next_to_change_points(block, groups, d.stop - d.start)
         store.take(block, d, m)
@@ -178,7 +174,7 @@ def _solved(
         others, known = through_double_roots(motion, some, order, (designs[index], places[index]), groups)
         good = np.flatnonzero(known)
         others = poses_at(others, (len(index), 1), good, np.zeros(len(good), dtype=int))
-        poses = replaced_poses(poses, others, index[good], count)
+        poses = with_poses(poses, (count, 1), order, (index[good], np.zeros(len(good), dtype=int)), others)
     return {name: _row(pose) for name, pose in poses.items()}, store.failed.T
 
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from compoundkin.base.arrays import column
-from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.double_roots import NEARLY, solved_near
 from compoundkin.kinematics.inputs import Inputs
@@ -45,23 +45,3 @@ def through_double_roots(
     onward = np.stack(steps, axis=-1) * sense[:, None]
     s = np.nextafter(places, places + sense)
     return solved_near(motion.tracker, part, order, (s, designs), groups, onward)
-
-
-def replaced_poses(poses: Mapping[str, Pose], others: Mapping[str, Pose], index: Number, count: int) -> dict[str, Pose]:
-    """Return poses in a column with others in the place of some."""
-
-    def put(series: Series, other: Series) -> Series:
-        zeros = np.zeros(1)
-        made = []
-        for k in range(max(len(series.c), len(other.c))):
-            own, new = (s.c[k] if k < len(s.c) else zeros for s in (series, other))
-            full = np.array(np.broadcast_to(own, (count, 1)), dtype=np.result_type(own, new))
-            full[index] = np.broadcast_to(new, (len(index), 1))
-            made.append(full)
-        return Series(tuple(made))
-
-    def mended(pose: Pose, other: Pose) -> Pose:
-        theta = None if pose.theta is None or other.theta is None else put(pose.theta, other.theta)
-        return Pose(put(pose.z, other.z), put(pose.u, other.u), theta)
-
-    return {name: pose if pose is FIXED else mended(pose, others[name]) for name, pose in poses.items()}

@@ -52,6 +52,24 @@ class Stretches(PrintsShort):
         part = np.where(at_low & at_high, both, np.where(at_low, up, np.where(at_high, down, plain)))
         return np.where(part < 1.0, low + part * (high - low), high)
 
+    def at_ends(self, values: Number) -> Number:
+        """Return values of poses at both ends.
+
+        From (..., designs, poses) to (..., n, 2); NaN where an end is no pose.
+        """
+        return np.stack([np.where(at >= 0, values[..., self.design, at], np.nan) for at in (self.first, self.last)], -1)
+
+    def bends(self, values: Number) -> Number:
+        """Return the second differences of values of poses, the greater of both ends.
+
+        From (..., designs, poses) to (..., n); NaN where no end is a pose, and of fewer than three poses.
+        """
+        bend = np.abs(np.diff(values, 2, axis=-1))
+        if not bend.shape[-1]:
+            return np.full((*values.shape[:-2], len(self)), np.nan)
+        ends = self.at_ends(np.concatenate([bend[..., :1], bend, bend[..., -1:]], axis=-1))
+        return np.fmax(ends[..., 0], ends[..., 1])
+
 
 def stretches_of(motion: Motion) -> Stretches:
     """Return the smooth stretches of a motion. They are kept with it."""

@@ -75,11 +75,7 @@ class ZeroSearch(PrintsShort):
 
     @cached_property
     def _ends(self) -> Number:
-        return self._at_ends(self._values)
-
-    def _at_ends(self, values: Number) -> Number:
-        s = self.stretches
-        return np.stack([np.where(at >= 0, values[s.design, at], np.nan) for at in (s.first, s.last)], axis=-1)
+        return self.stretches.at_ends(self._values)
 
     @cached_property
     def _tiny(self) -> float:
@@ -89,9 +85,8 @@ class ZeroSearch(PrintsShort):
     def _candidates(self) -> Number:
         """Return the stretches that may have zeros inside."""
         ends = self._ends
-        bend = np.abs(np.diff(self._values, 2, axis=-1))
-        bend = np.pad(bend, ((0, 0), (1, 1)), mode="edge") if bend.shape[-1] else np.inf + 0.0 * self._values
-        near = np.abs(ends).min(axis=-1) <= NEAR_ZERO * np.fmax(*self._at_ends(bend).T)
+        bends = np.nan_to_num(self.stretches.bends(self._values), nan=np.inf)
+        near = np.abs(ends).min(axis=-1) <= NEAR_ZERO * bends
         zero = np.abs(ends).max(axis=-1) <= self._tiny
         return np.isnan(ends).any(axis=-1) | (ends[:, 0] * ends[:, 1] < 0) | (near & ~zero)
 

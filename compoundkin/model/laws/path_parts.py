@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
@@ -19,6 +19,10 @@ class HasPlaces(Protocol):
     @property
     def span(self) -> tuple[float, float] | None:
         """The first and the last time of it; None where it has none."""
+
+    @property
+    def laws(self) -> tuple[Any, ...]:
+        """The laws in time that it is made of."""
 
     def place(self, t: Number, order: int) -> Series:
         """Return place and derivatives at times t (seconds), complex."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from compoundkin.base.copies import CopiesFields
 from compoundkin.base.errors import Problem
@@ -27,6 +27,11 @@ class Path(CopiesFields, Compared, ABC):
     @abstractmethod
     def place(self, t: Number, order: int) -> Series:
         """Return place and derivatives at times t (seconds), complex. Raises InvalidInput where there is none."""
+
+    @property
+    def laws(self) -> tuple[Any, ...]:
+        """The laws in time that it is made of."""
+        return ()
 
     def problems(self, where: str) -> Iterator[Problem]:
         """Find what makes it no path."""

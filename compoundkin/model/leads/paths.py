@@ -48,10 +48,11 @@ class TimedPlaces(PrintsShort, Path):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "places", tuple(complex(place) for place in self.places))
-        object.__setattr__(self, "times", self._tables[0].times)
+        object.__setattr__(self, "times", self.laws[0].times)
 
     @cached_property
-    def _tables(self) -> tuple[TimeTable, TimeTable]:
+    def laws(self) -> tuple[TimeTable, TimeTable]:
+        """The tables of both coordinates."""
         try:
             places = np.array(self.places, dtype=complex)
             first = TimeTable(self.times, places.real, self.degree, self.repeat)
@@ -62,11 +63,11 @@ class TimedPlaces(PrintsShort, Path):
     @property
     def span(self) -> tuple[float, float]:
         """The first and the last time."""
-        return self._tables[0].span
+        return self.laws[0].span
 
     def place(self, t: Number, order: int) -> Series:
         """Return place and derivatives at times t (seconds)."""
-        x, y = (table.coordinate(t, order) for table in self._tables)
+        x, y = (table.coordinate(t, order) for table in self.laws)
         return planar(x, y)
 
 
@@ -85,6 +86,11 @@ class RunAlong(Path):
     def span(self) -> tuple[float, float] | None:
         """The first and the last time of the law."""
         return self.law.span
+
+    @property
+    def laws(self) -> tuple[Law]:
+        """The law of the length of arc."""
+        return (self.law,)
 
     @property
     def curve(self) -> Curve:

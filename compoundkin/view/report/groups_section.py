@@ -21,8 +21,7 @@ from compoundkin.model.attributes import (
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.laws import PathPart
 from compoundkin.structure import Body, DrivenPair, Group, Structure, roman
-from compoundkin.view.report.law_words import Wording
-from compoundkin.view.report.path_words import PathWording
+from compoundkin.view.report.law_words import PathWording, Wording
 from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, Section, StepBlock, TableBlock
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import counted, listed

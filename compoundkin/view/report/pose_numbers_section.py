@@ -1,8 +1,8 @@
-"""The equations of velocities and accelerations in numbers, at one pose."""
+"""Equations in numbers at one pose: those of velocities and accelerations, and Newton's iterations."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.equations import LoopEquations, RateSolution, Unknown
+from compoundkin.analysis.equations.newton_iterations import NewtonIterations
 from compoundkin.analysis.equations.pose_values import given_values, pose_values
 from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
@@ -17,7 +18,18 @@ from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_o
 from compoundkin.view.report.gaps_section import gap_sentence, gaps_of
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.report.wording import listed, number
+from compoundkin.view.report.wording import counted, listed, number
+
+START = (
+    "Each step solves A d = -F for the corrections d, with the matrix A and the residuals F of the loop equations at "
+    "the estimates. Near the pose each correction is about the square of the one before."
+)
+# Poses that differ by less (radians, or parts of the size) are one.
+SAME = 1e-6
+SAME_POSE = "This is the pose that the groups give one by one."
+OTHER_POSE = "This is another configuration than that of the groups: choose estimates nearer to it."
+# Numbers of the matrix below this part of its largest are rounding, and shown as 0.
+ROUNDED = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +78,7 @@ def _numbers(pose: PoseNumbers) -> Iterator[Block]:
 def _matrix_table(pose: PoseNumbers) -> TableBlock:
     sides = [pose.at(own.right_side, 1) for own in pose.solutions]
     matrix = pose.at(pose.solutions[0].matrix, 2)
-    floor = 1e-12 * float(np.max(np.abs(matrix), initial=0.0))
+    floor = ROUNDED * float(np.max(np.abs(matrix), initial=0.0))
     columns = [Column(own.key, style="each", floor=floor) for own in pose.found.system.unknowns]
     right = [Column(name, style="each", follows=True) for name, _ in zip("bc", sides, strict=False)]
     rows: list[tuple[Cell, ...]] = []
@@ -115,3 +127,48 @@ def coordinate_unit(own: Unknown, unit: str, order: int) -> str:
     if own.is_length:
         return unit_of(unit, "length", order)
     return unit_of("", "angle", order) if order else DEGREES
+
+
+def newton_section(found: NewtonIterations, unit: str, size: float, solved: Mapping[str, float] | None) -> Section:
+    """Return Newton's iterations as a table. `solved` has the unknowns of the pose that the groups gave, if any."""
+    blocks: list[Block] = [Paragraph(START), _steps_table(found, unit)]
+    if found.failure:
+        last = ", ".join(f"{own.key} = {_shown(own, found.values[own.key])}" for own in found.unknowns)
+        remedy = "choose a pose within reach" if solved is None else "start elsewhere"
+        blocks.append(Alert(f"No pose was found: {found.failure}; the last estimate is {last}.", remedy))
+    else:
+        told = f"It converges in {counted(len(found.corrections), 'step')}."
+        compared = "" if solved is None else f" {SAME_POSE if _is_same(found, size, solved) else OTHER_POSE}"
+        blocks.append(Paragraph(told + compared))
+    return Section("newton", "Newton's iterations", tuple(blocks))
+
+
+def _is_same(found: NewtonIterations, size: float, solved: Mapping[str, float]) -> bool:
+    for own, value in zip(found.unknowns, found.estimates[-1], strict=True):
+        other = solved[own.key]
+        gap = np.exp(1j * value) - np.exp(1j * other) if own.is_angle else (value - other) / size
+        if abs(gap) > SAME:
+            return False
+    return True
+
+
+def _shown(own: Unknown, value: float) -> str:
+    return f"{number(float(degrees(value)))} deg" if own.is_angle else number(value)
+
+
+def _steps_table(found: NewtonIterations, unit: str) -> TableBlock:
+    turn = [float(degrees(1.0)) if own.is_angle else 1.0 for own in found.unknowns]
+    units = [coordinate_unit(own, unit, 0) for own in found.unknowns]
+    columns = [Column("step")]
+    columns += [Column(own.key, name, "each") for own, name in zip(found.unknowns, units, strict=True)]
+    columns += [Column(f"residual {name}", style="brief") for name in found.names]
+    columns += [Column(f"correction {own.key}", name, "brief") for own, name in zip(found.unknowns, units, strict=True)]
+    rows = []
+    for k, (estimate, residual) in enumerate(zip(found.estimates, found.residuals, strict=True)):
+        moves: Sequence[Cell] = [None] * len(turn)
+        if k < len(found.corrections):
+            moves = [float(v * t) for v, t in zip(found.corrections[k], turn, strict=True)]
+        rows.append(
+            (str(k), *(float(v * t) for v, t in zip(estimate, turn, strict=True)), *map(float, residual), *moves)
+        )
+    return TableBlock(tuple(columns), tuple(rows), keys=1)

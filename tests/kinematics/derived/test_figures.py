@@ -9,7 +9,6 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.analysis.mechanical_advantage import mechanical_advantage
-from compoundkin.kinematics.derived.translation import translating_links
 from tests import catalog
 from tests.scaled import scaled
 
@@ -29,7 +28,7 @@ def test_ratios_of_everything_are_those_to_the_driver(name: str) -> None:
     motion = catalog.motion(name)
     (driver,) = motion.drives
     given = motion.drives[driver].rate
-    for owner in set(motion.links) - set(translating_links(motion.structure)):
+    for owner in set(motion.links) - set(motion.structure.translating_links):
         assert values(motion, f"{owner}.velocity_ratio") == pytest.approx(motion.links[owner].angular_velocity / given)
     for owner in set(motion.pairs) - set(motion.links):
         found, rate = values(motion, f"{owner}.advantage"), motion.pairs[owner].rate

@@ -1,4 +1,4 @@
-"""Values that may be the greatest or the least, and the best of them."""
+"""Values that may be the greatest or the least, the best of them, and the windows in which peaks are searched."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.base.series import Number
+from compoundkin.kinematics.extremes.stretches import SAME
+from compoundkin.kinematics.extremes.windows import FINE, SAMPLES, Windows, vertices
 
 # The least values are the greatest of the opposite.
 SIGNS = np.array([-1.0, 1.0])
 BOTH = SIGNS[:, None, None]
-# Nearer than this (of a pose) a place is a pose.
-SAME = 2e-9
 
 
 class Peaks(NamedTuple):
@@ -62,3 +62,36 @@ def best_of(offers: Sequence[Offers], slack: Number) -> Peaks:
     place = np.where(np.abs(place - np.round(place)) <= SAME, np.round(place), place)
     value = np.where(known, np.broadcast_to(BOTH[:, 0], shape).ravel() * best, np.nan)
     return Peaks(value.reshape(shape), np.where(known, place, np.nan).reshape(shape), slack)
+
+
+class PeakItems(NamedTuple):
+    """Windows in which a quantity is searched in one sense.
+
+    Quantity, sign, stretch, and from where to where in t.
+    """
+
+    m: Number
+    s: Number
+    which: Number
+    low: Number
+    high: Number
+
+    def some(self, index: Number) -> PeakItems:
+        """Return some of them."""
+        return PeakItems(*(v[index] for v in self))
+
+
+def trusted_vertices(windows: Windows, items: PeakItems, index: Number, good: Number) -> tuple[PeakItems, Number]:
+    """Return the items whose windows are trusted, and the t of the vertices there."""
+    some, index = items.some(good), index[good]
+    signed = SIGNS[some.s][:, None] * windows.fine[some.m, index]
+    inside = vertices(windows.polynomials[some.m, index], FINE[np.argmax(signed, axis=-1)])
+    return some, windows.t(inside, index)
+
+
+def narrowed(windows: Windows, items: PeakItems, index: Number) -> PeakItems:
+    """Return items narrowed to the samples beside their greatest one."""
+    signed = SIGNS[items.s][:, None] * windows.values[items.m, index]
+    k = np.argmax(np.where(np.isnan(signed), -np.inf, signed), axis=-1)
+    ends = (SAMPLES[np.clip(k + step, 0, len(SAMPLES) - 1)] for step in (-1, 1))
+    return items._replace(**dict(zip(("low", "high"), (windows.t(end, index) for end in ends), strict=True)))
