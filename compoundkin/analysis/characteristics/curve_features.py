@@ -102,8 +102,8 @@ class PathFeatures:
         if self.is_straight or self.is_circular:
             return ()
         s, cusp = self.path.rests
-        where = self.path.derivatives(s[cusp], 0)[0]
-        return tuple(PathPlace(complex(p), (self.path.drivers(x),)) for p, x in zip(where, s[cusp], strict=True))
+        where, at = self.path.derivatives(s[cusp], 0)[0], self.path.drivers(*s[cusp])
+        return tuple(PathPlace(complex(p), (drivers,)) for p, drivers in zip(where, at, strict=True))
 
     @cached_property
     def double_points(self) -> tuple[PathPlace, ...]:
@@ -112,7 +112,8 @@ class PathFeatures:
             return ()
         found = crossings(self.path.samples, self.path.expansion)
         known = found if len(found) <= MOST_CROSSINGS else ()
-        return tuple(PathPlace(c.point, (self.path.drivers(c.first), self.path.drivers(c.second))) for c in known)
+        at = self.path.drivers(*(s for c in known for s in (c.first, c.second)))
+        return tuple(PathPlace(c.point, (at[2 * k], at[2 * k + 1])) for k, c in enumerate(known))
 
     def _longest(self, fit: Callable[[Number], Fit]) -> Stretch:
         samples = self.path.samples

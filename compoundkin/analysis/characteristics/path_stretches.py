@@ -66,9 +66,10 @@ def stretch_of(path: TracedPath, fit: Callable[[Number], Fit], first: int, last:
     else:
         length = float(np.ptp(projected(points, found))) if np.isfinite(found.direction) else np.inf
     begin = float(samples.s[0]) + first * samples.step
-    at = path.drivers(begin), path.drivers(begin + (last - first) * samples.step)
+    at, until = path.drivers(begin, begin + (last - first) * samples.step)
     ends = complex(points[0]), complex(points[-1])
-    return Stretch(*at, ends, length, float(found.deviation), complex(found.direction), complex(found.place), radius)
+    line = complex(found.direction), complex(found.place)
+    return Stretch(at, until, ends, length, float(found.deviation), *line, radius)
 
 
 @checked
@@ -97,7 +98,7 @@ def straightness(motion: Motion, point: str, begin: float, end: float, design: i
 def _place_of(path: TracedPath, value: float, driver: str) -> float:
     """Return the place along a path at which the driver has a value."""
     poses = np.arange(round(path.first), round(path.last) + 1)
-    values = np.array([path.drivers(k)[driver] for k in (poses[0], poses[-1])])
+    values = np.array([at[driver] for at in path.drivers(poses[0], poses[-1])])
     inside = min(values) - AT_END <= value <= max(values) + AT_END
     if not inside or values[0] == values[1]:
         span = f"{driver} goes from {values[0]:g} to {values[1]:g}"

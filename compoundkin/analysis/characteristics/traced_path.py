@@ -53,10 +53,13 @@ class TracedPath:
         found = between(self.motion, self.design, self._inside(np.ravel(s)), order, by_place=True).points[self.point]
         return [np.asarray(found.derivative(k)).reshape(s.shape) for k in range(order + 1)]
 
-    def drivers(self, s: float) -> dict[str, float]:
-        """Return the drivers' values at a place."""
-        found = between(self.motion, self.design, self._inside(s), 0)
-        return {name: float(drive.value[0]) for name, drive in found.drives.items()}
+    def drivers(self, *s: float) -> tuple[dict[str, float], ...]:
+        """Return the drivers' values at each of some places."""
+        if not s:
+            return ()
+        found = between(self.motion, self.design, self._inside(np.array(s, dtype=float)), 0)
+        values = {name: np.broadcast_to(drive.value, len(s)).tolist() for name, drive in found.drives.items()}
+        return tuple({name: of[k] for name, of in values.items()} for k in range(len(s)))
 
     def _inside(self, s: Number) -> Number:
         """Return places within the motion. Those at the end of a cycle stay there."""
