@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 import compoundkin as ck
+from compoundkin.cli import cli
 from compoundkin.view.report import page
 from compoundkin.view.report.atlas_sections import atlas_report
 from tests import catalog
@@ -72,6 +74,34 @@ def test_nothing_is_written_too_small_for_a_phone(made: Made, opened: Open) -> N
         .map((e) => e.outerHTML.slice(0, 80))"""
     )
     assert small == []
+
+
+# Of formulas with matrices: how far parts of one stand below each other, and the least gap between entries of rows.
+MATRICES = """() => {
+  const shown = [...document.querySelectorAll(".maths:has(mtable)")].map((one) => {
+    const boxes = [...one.querySelectorAll(":scope > math")].map((part) => part.getBoundingClientRect());
+    return Math.max(...boxes.map((box) => box.top)) - Math.min(...boxes.map((box) => box.bottom));
+  });
+  const rows = [...document.querySelectorAll("mtable")].flatMap((one) => [...one.querySelectorAll("mtr")]
+    .map((row) => [...row.querySelectorAll("mtd > *")].map((entry) => entry.getBoundingClientRect()))
+    .map((boxes) => [Math.min(...boxes.map((b) => b.top)), Math.max(...boxes.map((b) => b.bottom))])
+    .reduce(([gaps, last], [top, bottom]) => [last === null ? gaps : [...gaps, top - last], bottom], [[], null])[0]);
+  return [shown.length, Math.max(...shown), Math.min(...rows)];
+}"""
+
+
+def test_matrices_stand_on_one_line_and_their_rows_apart(opened: Open, tmp_path: Path) -> None:
+    path = tmp_path / "equations.html"
+    options = "--equations", "--order", "2", "-o", str(path)
+    assert CliRunner().invoke(cli, ["structure", "jansen-leg", *options]).exit_code == 0
+    for size in (DESK, PHONE):
+        one = opened(path, size)
+        count, below, gap = one.value(MATRICES)
+        assert count == 3
+        assert below < 0
+        assert gap > 2
+        width, window = wide(one)
+        assert width <= window
 
 
 def column(one: Any, table: str, k: int) -> list[float]:
