@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -89,12 +89,12 @@ class PathFeatures:
     @cached_property
     def straight(self) -> Stretch:
         """The longest stretch that is straight within the tolerance."""
-        return self._longest(fitted_lines)
+        return self._longest(fitted_lines, partial(fitted_lines, rounds=1))
 
     @cached_property
     def arc(self) -> Stretch:
         """The longest stretch that is an arc of a circle within the tolerance."""
-        return self._longest(fitted_circles)
+        return self._longest(fitted_circles, fitted_circles)
 
     @cached_property
     def cusps(self) -> tuple[PathPlace, ...]:
@@ -115,9 +115,9 @@ class PathFeatures:
         at = self.path.drivers(*(s for c in known for s in (c.first, c.second)))
         return tuple(PathPlace(c.point, (at[2 * k], at[2 * k + 1])) for k, c in enumerate(known))
 
-    def _longest(self, fit: Callable[[Number], Fit]) -> Stretch:
+    def _longest(self, fit: Callable[[Number], Fit], judge: Callable[[Number], Fit]) -> Stretch:
         samples = self.path.samples
-        return stretch_of(self.path, fit, *longest_stretch(samples.points, samples.closed, self.tolerance, fit))
+        return stretch_of(self.path, fit, *longest_stretch(samples.points, samples.closed, self.tolerance, judge))
 
     def __repr__(self) -> str:
         kind = "a line" if self.is_straight else "a circle" if self.is_circular else "a curve"

@@ -156,15 +156,16 @@ def _paths(found: Characteristics) -> Iterator[Block]:
 
 def _features(one: OutputFigures, path: PathFeatures, unit: str) -> Iterator[str]:
     yield f"{'a closed' if path.closed else 'an open'} curve, {written(path.length)}{unit} long"
-    for stretch in (path.straight, path.arc):
-        long = stretch.length >= STRETCH * path.size and (stretch.is_straight or stretch.radius <= FLAT * path.size)
-        if long and (stretch.is_straight or stretch.length > path.straight.length):
-            kind = "straight" if stretch.is_straight else f"an arc of radius {written(stretch.radius)}"
-            (name, a), b = next(iter(stretch.begin.items())), next(iter(stretch.end.values()))
-            turned = one.motion.drives[name].is_angle
-            begin, end = (written(float(np.rad2deg(v)) if turned else v) for v in (a, b))
-            far = f"{written(stretch.length)}{unit}, {name} {begin} to {end}"
-            yield f"{kind} within {stretch.deviation:.2g} over {far}"
+    # an arc is looked for only where no stretch is straight
+    straight = path.straight
+    stretch = straight if straight.length >= STRETCH * path.size else path.arc
+    if stretch.length >= STRETCH * path.size and (stretch.is_straight or stretch.radius <= FLAT * path.size):
+        kind = "straight" if stretch.is_straight else f"an arc of radius {written(stretch.radius)}"
+        (name, a), b = next(iter(stretch.begin.items())), next(iter(stretch.end.values()))
+        turned = one.motion.drives[name].is_angle
+        begin, end = (written(float(np.rad2deg(v)) if turned else v) for v in (a, b))
+        far = f"{written(stretch.length)}{unit}, {name} {begin} to {end}"
+        yield f"{kind} within {stretch.deviation:.2g} over {far}"
     yield from (counted(len(what), name) for what, name in
                 ((path.cusps, "cusp"), (path.double_points, "double point")) if what)  # fmt: skip
 
