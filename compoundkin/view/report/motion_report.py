@@ -77,7 +77,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
             *([equivalent] if (equivalent := equivalent_section(sample)) else []),
             *assembly_sections(motion, design),
             *moving,
-            performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
+            performance_section(sample, figures, chosen, len(outputs) > 0 or bool(motion.mechanism.outputs)),
             *([gaps_section(sample, missing)] if missing else []),
             checks_section(sample, check),
             *([published_section(structure, published)] if published else []),
