@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -19,13 +18,15 @@ from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.elements import FRAME, Drive, Expectation, Item, Mode, drive, link
+from compoundkin.model.elements import Drive, Expectation, Item, Lead, Mode, drive
+from compoundkin.model.laws import constant_speed
+from compoundkin.model.laws.path_parts import PARTS
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
 
-# What carries the point about: along x on the frame, along y on that. No link or point is called so.
-CARRIAGE, TRACER, CORNER = "(carriage)", "(tracer)", "(corner)"
-ALONG, ACROSS, TURN_OF = "(x)", "(y)", "(angle)"
+# What leads the point, and the drivers of it: its coordinates, and the angle of the first link that carries it. No link
+# or point is called so.
+LEADER, TURN_OF = "(led)", "(angle)"
+ALONG, ACROSS = (f"{LEADER}.{part}" for part in PARTS)
 
 
 @dataclass(frozen=True)
@@ -71,16 +72,9 @@ class LedPoint:
         """The link whose angle that is."""
         return self.driven.structure.mechanism.carriers[self.point][0]
 
-    @cached_property
-    def origin(self) -> complex:
-        """The place from which the led coordinates count."""
-        points = self.driven.structure.mechanism.geometry.points[FRAME]
-        return complex(first_entry(next(iter(points.values()))))
-
     def block(self, z: Number, angle: Number, order: int = 0, moved: str = "") -> tuple[Block, Inputs]:
         """Return a block of the led mechanism at places and angles (n,), nothing solved. One coordinate may move."""
-        away = z - self.origin
-        values = {ALONG: away.real, ACROSS: away.imag, TURN_OF: angle}
+        values = {ALONG: z.real, ACROSS: z.imag, TURN_OF: angle}
         drives = {
             name: (values[name][None], float(name == moved)) if name in values else (v[0], 0.0)
             for name, v in self.led_given.drives.items()
@@ -109,19 +103,11 @@ def _led(mechanism: Mechanism, point: str, free: tuple[str, ...]) -> Mechanism:
     """Return the mechanism with some drivers let go and a point carried about in their place."""
     parts = [item for item in mechanism.parts if not isinstance(item, Mode | Expectation)]
     kept = [item for item in parts if not (isinstance(item, Drive) and item.name in free)]
-    corner = next(iter(mechanism.links[FRAME].points))
-    quarter = np.pi / 2.0
-    more: list[Item] = [
-        link(CARRIAGE, **{CORNER: 0}),
-        link(TRACER, **{point: 0}),
-        slide(CARRIAGE, on=FRAME, at=CORNER, through=corner, angle=0.0, turn=0.0, name=ALONG),
-        slide(TRACER, on=CARRIAGE, at=point, through=CORNER, angle=quarter, turn=-quarter, name=ACROSS),
-        drive(CARRIAGE, pair=ALONG, name=ALONG),
-        drive(TRACER, on=CARRIAGE, pair=ACROSS, name=ACROSS),
-    ]
+    leader = Lead(LEADER, point, x=constant_speed(0.0), y=constant_speed(0.0))
+    turned: tuple[Item, ...] = ()
     if len(free) == 3:
-        more.append(drive(mechanism.carriers[point][0], on=TRACER, pair=point, name=TURN_OF))
-    return Mechanism(mechanism.title, *kept, *more, unit=mechanism.unit)
+        turned = (drive(mechanism.carriers[point][0], on=leader.links[-1], pair=point, name=TURN_OF),)
+    return Mechanism(mechanism.title, *kept, leader, *turned, unit=mechanism.unit)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ def corners(law: Any, first: float, last: float) -> Number:
 
     They are in order, from `first` to `last`. A Python function tells none.
 
-    >>> from compoundkin.model.laws.motion_programs import dwell, program, rise
+    >>> from compoundkin.model.laws import dwell, program, rise
     >>> corners(program(rise(1.0, over=2.0, law="parabolic"), dwell(1.0), repeat=True), 0.5, 5.0).tolist()
     [1.0, 2.0, 3.0, 4.0, 5.0]
     >>> corners(MotionTable([0, 1, 2], *np.ones((3, 3))), 0.5, 5.0).tolist()
