@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
+from math import degrees, inf
 from typing import ClassVar
 
 from compoundkin.base.argument_forms import is_finite_real
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import TURN
 from compoundkin.base.display import short
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.base.given_numbers import plain
@@ -132,6 +133,14 @@ class ProgramSegment:
         if self.law == LEAST_TIME:
             return self._fastest.unit_pieces if self.rise else unit_pieces("dwell")
         return unit_pieces(self.law)
+
+
+def turn_problems(period: float, where: str) -> Iterator[Problem]:
+    """Find that spans do not add up to a turn of a cam."""
+    if abs(period - TURN) > ROUNDING:
+        what = f"the spans add up to {degrees(period):.6g} degrees, not to a turn of 360"
+        remedy = "change a dwell; spans are degrees in a file, radians in Python: laws.rise(10, over=deg(90))"
+        yield Problem(where, what, remedy)
 
 
 @checked

@@ -15,6 +15,7 @@ from compoundkin.base.curves.samples import spans
 from compoundkin.base.errors import Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.model.laws.motion_programs import Program
+from compoundkin.model.laws.program_segments import turn_problems
 from compoundkin.model.profiles.envelopes import Oscillating, reach
 
 if TYPE_CHECKING:
@@ -94,11 +95,7 @@ def _misplaced(made: Synthesised) -> Iterator[Problem]:
 
 def _program(made: Synthesised) -> Iterator[Problem]:
     program = made.program
-    turn = program.period
-    if abs(turn - TURN) > ROUNDING:
-        what = f"the spans add up to {np.rad2deg(turn):.6g} degrees, not to a turn of 360"
-        remedy = "change a dwell; spans are degrees in a file, radians in Python: laws.rise(10, over=deg(90))"
-        yield Problem("program", what, remedy)
+    yield from turn_problems(program.period, "program")
     back = float(program.values[-1] - program.values[0])
     if abs(back) > ROUNDING * program.lift:
         what = f"the program does not return: it ends {abs(back):.6g} {'above' if back > 0 else 'below'} its beginning"

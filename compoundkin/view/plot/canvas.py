@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.view.plot.marked_places import CONSTANT
 from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, Plot, colours
@@ -32,10 +33,12 @@ RING: Mapping[str, Any] = MappingProxyType(
 
 
 def panels(rows: int, title: str, size: tuple[float, float], columns: int = 1, **options: Any) -> tuple[Any, list[Any]]:
-    """Make a figure with a title and its axes, row by row."""
+    """Make a figure with a title and its axes, row by row. Raises InvalidInput for a size that is none."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    if not all(0.0 < one < np.inf for one in size):
+        raise InvalidInput(Problem("size", f"{size!r} is no size", "give width and height in inches, such as (7, 4)"))
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
     if title:

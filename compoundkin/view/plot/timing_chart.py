@@ -48,7 +48,8 @@ def timing_chart(
     be given by name, without a mechanism: their values are then as they are. Where something begins or ends, a line
     goes through all rows. The range is that of the mechanism's times, else of all laws. `size` is in inches.
 
-    Raises InvalidInput where there is nothing to draw or nothing tells for how long, or without Matplotlib.
+    Raises InvalidInput where there is nothing to draw or nothing tells for how long, over the rotation for a program
+    that does not take a turn, or without Matplotlib.
 
     >>> from compoundkin.model.laws import dwell, fall, program, rise
     >>> clamp, feed = program(rise(2, over=1), dwell(2), fall(2, over=1)), program(dwell(1), rise(30, over=2), dwell(1))

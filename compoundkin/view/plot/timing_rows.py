@@ -18,6 +18,7 @@ from compoundkin.model.attributes import DEGREES, TIME
 from compoundkin.model.laws import Law, as_law
 from compoundkin.model.laws.law_corners import corners
 from compoundkin.model.laws.motion_programs import Program
+from compoundkin.model.laws.program_segments import turn_problems
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contact import as_profiled
 from compoundkin.model.profiles import Synthesised
@@ -178,6 +179,9 @@ def _of_programs(programs: Mapping[str, Any]) -> Iterator[TimingRow]:
         if not isinstance(program, Program):
             what = f"{program!r} is not a motion program"
             raise InvalidInput(Problem(f"laws.{name}", what, "write laws.program(...), or draw laws over time"))
+        wrong = list(turn_problems(program.period, f"laws.{name}"))
+        if wrong:
+            raise InvalidInput(wrong)
         yield _laid_round(name, "", program, 0.0)
 
 

@@ -97,6 +97,7 @@ def test_the_chart_of_a_mechanism_has_its_units_title_and_times(tmp_path: Path) 
         ({}, None, "there is no law"),
         ({"a": None}, None, "not a law"),
         ({"a": constant_speed(2.0)}, "rotation", "not a motion program"),
+        ({"a": program(rise(20, 90), fall(20, 270))}, "rotation", r"laws\.a: the spans add up to 20626.5 degrees"),
         ({"a": constant_speed([[1.0], [2.0]]), "b": program(dwell(1))}, None, "several designs"),
     ],
 )
