@@ -61,7 +61,8 @@ def finding_place(sample: Sample, name: str, pose: tuple[int, ...]) -> str:
 
 def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 0) -> Report:
     """Report one design of a motion."""
-    sample, structure = Sample(motion, design), motion.structure
+    # they are gone through more than once
+    sample, structure, outputs = Sample(motion, design), motion.structure, tuple(outputs)
     # outputs first: an unknown name is said before the slower work is done
     chosen = chosen_outputs(motion, outputs)
     moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen, design)
@@ -77,7 +78,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
             *([equivalent] if (equivalent := equivalent_section(sample)) else []),
             *assembly_sections(motion, design),
             *moving,
-            performance_section(sample, figures, chosen, len(outputs) > 0 or bool(motion.mechanism.outputs)),
+            performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
             *([gaps_section(sample, missing)] if missing else []),
             checks_section(sample, check),
             *([published_section(structure, published)] if published else []),
