@@ -15,8 +15,8 @@ from compoundkin.analysis.characteristics.group_figures import GroupFigures
 from compoundkin.analysis.characteristics.linkage_types import SliderCrank, linkage_types
 from compoundkin.analysis.characteristics.output_dwells import Dwell
 from compoundkin.analysis.characteristics.output_figures import OutputFigures
+from compoundkin.analysis.characteristics.output_strokes import QuickReturn
 from compoundkin.analysis.characteristics.path_stretches import Stretch, straightness
-from compoundkin.analysis.characteristics.quick_return import QuickReturn
 
 __all__ = [
     "AdvantageFigures",

@@ -49,6 +49,18 @@ def planar_numbers(where: str, value: Any, error: type[CompoundkinError] = Inval
     return np.asarray(_array(where, _given(value, given), complex, error), dtype=complex)
 
 
+def hold_design(design: Any, count: int) -> None:
+    """Raise InvalidInput for the index of a design that is not there.
+
+    >>> hold_design(2, 1)
+    Traceback (most recent call last):
+    compoundkin.base.errors.InvalidInput: design: there is no design 2; there is only 0
+    """
+    if isinstance(design, bool) or not isinstance(design, int | np.integer) or not 0 <= design < count:
+        known = f"0 to {count - 1}" if count > 1 else "there is only 0"
+        raise InvalidInput(Problem("design", f"there is no design {short(design)}", known))
+
+
 def _given(value: Any, array: NDArray[Any]) -> Any:
     """The array that is converted; what is an object stays itself, to be shown where it is no number."""
     return value if array.dtype.kind == "O" else array

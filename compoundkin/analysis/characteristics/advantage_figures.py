@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.figure import GREATEST, LEAST, PlacedFigure, Range, moving_drivers, scalar
+from compoundkin.analysis.characteristics.figure import PlacedFigure, Range, moving_drivers, scalar
 from compoundkin.analysis.characteristics.outputs_of_motion import Output
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity, owner_of
-from compoundkin.model.attributes import ADVANTAGE, VELOCITY_RATIO, coordinate_dimension, ratio_unit
+from compoundkin.model.attributes import ADVANTAGE, GREATEST, LEAST, VELOCITY_RATIO, coordinate_dimension, ratio_unit
 
 # Links that turn by less (radians) stay parallel but for rounding, and have no torque.
 TURNS = 1e-9

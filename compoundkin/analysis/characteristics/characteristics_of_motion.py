@@ -24,8 +24,9 @@ from compoundkin.analysis.characteristics.linkage_types import SliderCrank, link
 from compoundkin.analysis.characteristics.output_figures import OutputFigures
 from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs, outputs_of
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import counted, short
+from compoundkin.base.display import counted
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure
 
@@ -139,9 +140,7 @@ def characteristics(
 
 
 def _check(motion: Motion, design: int, dwell: float, straight: float) -> None:
-    if not 0 <= design < motion.inputs.designs:
-        known = f"0 to {motion.inputs.designs - 1}" if motion.inputs.designs > 1 else "there is only 0"
-        raise InvalidInput(Problem("design", f"there is no design {short(design)}", known))
+    hold_design(design, motion.inputs.designs)
     for name, part in (("dwell", dwell), ("straight", straight)):
         if not 0 < part < 1:
             raise InvalidInput(Problem(name, f"{part:g} is no part of a stroke", "give a number between 0 and 1"))

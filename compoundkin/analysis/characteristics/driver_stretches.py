@@ -7,24 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number, entry
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.kinematics import Motion
-from compoundkin.model.elements import FRAME
+from compoundkin.kinematics.extremes.places import same_pose
 
-# Two poses are one where they differ by less than this part of the size: rounding of a full turn of many groups.
-SAME = 1e-9
-
-
-def pieces(motion: Motion, design: int) -> Iterator[tuple[int, int]]:
-    """Find the first and the last of each run of assembled poses.
-
-    >>> import compoundkin as ck
-    >>> list(pieces(ck.solve(ck.catalog.load_named("crank-rocker")), 0))
-    [(0, 72)]
-    """
-    good = np.broadcast_to(motion.failed == 0, (motion.inputs.designs, motion.inputs.poses))[design]
-    edge = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
-    yield from zip(edge[::2].tolist(), (edge[1::2] - 1).tolist(), strict=True)
+# A full turn may lack so many turns by rounding.
+LACKS = 1e-9
 
 
 def stretches(motion: Motion, design: int) -> Iterator[tuple[int, int, bool]]:
@@ -39,12 +27,19 @@ def stretches(motion: Motion, design: int) -> Iterator[tuple[int, int, bool]]:
     """
     drives = _driven(motion, design)
     way = np.sign(np.diff(drives, axis=1))
-    for begin, end in pieces(motion, design):
+    for begin, end in _runs(motion, design):
         turns_back = 1 + np.flatnonzero(np.any(way[:, begin + 1 : end] != way[:, begin : end - 1], axis=0))
         cuts = [begin, *(begin + turns_back).tolist(), end]
         for first, last in pairwise(cuts):
             if last > first and np.any(way[:, first]):
                 yield _first_cycle(motion, design, drives, first, last)
+
+
+def _runs(motion: Motion, design: int) -> Iterator[tuple[int, int]]:
+    """Return the first and the last of each run of assembled poses."""
+    good = np.broadcast_to(motion.failed == 0, (motion.inputs.designs, motion.inputs.poses))[design]
+    edge = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
+    yield from zip(edge[::2].tolist(), (edge[1::2] - 1).tolist(), strict=True)
 
 
 def _driven(motion: Motion, design: int) -> Number:
@@ -58,18 +53,8 @@ def _first_cycle(motion: Motion, design: int, drives: Number, first: int, last: 
     gone = np.abs(drives[:, first : last + 1] - drives[:, first : first + 1])
     moving = gone[:, -1] > 0
     if all(one.is_angle for one, moves in zip(motion.drives.values(), moving, strict=True) if moves):
-        turns = np.floor(gone[moving] / TURN + SAME).min(axis=0)
+        turns = np.floor(gone[moving] / TURN + LACKS).min(axis=0)
         for k in (first + 1 + np.flatnonzero(np.diff(turns) > 0)).tolist():
-            if is_same_pose(motion, design, first, k):
+            if same_pose(motion, first, k)[design]:
                 return first, k, True
     return first, last, False
-
-
-def is_same_pose(motion: Motion, design: int, one: int, other: int) -> bool:
-    """Tell whether all links are at two poses at the same place."""
-    for name, pose in motion.poses.items():
-        for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
-            a, b = (entry(series.c[0], (design, k)) for k in (one, other))
-            if name != FRAME and not abs(a - b) <= SAME * size:
-                return False
-    return True

@@ -11,9 +11,7 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Extreme, Measure, Places, extremes
 from compoundkin.kinematics.quantities import Quantity, whole_and_part
-from compoundkin.model.attributes import TIME, coordinate_dimension, unit_of
-
-GREATEST, LEAST = "greatest", "least"
+from compoundkin.model.attributes import GREATEST, LEAST, TIME, coordinate_dimension, unit_of
 
 
 @dataclass(frozen=True, eq=False)

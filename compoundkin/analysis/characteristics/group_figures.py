@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compoundkin.analysis.characteristics.figure import GREATEST, LEAST, Range, scalar
+from compoundkin.analysis.characteristics.figure import Range, scalar
 from compoundkin.analysis.characteristics.outputs_of_motion import Output
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import owner_of
 from compoundkin.model.attributes import (
     CORIOLIS,
+    GREATEST,
+    LEAST,
     LENGTH,
     PRESSURE_ANGLE,
     RADIANS,

@@ -16,8 +16,7 @@ from compoundkin.analysis.characteristics.four_bar_types import EQUAL, FourBar, 
 from compoundkin.analysis.characteristics.four_links import FourLinks, loops_of_four
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross
-from compoundkin.base.display import short
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.given_numbers import hold_design
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 
@@ -99,10 +98,7 @@ def linkage_types(what: Mechanism | Structure, design: int = 0) -> tuple[FourBar
     'crank-rocker'
     """
     structure = decompose(what) if isinstance(what, Mechanism) else what
-    count = _designs(structure)
-    if not 0 <= design < count:
-        known = f"0 to {count - 1}" if count > 1 else "there is only 0"
-        raise InvalidInput(Problem("design", f"there is no design {short(design)}", known))
+    hold_design(design, _designs(structure))
     measured = Measured(structure, design)
     found = (
         measured.slider_crank(loop) if loop.slide else measured.four_bar(loop) for loop in loops_of_four(structure)

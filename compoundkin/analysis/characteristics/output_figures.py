@@ -19,15 +19,19 @@ from compoundkin.analysis.characteristics.figure import (
     told,
 )
 from compoundkin.analysis.characteristics.output_dwells import Dwell, OutputCourse
+from compoundkin.analysis.characteristics.output_strokes import (
+    PieceStroke,
+    QuickReturn,
+    quick_return_between,
+    strokes_by_piece,
+)
 from compoundkin.analysis.characteristics.outputs_of_motion import Output
-from compoundkin.analysis.characteristics.piece_strokes import PieceStroke, strokes_by_piece
-from compoundkin.analysis.characteristics.quick_return import QuickReturn, quick_return_between
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between, closed_cycles, dead_points
 from compoundkin.kinematics.quantities import Quantity, quantity
-from compoundkin.model.attributes import order_of, unit_of
+from compoundkin.model.attributes import STROKE, order_of, unit_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +83,9 @@ class OutputFigures:
             if not np.isfinite([self.least.number, self.greatest.number]).all():
                 return None
             far, unit = self.greatest.number - self.least.number, self.least.value.unit
-            return scalar(f"{self.name}.stroke", far, unit)
+            return scalar(f"{self.name}.{STROKE}", far, unit)
         if self.path is not None and self.path.is_straight and not self.path.closed:
-            return scalar(f"{self.name}.stroke", self.path.line.length, unit_of(self.motion.mechanism.unit, "length"))
+            return scalar(f"{self.name}.{STROKE}", self.path.line.length, unit_of(self.motion.mechanism.unit, "length"))
         return None
 
     @cached_property

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.analysis.characteristics.figure import moving_drivers
 from compoundkin.analysis.characteristics.path_fits import Fit, fitted_lines, projected
 from compoundkin.analysis.characteristics.point_places import path_of
 from compoundkin.analysis.characteristics.traced_path import TracedPath
@@ -86,7 +87,7 @@ def straightness(motion: Motion, point: str, begin: float, end: float, design: i
     0.24
     """
     path, _ = path_of(motion, point, design, whole=True)
-    drives = [name for name, v in motion.inputs.drives.items() if np.ptp(v[0]) > 0]
+    drives = moving_drivers(motion, design)
     if len(drives) != 1:
         what = f"{len(drives)} drivers move ({', '.join(drives) or 'none'})"
         raise InvalidInput(Problem("begin, end", what, "a stretch is named by the values of the only one that does"))

@@ -8,8 +8,8 @@ import numpy as np
 
 from compoundkin.analysis.characteristics.driver_stretches import stretches
 from compoundkin.analysis.characteristics.traced_path import TracedPath
-from compoundkin.base.display import short
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion
 
 # A point moves where its path is longer than this part of the mechanism: rounding of a group on a group.
@@ -22,9 +22,7 @@ def path_of(motion: Motion, point: str, design: int = 0, whole: bool = False) ->
     With it, whether it turns back there. It is as far as no driver turns back, and unless `whole` as far as the point
     does not.
     """
-    if not 0 <= design < motion.inputs.designs:
-        known = f"0 to {motion.inputs.designs - 1}" if motion.inputs.designs > 1 else "there is only 0"
-        raise InvalidInput(Problem("design", f"there is no design {short(design)}", known))
+    hold_design(design, motion.inputs.designs)
     if point not in motion.mechanism.carriers:
         letters = list(motion.mechanism.carriers)
         raise UnknownName(Problem(point, "there is no such point", nearest(point, letters)))

@@ -14,8 +14,8 @@ from compoundkin.kinematics.extremes.inputs_between import inputs_between, times
 from compoundkin.kinematics.extremes.stretches import stretches_of
 from compoundkin.kinematics.motion import Motion
 
-# First and last poses nearer than this (in parts of the size, or radians) are one: the motion is a closed cycle.
-CLOSED = 1e-9
+# Two poses nearer than this (in parts of the size, or radians) are one: rounding of a full turn of many groups.
+SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -70,9 +70,16 @@ def closed_cycles(motion: Motion) -> Number:
     """Tell which designs end where they began, (designs,)."""
     shape = motion.inputs.designs, motion.inputs.poses
     good = np.broadcast_to(motion.failed == 0, shape)
-    closed: Number = good[:, 0] & good[:, -1] & (shape[1] > 2)
+    whole = good[:, 0] & good[:, -1] & (shape[1] > 2)
+    return np.asarray(whole & same_pose(motion, 0, -1) if whole.any() else whole)
+
+
+def same_pose(motion: Motion, one: int, other: int) -> Number:
+    """Tell in which designs two poses have all links at the same place, (designs,)."""
+    shape = motion.inputs.designs, motion.inputs.poses
+    same: Number = np.ones(shape[0], dtype=bool)
     for pose in motion.poses.values():
         for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
             value = np.broadcast_to(series.c[0], shape)
-            closed = closed & (np.abs(value[:, -1] - value[:, 0]) <= CLOSED * size)
-    return closed
+            same &= np.abs(value[:, one] - value[:, other]) <= SAME * size
+    return same

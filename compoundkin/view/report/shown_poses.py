@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.lost_digits import uncertain
 from compoundkin.kinematics.quantities import Quantity, owner_of, quantity
@@ -36,9 +36,7 @@ class Sample:
     design: int = 0
 
     def __post_init__(self) -> None:
-        if not 0 <= self.design < self.motion.inputs.designs:
-            known = f"0 to {self.motion.inputs.designs - 1}" if self.motion.inputs.designs > 1 else "there is only 0"
-            raise InvalidInput(Problem("design", f"there is no design {self.design}", known))
+        hold_design(self.design, self.motion.inputs.designs)
 
     @property
     def poses(self) -> int:

@@ -21,6 +21,7 @@ from compoundkin.base.errors import (
     UnknownName,
     nearest,
 )
+from compoundkin.base.given_numbers import hold_design
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion, solve
@@ -114,9 +115,7 @@ def scene_in(motion: Motion, at: Any, pose: int | None, design: int) -> Scene:
 
     It is one of a motion, nearest to the drawing.
     """
-    if isinstance(design, bool) or not isinstance(design, int) or not 0 <= design < motion.inputs.designs:
-        known = f"0 to {motion.inputs.designs - 1}" if motion.inputs.designs > 1 else "there is only 0"
-        raise InvalidInput(Problem("design", f"there is no design {design!r}", known))
+    hold_design(design, motion.inputs.designs)
     failed = np.broadcast_to(motion.failed, (motion.inputs.designs, motion.inputs.poses))[design]
     if pose is not None:
         if isinstance(pose, bool) or not isinstance(pose, int) or not -len(failed) <= pose < len(failed):
