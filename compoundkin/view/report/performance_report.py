@@ -24,6 +24,7 @@ def characteristics_report(
     straight: float | None = None,
 ) -> Report:
     """Report the figures of a motion, and where it is not assembled."""
+    outputs = tuple(outputs)
     sample, chosen = Sample(motion, design), chosen_outputs(motion, outputs)
     named = bool(outputs or motion.mechanism.outputs)
     figures = characteristics(
