@@ -162,19 +162,20 @@ def _named(structure: Structure, option: str, given: Sequence[str]) -> Iterator[
     drivers = [drive.name for drive in structure.mechanism.drives]
     for text in given:
         name, equals, value = text.rpartition("=")
-        name = name if equals else _only(structure, f"{option} {text}")
+        name = name if equals else _only(structure, f"{option} {text}", "write NAME=VALUE, NAME one of ")
         if name not in drivers:
             raise _wrong(f"{option} {text}", f"there is no driver {name!r}", nearest(name, drivers))
         yield name, value
 
 
-def _only(structure: Structure, where: str) -> str:
+def _only(structure: Structure, where: str, how: str = "name one with --drive: ") -> str:
+    """The only driver; else it is said how to name one of several."""
     drivers = [drive.name for drive in structure.mechanism.drives]
     if len(drivers) == 1:
         return drivers[0]
     if not drivers:
         raise _wrong(where, "the mechanism has no driver")
-    raise _wrong(where, f"there are {len(drivers)} drivers", f"name one with --drive: {', '.join(drivers)}")
+    raise _wrong(where, f"there are {len(drivers)} drivers", f"{how}{', '.join(drivers)}")
 
 
 def _spanned(structure: Structure, name: str, span: Mapping[str, Any]) -> Number:

@@ -132,6 +132,13 @@ def test_what_does_not_go_together(run: Run, options: tuple[str, ...], said: str
     assert "Traceback" not in result.stderr
 
 
+def test_a_rate_of_several_drivers_is_told_to_have_a_name(run: Run) -> None:
+    """The remedy was an option that the verb does not have."""
+    result = run("five-bar", "--equations", "--order", "1", "--speed", "2")
+    assert result.exit_code == 2
+    assert "write NAME=VALUE, NAME one of left, right" in result.stderr
+
+
 def test_the_whole_catalog_is_written(run: Run) -> None:
     """Of every kind of row one: cams, gears, racks, wheels, drivers between links, more rows than unknowns, none."""
     for name in ("oscillating-flat-follower", "rack-and-pinion-steering", "rolling-wheel", "double-parallelogram-lift",
