@@ -11,6 +11,7 @@ from compoundkin.analysis.characteristics.figure import PlacedFigure, Range, mov
 from compoundkin.analysis.characteristics.outputs_of_motion import Output
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.extremes.measures import ROUNDING
 from compoundkin.kinematics.quantities import Quantity, owner_of
 from compoundkin.model.attributes import ADVANTAGE, GREATEST, LEAST, VELOCITY_RATIO, coordinate_dimension, ratio_unit
 
@@ -51,7 +52,9 @@ class AdvantageFigures:
     @property
     def toggles(self) -> bool:
         """Whether it grows without limit somewhere."""
-        return self.ratio.least.number <= 0.0 <= self.ratio.greatest.number
+        most = abs(self.ratio.absolute.number)
+        slack = ROUNDING * most if np.isfinite(most) else 0.0
+        return self.ratio.least.number <= slack and self.ratio.greatest.number >= -slack
 
 
 def ratio_names(motion: Motion, outputs: Iterable[Output], design: int) -> dict[str, str]:

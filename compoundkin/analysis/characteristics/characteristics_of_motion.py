@@ -24,7 +24,7 @@ from compoundkin.analysis.characteristics.linkage_types import SliderCrank, link
 from compoundkin.analysis.characteristics.output_figures import OutputFigures
 from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs, outputs_of
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import counted
+from compoundkin.base.display import counted, short
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion
@@ -32,6 +32,8 @@ from compoundkin.kinematics.extremes import Measure
 
 # A dwell changes by no more than this part of the stroke; a straight stretch is off by no more than that of the path.
 DWELL, STRAIGHT = 0.01, 0.001
+# A transmission angle below this (radians) is none: where it passes zero its place is known to about so much.
+NOTHING = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +68,7 @@ class Characteristics:
     def warnings(self) -> tuple[str, ...]:
         """What is poor: transmission angles below 40 degrees on the way to an output."""
         return tuple(
-            f"{one.name} falls to {np.rad2deg(one.range.least.number):.3g} degrees on the way to the output"
+            f"{one.name} falls to {_degrees(one.range.least.number):.3g} degrees on the way to the output"
             for one in self.groups
             if one.is_poor
         )
@@ -76,6 +78,8 @@ class Characteristics:
         named = {one.output.owner: one for one in reversed(self.outputs)} | {one.name: one for one in self.outputs}
         if name in named:
             return named[name]
+        if not isinstance(name, str):
+            raise UnknownName(Problem(short(name), "it is no name of an output", nearest("", list(named))))
         try:
             meant = outputs_of(self.motion, [name])[0]
         except UnknownName:
@@ -146,6 +150,11 @@ def _check(motion: Motion, design: int, dwell: float, straight: float) -> None:
             raise InvalidInput(Problem(name, f"{part:g} is no part of a stroke", "give a number between 0 and 1"))
 
 
+def _degrees(angle: float) -> float:
+    """Return an angle in degrees, 0 where only rounding is left of it."""
+    return float(np.rad2deg(angle)) if angle > NOTHING else 0.0
+
+
 def _notes(motion: Motion, design: int, moving: tuple[str, ...]) -> list[str]:
     """Return what is not defined for such a motion, and why."""
     told = []
@@ -155,6 +164,8 @@ def _notes(motion: Motion, design: int, moving: tuple[str, ...]) -> list[str]:
     if missing:
         told.append(f"{missing:,} of {motion.inputs.poses:,} poses cannot be assembled: figures are of what can be,"
                     " time ratios are not defined.")  # fmt: skip
+    if motion.time is None and not any(np.any(rates[1]) for rates in motion.inputs.drives.values()):
+        told.append("No driver has a speed: rates are zero, velocity ratios and mechanical advantage are not defined.")
     if len(moving) > 1:
         told.append(f"Several drivers move ({', '.join(moving)}): time ratios by a driver's angle, velocity ratios and"
                     " mechanical advantage are not defined.")  # fmt: skip

@@ -83,6 +83,7 @@ class OutputFigures:
             if not np.isfinite([self.least.number, self.greatest.number]).all():
                 return None
             far, unit = self.greatest.number - self.least.number, self.least.value.unit
+            far = 0.0 if self.is_constant else far  # but for rounding
             return scalar(f"{self.name}.{STROKE}", far, unit)
         if self.path is not None and self.path.is_straight and not self.path.closed:
             return scalar(f"{self.name}.{STROKE}", self.path.line.length, unit_of(self.motion.mechanism.unit, "length"))

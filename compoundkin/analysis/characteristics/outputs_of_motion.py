@@ -102,7 +102,8 @@ def _output(motion: Motion, name: str) -> Output:
         for kind in CATALOGUE:
             if owner in getattr(motion, kind):
                 known = owner_of(motion, kind, owner).attributes
-                if not word or word in known:
+                is_part = kind == "points" and part in PARTS
+                if (not word or word in known) and (is_part or not part):
                     return _of(motion, kind, owner, word or next(iter(known)), part)
     return _derived(motion, name)
 

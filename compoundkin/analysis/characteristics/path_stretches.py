@@ -61,11 +61,13 @@ def stretch_of(path: TracedPath, fit: Callable[[Number], Fit], first: int, last:
     samples = path.samples
     points = samples.points[np.arange(first, last + 1) % len(samples.points)]
     found = fit(points)
+    if not np.isfinite(found.radius):
+        found = fitted_lines(points)  # no circle goes through points on a line
     radius = float(found.radius)
     if np.isfinite(radius):
         length = radius * float(np.ptp(np.unwrap(np.angle(points - found.place))))
     else:
-        length = float(np.ptp(projected(points, found))) if np.isfinite(found.direction) else np.inf
+        length = float(np.ptp(projected(points, found)))
     begin = float(samples.s[0]) + first * samples.step
     at, until = path.drivers(begin, begin + (last - first) * samples.step)
     ends = complex(points[0]), complex(points[-1])

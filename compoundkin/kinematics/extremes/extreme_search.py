@@ -157,7 +157,8 @@ class ExtremeSearch(PrintsShort):
         """Return samples (n, k) of quantities, infinite where they are so large that they pass through infinity."""
         known = np.where(np.isfinite(self.ends), np.abs(self.ends), np.nan)
         typical = [np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.inf for row in known]
-        return np.where(np.abs(values) > POLE * np.array(typical)[m, None], np.sign(values) * np.inf, values)
+        typical = np.fmax(typical, self._slack.max(axis=1))
+        return np.where(np.abs(values) > POLE * typical[m, None], np.sign(values) * np.inf, values)
 
     def _peaked(self, windows: Windows) -> tuple[Number, Number, Number]:
         """Return the windows that hold the greatest values, or may: quantities, signs, windows."""

@@ -13,7 +13,7 @@ from compoundkin.base.bracketing import false_position
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.measures import ROUNDING, Measure, values_at_poses
-from compoundkin.kinematics.extremes.stretches import Stretches
+from compoundkin.kinematics.extremes.stretches import ASIDE, Stretches
 from compoundkin.kinematics.extremes.windows import SAMPLES, Windows, sampled
 from compoundkin.kinematics.motion import Motion
 
@@ -100,12 +100,27 @@ class ZeroSearch(PrintsShort):
             # poses themselves are right also where rates are only known there
             values[:, [0, -1]] = np.where(np.isnan(self._ends[which]), values[:, [0, -1]], self._ends[which])
             rows.append(np.stack([np.repeat(which, len(SAMPLES)), np.tile(SAMPLES, len(which)), values.ravel()]))
-        found = np.concatenate(rows, axis=1)
+        found = np.concatenate([*rows, self._at_outer_jumps()], axis=1)
         found = found[:, np.isfinite(found[2])]
         stretch, t, value = found[:, np.lexsort((found[1], found[0]))]
         index = stretch.astype(int)
         sign = np.where(np.abs(value) <= self._tiny, 0.0, np.sign(value))
-        return _Samples(index, t, self.stretches.places(t[:, None], index)[:, 0], sign)
+        place = self.stretches.places(t[:, None], index)[:, 0]
+        return _Samples(index, t, np.where(np.abs(t) > 1.0, np.round(place), place), sign)
+
+    def _at_outer_jumps(self) -> Number:
+        """Return stretch, t and value of the first and last poses at which it is zero, though derivatives jump there.
+
+        The smooth stretches beside begin and end next to them.
+        """
+        s, last = self.stretches, self._values.shape[1] - 1
+        outer = (s.first < 0) & (s.low <= 2.0 * ASIDE), (s.last < 0) & (s.high >= last - 2.0 * ASIDE)
+        rows = [np.empty((3, 0))]
+        for side, (odd, pose) in enumerate(zip(outer, (0, last), strict=True)):
+            zero = odd & (np.abs(self._values[s.design, pose]) <= self._tiny) & (self.measure.order < 2)
+            which = np.flatnonzero(zero & ~s.limits[:, side])
+            rows.append(np.stack([which, np.full(len(which), (2.0 * side - 1.0) * (1.0 + 2.0 * ASIDE)), 0.0 * which]))
+        return np.concatenate(rows, axis=1)
 
     def _windows(self, which: Number, low: Number, high: Number) -> Windows:
         return sampled(self.motion, (self.measure,), self.stretches, which, low, high)

@@ -30,8 +30,9 @@ MOST_LOOPS = 12
 NO_LIMIT = "no limit"
 # Places are found to about this (degrees, lengths or seconds): nearer to zero they are shown as zero.
 NEARLY = 1e-6
-# A value below this part of the other end is zero but for rounding.
-FLOOR = 1e-12
+# What is below this part of the other end is zero, and ends nearer than this are one: lengths of vectors that pass
+# zero are known to so much, as their places are.
+FLOOR = 1e-8
 
 
 def performance_section(
@@ -125,9 +126,12 @@ def _named_ranges(found: Characteristics) -> Iterator[tuple[str, Range]]:
 
 def _range(name: str, one: Range) -> tuple[Cell, ...]:
     least, greatest = one.least, one.greatest
-    if one.is_constant:
-        return name, _unit(least.value), _number(least.value), "always", _number(greatest.value), "always"
-    floor = FLOOR * max(abs(least.number), abs(greatest.number))
+    size = max(abs(least.number), abs(greatest.number))
+    floor = FLOOR * size if np.isfinite(size) else 0.0
+    far = greatest.number - least.number
+    if one.is_constant or far <= floor:
+        value = 0.0 if far > floor else _number(least.value)  # what varies by rounding alone is zero
+        return name, _unit(least.value), value, "always", value, "always"
     low, high = (0.0 if abs(end.number) <= floor else _number(end.value) for end in (least, greatest))
     return name, _unit(least.value), low, _at(least), high, _at(greatest)
 

@@ -200,3 +200,43 @@ def test_vectors_and_ratios_are_outputs_too() -> None:
         assert (through.stroke, through.dwells) == (None, ())
     with pytest.raises(ck.errors.UnknownName, match="has no 'z'"):
         ck.characteristics(catalog.motion("six-bar"), outputs=["slot.coriolis.z"])
+
+
+@pytest.mark.parametrize("profile", ["parabolic", "harmonic", "cycloidal"])
+def test_a_law_that_begins_at_a_corner_turns_back_at_the_seam_of_its_cycle(profile: str) -> None:
+    """One second forth, half a second of rest, one second back: forth 1 s of 2.5 s, whatever the profile."""
+    law = ck.laws.program(ck.laws.rise(1, 1, profile), ck.laws.dwell(0.5), ck.laws.fall(1, 1, profile))
+    m = ck.Mechanism("m", ck.link("frame", O=0), ck.link("arm", O=0, A=1), ck.drive("arm", law=law))
+    arm = ck.characteristics(ck.solve(m, time=np.linspace(0, 2.5, 26)), ["arm.angle"])["arm"]
+    assert [value(one.at["time"]) for one in arm.dead_points] == pytest.approx([0.0, 1.0], abs=1e-9)
+    assert value(arm.time_ratio) == pytest.approx(1.5, abs=1e-9)
+
+
+def test_rounding_is_no_figure() -> None:
+    """The coupler of a parallelogram stays parallel, also where it passes its change points."""
+    found = ck.characteristics(catalog.motion("parallelogram"))
+    coupler = found["coupler"]
+    assert value(coupler.stroke) == 0.0
+    assert coupler.acceleration is not None
+    assert abs(coupler.acceleration.number) < 1e-6  # of the driver's 1 rad/s
+    assert found.warnings[0].startswith("coupler.transmission_angle falls to 0 degrees")
+
+
+def test_advantage_has_no_limit_where_the_output_rests_at_an_end_of_the_motion() -> None:
+    """The pin of a Geneva wheel enters and leaves its slot in the slot's direction."""
+    (wheel,) = ck.characteristics(catalog.motion("geneva-wheel")).advantages
+    assert wheel.toggles
+    assert wheel.greatest is None
+    assert abs(wheel.least.number) == pytest.approx(np.sqrt(2) - 1)  # (c - r) / r with c = sqrt(2) r
+
+
+def test_names_that_mean_nothing_are_told() -> None:
+    motion = catalog.motion("slider-crank-offset")
+    with pytest.raises(ck.errors.UnknownName, match="zz"):
+        ck.characteristics(motion, ["B.velocity.zz"])
+    with pytest.raises(ck.errors.UnknownName, match="no vector"):
+        ck.characteristics(motion, ["rod.angle.x"])
+    with pytest.raises(ck.errors.UnknownName, match="no name of an output"):
+        ck.characteristics(motion)[5]  # type: ignore[index]
+    still = ck.characteristics(ck.solve(motion.mechanism, speed=0.0))
+    assert still.notes[0].startswith("No driver has a speed")

@@ -155,3 +155,11 @@ def test_wrong_places_points_and_tolerances_are_refused() -> None:
         straightness(motion, "C", 0.0, 9.0)
     with pytest.raises(ck.errors.InvalidInput, match="no driver moves"):
         path_features(ck.solve(motion.mechanism, {"crank": [1.0]}), "C")
+
+
+def test_what_is_straight_has_no_arc_but_itself() -> None:
+    """Both tracers of the pantograph are led along lines: no circle goes through their places."""
+    features = ck.performance.path_features(catalog.motion("pantograph"), "C")
+    assert features.arc.is_straight
+    assert np.isfinite(features.arc.length)
+    assert features.arc.deviation == pytest.approx(0.0, abs=1e-12)

@@ -43,3 +43,18 @@ def test_straight_lines_and_dwells_are_told_in_words() -> None:
     assert "P describes a closed curve" in texts["hoecken-straight-line"]
     assert "straight within" in texts["hoecken-straight-line"]
     assert "FG.angle dwells at" in texts["watt-ii"]
+
+
+def test_every_number_of_the_section_is_one_and_what_does_not_change_is_so_always() -> None:
+    """Where derivatives of a parallelogram are known less well, and where paths are straight."""
+    for name in ("pantograph", "parallelogram", "geneva-wheel"):
+        section = catalog.report_of(name).section("performance")
+        assert section is not None
+        text = " ".join(block.text for block in section.blocks if isinstance(block, Paragraph))
+        assert "nan" not in text
+        assert "inf " not in text
+        rows = {row[0]: row for block in section.blocks if isinstance(block, TableBlock) for row in block.rows}
+        if name == "parallelogram":
+            assert rows["P.acceleration.length"][3] == rows["follower.velocity_ratio"][5] == "always"
+        if name == "geneva-wheel":
+            assert rows["|wheel.advantage|"][4] == "no limit"
