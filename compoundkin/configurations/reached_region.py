@@ -194,13 +194,14 @@ def _lattice(reach: Reach, z: Number, cells: int | None) -> Lattice:
     wide = usual if cells is None else cells
     if not FEWEST <= wide <= MOST:
         raise InvalidInput(Problem("cells", f"{wide} cells are no lattice", f"give {FEWEST} to {MOST}"))
+    size = reach.led.driven.size
     if reach.angle is not None:
         # of all angles the drivers reach more: the region is looked for first
-        first = lattice_of(reach, _box(z), CELLS_OF_THREE)
+        first = lattice_of(reach, _box(z, size), CELLS_OF_THREE)
         z = first.places[first.inside]
         if not len(z):
             raise _nothing(reach)
-    return lattice_of(reach, _box(z), wide)
+    return lattice_of(reach, _box(z, size), wide)
 
 
 def _nothing(reach: Reach) -> NotAssembled:
@@ -208,7 +209,7 @@ def _nothing(reach: Reach) -> NotAssembled:
     return NotAssembled(Problem("workspace", what, 'widen the ranges, leave orientation out, or try modes="all"'))
 
 
-def _box(z: Number) -> tuple[complex, complex]:
+def _box(z: Number, size: float) -> tuple[complex, complex]:
     low, high = complex(np.min(z.real), np.min(z.imag)), complex(np.max(z.real), np.max(z.imag))
-    wide = AROUND * max((high - low).real, (high - low).imag) or 1.0
+    wide = AROUND * max((high - low).real, (high - low).imag) or size
     return low - complex(wide, wide), high + complex(wide, wide)

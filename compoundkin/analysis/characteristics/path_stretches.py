@@ -16,7 +16,8 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
 
-# A driver's value beyond an end of its range by less than this is at the end (radians or lengths): rounding of degrees.
+# A driver's value beyond an end of its range by less than this (radians, or parts of the size) is at the end: rounding
+# of degrees.
 AT_END = 1e-9
 
 
@@ -102,7 +103,8 @@ def _place_of(path: TracedPath, value: float, driver: str) -> float:
     """Return the place along a path at which the driver has a value."""
     poses = np.arange(round(path.first), round(path.last) + 1)
     values = np.array([at[driver] for at in path.drivers(poses[0], poses[-1])])
-    inside = min(values) - AT_END <= value <= max(values) + AT_END
+    slack = AT_END * path.motion.solving_order.unit(driver)
+    inside = min(values) - slack <= value <= max(values) + slack
     if not inside or values[0] == values[1]:
         span = f"{driver} goes from {values[0]:g} to {values[1]:g}"
         raise InvalidInput(Problem("begin, end", f"{value:g} is outside: {span}", "give values between (radians)"))

@@ -10,13 +10,10 @@ from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.extremes.extremes_of_motion import Extremes, extremes
 from compoundkin.kinematics.extremes.measures import measure_of
 from compoundkin.kinematics.extremes.motion_between import MotionBetween
-from compoundkin.kinematics.extremes.places import Places, closed_cycles
+from compoundkin.kinematics.extremes.places import SAME_PLACE, Places, closed_cycles
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import GREATEST, IMBALANCE, LEAST, RADIANS, STROKE, TIME_RATIO
-
-# Nearer than this (of a pose) two places are one.
-SAME = 1e-6
 
 
 def course_quantity(motion: Motion, of: str, figure: str) -> Quantity:
@@ -52,7 +49,7 @@ def _forward(motion: Motion, name: str, found: Extremes) -> Number:
         raise InvalidInput(Problem(name, "the motion is no closed cycle", "solve it over a full turn of its driver"))
     if np.any(found.is_constant):
         raise InvalidInput(Problem(name, "it does not move", "name an output that does"))
-    if any(np.any(side.until > side.at.place + SAME) for side in (found.least, found.greatest)):
+    if any(np.any(side.until > side.at.place + SAME_PLACE) for side in (found.least, found.greatest)):
         what = "it rests at an end of its stroke, so that dwells belong to neither stroke"
         raise InvalidInput(Problem(name, what, "take the dead points and where they end"))
     ends = (Places(motion, designs, np.full(len(designs), end)) for end in (0.0, motion.inputs.poses - 1.0))

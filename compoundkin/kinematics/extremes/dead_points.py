@@ -78,7 +78,9 @@ def moving_driver(motion: Motion) -> str:
     moving = [name for name, drive in motion.drives.items() if np.any(np.ptp(drive.value, axis=-1))]
     if len(moving) != 1:
         told = f"{len(moving)} drivers move" if moving else "no driver moves"
-        raise InvalidInput(Problem("motion", f"{told}, and dead points are those of one", "move one, or solve in time"))
+        raise InvalidInput(
+            Problem("motion", f"{told}: dead points and time ratios are those of one", "move one, or solve in time")
+        )
     return moving[0]
 
 

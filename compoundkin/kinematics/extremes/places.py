@@ -15,7 +15,9 @@ from compoundkin.kinematics.extremes.stretches import stretches_of
 from compoundkin.kinematics.motion import Motion
 
 # Two poses nearer than this (in parts of the size, or radians) are one: rounding of a full turn of many groups.
-SAME = 1e-9
+SAME_POSE = 1e-9
+# Nearer than this (of a pose) two places are one.
+SAME_PLACE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -81,5 +83,5 @@ def same_pose(motion: Motion, one: int, other: int) -> Number:
     for pose in motion.poses.values():
         for series, size in ((pose.z, motion.size), (pose.u, 1.0)):
             value = np.broadcast_to(series.c[0], shape)
-            same &= np.abs(value[:, one] - value[:, other]) <= SAME * size
+            same &= np.abs(value[:, one] - value[:, other]) <= SAME_POSE * size
     return same

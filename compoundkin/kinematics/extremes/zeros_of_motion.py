@@ -11,13 +11,10 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.measures import Measure, measures_of
-from compoundkin.kinematics.extremes.places import Places, closed_cycles
+from compoundkin.kinematics.extremes.places import SAME_PLACE, Places, closed_cycles
 from compoundkin.kinematics.extremes.stretches import stretches_of
 from compoundkin.kinematics.extremes.zero_search import FoundZeros, ZeroSearch
 from compoundkin.kinematics.motion import Motion
-
-# Nearer than this (of a pose) the end of a cycle is its beginning.
-SAME = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -68,7 +65,7 @@ def _once(motion: Motion, found: FoundZeros) -> FoundZeros:
     place, sense = found.place.copy(), found.sense.copy()
     for design in np.flatnonzero(closed_cycles(motion)):
         mine = np.flatnonzero(found.design == design)
-        if len(mine) < 2 or found.place[mine[0]] > SAME or found.until[mine[-1]] < last - SAME:
+        if len(mine) < 2 or found.place[mine[0]] > SAME_PLACE or found.until[mine[-1]] < last - SAME_PLACE:
             continue
         first, end = mine[0], mine[-1]
         keep[end] = False
@@ -77,6 +74,6 @@ def _once(motion: Motion, found: FoundZeros) -> FoundZeros:
         if around and sense[first] == 0:
             before, after = sense[around[-1]], sense[around[0]]
             sense[first] = -after if before == after else 0.0
-        if found.until[end] - found.place[end] > SAME:
+        if found.until[end] - found.place[end] > SAME_PLACE:
             place[first] = found.place[end] - last
     return FoundZeros(found.design[keep], place[keep], found.until[keep], sense[keep])

@@ -11,13 +11,11 @@ from compoundkin.base.arrays import degrees
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Places, between, extremes, places_of_jumps
+from compoundkin.kinematics.extremes.places import SAME_PLACE
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import TIME, course_figure, order_of
 from compoundkin.view.plot.marked_places import CONSTANT
 from compoundkin.view.plot.plotted_rows import POSE, Plotted
-
-# Nearer than this (of a pose) a pose and a side of a jump are one place.
-SAME = 1e-6
 
 
 @dataclass(frozen=True)
@@ -99,7 +97,7 @@ class PlottedCourse:
             return x, y
         at = self.jumps.some(mine)
         place = np.arange(len(x), dtype=float)
-        kept = np.abs(place[:, None] - at.place).min(axis=1) > SAME
+        kept = np.abs(place[:, None] - at.place).min(axis=1) > SAME_PLACE
         order = np.argsort(np.concatenate([place[kept], at.place]))
         rows = ((x, x_at(self.motion, self.x, at)), (y, values_at(self.motion, curve, at)))
         across, up = (np.concatenate([row[kept], there])[order] for row, there in rows)

@@ -28,8 +28,8 @@ FLAT = 10.0
 # So many loops of four links are told one by one.
 MOST_LOOPS = 12
 NO_LIMIT = "no limit"
-# Places are found to about this (degrees, lengths or seconds): nearer to zero they are shown as zero.
-NEARLY = 1e-6
+# Places are found to about this part of the greatest: nearer to zero they are shown as zero.
+NEARLY = 1e-8
 # What is below this part of the other end is zero, and ends nearer than this are one: lengths of vectors that pass
 # zero are known to so much, as their places are.
 FLOOR = 1e-8
@@ -89,7 +89,7 @@ def _dead_points(sample: Sample, found: Characteristics) -> Iterator[Block]:
     rows = [(one.name, _unit(point.value), _number(point.value), _at(point)) for one in found.outputs
             for point in one.dead_points]  # fmt: skip
     if rows:
-        columns = Column("dead point of"), Column("unit"), Column("value", style="each"), _place(place, "at")
+        columns = Column("dead point of"), Column("unit"), Column("value", style="each"), _place(sample, "at")
         yield TableBlock(columns, tuple(rows))
     for limit in found.dead_points:
         told = f"{place.name} {written(_first(limit.at))} {place.unit}".rstrip()
@@ -108,8 +108,7 @@ def _ranges(sample: Sample, found: Characteristics, told: Sequence[str]) -> Iter
         rows.append((f"|{ratio.owner}.{ADVANTAGE}|", least.value.unit, abs(least.number), _at(least), *most))
     if not rows:
         return
-    place = sample.places[0]
-    ends = Column("least", style="each"), _place(place, "at"), Column("greatest", style="each"), _place(place, "at")
+    ends = Column("least", style="each"), _place(sample, "at"), Column("greatest", style="each"), _place(sample, "at")
     yield TableBlock((Column("quantity"), Column("unit"), *ends), tuple(rows), keys=1)
 
 
@@ -191,8 +190,10 @@ def _turns(one: FourBar | SliderCrank) -> str:
     return ", ".join(one.turns) or "none"
 
 
-def _place(place: Column, word: str) -> Column:
-    return Column(f"{word} {place.name}", place.unit, "each", NEARLY, follows=True)
+def _place(sample: Sample, word: str) -> Column:
+    place, values = sample.places
+    floor = NEARLY * float(np.max(np.abs(values), initial=0.0))
+    return Column(f"{word} {place.name}", place.unit, "each", floor, follows=True)
 
 
 def _at(figure: PlacedFigure) -> float:
