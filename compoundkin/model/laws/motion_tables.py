@@ -8,11 +8,11 @@ from typing import ClassVar
 import numpy as np
 
 from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
+from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import Key
 from compoundkin.model.laws.constant_laws import Compared, as_number, from_derivatives, hold_numbers
-from compoundkin.model.laws.time_tables import SLACK
+from compoundkin.model.laws.time_tables import within
 
 # Derivatives that a law has: value, speed, acceleration, jerk.
 DERIVATIVES = 4
@@ -62,16 +62,10 @@ class MotionTable(PrintsShort, Compared):
 
     def coordinate(self, t: Number, order: int) -> Series:
         """Return value and derivatives at times t (seconds). Raises InvalidInput outside the table."""
-        first, last = self.span
-        x = np.asarray(t, dtype=float)
-        slack = SLACK * (last - first)
-        outside = x[(x < first - slack) | (x > last + slack)]
-        if outside.size:
-            what = f"{outside.flat[0]:g} s is outside its table, {first:g} to {last:g} s"
-            raise InvalidInput(Problem("law", what, "give times within it"))
+        x = within(np.asarray(t, dtype=float), self.span, "give times within it")
         cell = np.clip(np.searchsorted(self.times, x, side="right") - 1, 0, len(self.times) - 2)
         h = self.times[cell + 1] - self.times[cell]
-        u = (np.clip(x, first, last) - self.times[cell]) / h
+        u = (x - self.times[cell]) / h
         terms = self._terms(cell, h)
         found = []
         for k in range(min(order, DERIVATIVES - 1) + 1):

@@ -97,12 +97,22 @@ class TimeTable(PrintsShort, Compared):
         if self.repeat:
             x = first + np.mod(x - first, last - first)
         else:
-            slack = SLACK * (last - first)
-            outside = x[(x < first - slack) | (x > last + slack)]
-            if outside.size:
-                what = f"{outside.flat[0]:g} s is outside its table, {first:g} to {last:g} s"
-                raise InvalidInput(Problem("law", what, "give times within it, or let it repeat"))
-            x = np.clip(x, first, last)
+            x = within(x, self.span, "give times within it, or let it repeat")
         found = [as_number(self._spline(x, nu=k)) for k in range(order + 1)]
         ramp = taylor((-self._ramp * first, self._ramp), t, order)
         return from_derivatives(found) + ramp
+
+
+def within(times: Number, span: tuple[float, float], remedy: str) -> Number:
+    """Return times within a table. Raises InvalidInput where one is beyond its ends by more than rounding.
+
+    >>> within(np.array([0.5, 2.0 + 1e-12]), (0.0, 2.0), "give other times").tolist()
+    [0.5, 2.0]
+    """
+    first, last = span
+    slack = SLACK * (last - first)
+    outside = times[(times < first - slack) | (times > last + slack)]
+    if outside.size:
+        what = f"{outside.flat[0]:g} s is outside its table, {first:g} to {last:g} s"
+        raise InvalidInput(Problem("law", what, remedy))
+    return np.clip(times, first, last)
