@@ -22,9 +22,12 @@ from compoundkin.cli import cli
 from compoundkin.files import dumps, loads, schema
 from compoundkin.model.laws import FunctionLaw, Law
 from compoundkin.model.laws.function_law import differentiated
+from compoundkin.model.laws.law_corners import corners
 from compoundkin.model.laws.motion_programs import Program, program
+from compoundkin.model.laws.path_parts import PathPart
 from compoundkin.model.laws.program_segments import rise
 from compoundkin.model.laws.time_tables import TimeTable
+from compoundkin.model.leads import LinePath, place_table
 from tests.model.test_programs import MOVING, programs
 
 # Central differences over nine points, step 0.01: the error is of the eighth power (Abramowitz and Stegun, 25.3).
@@ -522,3 +525,11 @@ def test_instant_centres_and_reports_of_a_file_with_a_law(run: Callable[..., Res
     assert run("centres", "law.toml").exit_code == 0
     assert "crank moves by a program of 2 s" in " ".join(run("report", "law.toml").stdout.split())
     assert "crank moves by a program of 2 s" in " ".join(run("report", "law.toml", "--time", "0,1").stdout.split())
+
+
+def test_corners_of_a_path_are_those_of_its_law() -> None:
+    """Such as the jumps of acceleration of a point led along a line; of a table they are its times."""
+    law = program(rise(5.0, over=2.0, law="parabolic"))
+    line, table = LinePath((0j, 3 + 4j), law), place_table([0.0, 1.0, 3.0, 4.0], [0j, 1j, 2j, 4 + 1j])
+    assert corners(PathPart(line, "x"), 0.0, 2.0).tolist() == corners(law, 0.0, 2.0).tolist() == [0.0, 1.0, 2.0]
+    assert corners(PathPart(table, "y"), 0.5, 4.0).tolist() == [1.0, 3.0, 4.0]
