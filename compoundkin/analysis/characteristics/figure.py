@@ -10,6 +10,7 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Extreme, Measure, Places, extremes
+from compoundkin.kinematics.extremes.places import SAME_PLACE
 from compoundkin.kinematics.quantities import Quantity, whole_and_part
 from compoundkin.model.attributes import GREATEST, LEAST, TIME, coordinate_dimension, unit_of
 
@@ -36,11 +37,15 @@ class PlacedFigure:
 
 @dataclass(frozen=True, eq=False)
 class Range:
-    """The least and the greatest value of a quantity over a motion. None of a motion that is nowhere assembled."""
+    """The least and the greatest value of a quantity over a motion. None of a motion that is nowhere assembled.
+
+    `rests` tells whether it keeps one of them from its place on.
+    """
 
     least: PlacedFigure
     greatest: PlacedFigure
     is_constant: bool
+    rests: bool = False
 
     @property
     def absolute(self) -> PlacedFigure:
@@ -112,7 +117,12 @@ def ranges_of(motion: Motion, design: int, asked: Sequence[str | Measure]) -> di
         for (name, word, unit, value, place), where in zip(known, at, strict=True)
     }
     return {
-        one.name: Range(figures[one.name, LEAST], figures[one.name, GREATEST], bool(one.is_constant[design]))
+        one.name: Range(
+            figures[one.name, LEAST],
+            figures[one.name, GREATEST],
+            bool(one.is_constant[design]),
+            any(end.until[design] > end.at.place[design] + SAME_PLACE for end in (one.least, one.greatest)),
+        )
         for one in found
         if (one.name, LEAST) in figures and (one.name, GREATEST) in figures
     }

@@ -30,6 +30,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between, closed_cycles, dead_points
+from compoundkin.kinematics.extremes.places import SAME_PLACE
 from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.model.attributes import STROKE, order_of, unit_of
 
@@ -121,12 +122,22 @@ class OutputFigures:
 
     @cached_property
     def quick_return(self) -> QuickReturn | None:
-        """How long the stroke takes forth and back in a cycle."""
-        if not self.moves or not self.cycle or len(self.dead_points) < 2:
+        """How long the stroke takes forth and back in a cycle. None where it rests at an end of it, or turns on."""
+        if not self.moves or not self.cycle or len(self.dead_points) < 2 or self._turns_on:
+            return None
+        if self.ranges[self.output.coordinate].rests:
             return None
         assert self.least is not None
         assert self.greatest is not None
         return quick_return_between(self.motion, self.design, self.cycle, self.name, (self.least, self.greatest))
+
+    @property
+    def _turns_on(self) -> bool:
+        """Whether it is elsewhere after the cycle, a turn further."""
+        assert self.stroke is not None
+        course = quantity(self.motion, self.output.coordinate).values
+        row = np.broadcast_to(course, self.motion.shape).reshape(self.motion.inputs.designs, -1)[self.design]
+        return bool(abs(row[-1] - row[0]) > SAME_PLACE * number(self.stroke))
 
     @property
     def time_ratio(self) -> Quantity | None:

@@ -138,3 +138,19 @@ def test_figures_of_what_has_none_say_why() -> None:
         dead_points(half, "rocker.angular_velocity")
     with pytest.raises(ck.errors.InvalidInput, match="3 drivers move"):
         dead_points(solved("excavator-arm"), "boom.angle")
+
+
+@pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [
+        ("crank-shaper", "crank.time_ratio"),
+        ("double-crank", "follower.time_ratio"),
+        ("triple-rocker", "rocker.time_ratio"),
+    ],
+)
+def test_what_does_not_go_to_and_fro_has_no_time_ratio(name: str, what: str) -> None:
+    """Cranks and drag links turn on; of a motion with gaps the way back is not known."""
+    motion = ck.solve(mechanism(name), ck.deg(np.arange(0, 361, 5)))
+    with pytest.raises(ck.errors.InvalidInput, match=r"to and fro|cannot be assembled"):
+        ck.quantity(motion, what)
