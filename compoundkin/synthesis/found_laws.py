@@ -114,9 +114,9 @@ def _times(motion: Motion) -> Number:
     motion.grid.require(ORDER)
     if motion.time is None:
         raise InvalidInput(Problem("motion", "it is not in time", "give times: solve(mechanism, time=...)"))
-    if len(motion.shape) != 1:
+    if len(motion.shape) > 1:
         raise InvalidInput(Problem("motion", "it has several designs", "solve one design at a time"))
-    if motion.shape[0] < 2:
+    if motion.shape in ((), (1,)):
         raise InvalidInput(Problem("motion", "a single pose is no motion", "give two times or more"))
     if not motion.assembled.all():
         problems = [

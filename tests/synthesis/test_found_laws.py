@@ -9,6 +9,7 @@ from click.testing import CliRunner
 import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files.mechanism_files import dumps, loads
+from compoundkin.model.elements import Expectation, Lead
 from tests.catalog import mechanism as loaded
 from tests.kinematics.test_led_motions import MIDDLE, RADIUS, SPAN, TIMES, circle, four_bar, redriven
 
@@ -119,3 +120,22 @@ def test_the_command_line_writes_the_mechanism_driven_forward(tmp_path: object) 
     assert ran.exit_code == 0, ran.output
     assert [(d.link, d.on) for d in ck.load(path).drives] == [("left", "frame"), ("outer-left", "left")]
     assert CliRunner().invoke(cli, ["solve", "five-bar-led", "--forward", "left", "-o", "x.csv"]).exit_code == 2
+
+
+def test_a_path_that_returns_a_pair_of_arrays_is_refused() -> None:
+    arm = loaded("five-bar-led")
+    kept = [item for item in arm.items if not isinstance(item, Lead | Expectation)]
+    led = ck.Mechanism("Robot", *kept, ck.drive("P", along=lambda t: (60.0 + 0.0 * t, 135.0 + 0.0 * t)))
+    with pytest.raises(ck.errors.InvalidInput, match=r"several arrays.*return x \+ 1j \* y"):
+        ck.solve(led, time=[0.0, 1.0])
+
+
+def test_a_value_to_hold_that_is_not_finite_names_its_drive() -> None:
+    with pytest.raises(ck.errors.InvalidMechanism, match=r"drives\.P\.x: nan is no value to hold"):
+        ck.drive("P", x=np.nan)
+
+
+def test_a_single_pose_in_time_is_no_motion_to_find_a_law_of() -> None:
+    pose = ck.solve(loaded("five-bar-led"), time=0.3)
+    with pytest.raises(ck.errors.InvalidInput, match="a single pose is no motion"):
+        ck.laws.found_law(pose, "left")

@@ -86,6 +86,8 @@ def as_prescribed(where: str, law: Any) -> Law | None:
     if held.ndim:
         how = "write laws.time_table(times, values)"
         raise InvalidMechanism(Problem(where, "several values are no motion without times", how))
+    if not np.isfinite(held):
+        raise InvalidMechanism(Problem(where, f"{held} is no value to hold", "write a finite number"))
     return constant_speed(0.0, float(held))
 
 

@@ -192,6 +192,8 @@ class Component:
     def __call__(self, t: Any) -> Any:
         """Return the coordinate at times."""
         made = self.function(t)
+        if isinstance(made, tuple | list):
+            raise TypeError("it returns several arrays, no complex places; return x + 1j * y")
         return getattr(made, self.part, made)
 
 
