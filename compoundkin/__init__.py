@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from compoundkin.analysis.centres import instant_centres
     from compoundkin.analysis.characteristics.characteristics_of_motion import characteristics
     from compoundkin.analysis.checks import verify
-    from compoundkin.analysis.equations import loop_equations
+    from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.configurations.reached_region import workspace

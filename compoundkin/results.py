@@ -10,7 +10,7 @@ from __future__ import annotations
 from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.characteristics.characteristics_of_motion import Characteristics
 from compoundkin.analysis.checks import Check, Finding
-from compoundkin.analysis.equations import LoopEquations
+from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.reached_region import Workspace
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion

@@ -96,12 +96,12 @@ def _hold_together(equations: bool, asked: dict[str, Any]) -> None:
 
 def _equations(structure: Structure, asked: dict[str, Any]) -> tuple[list[Section], int]:
     """The sections of the equations, and the exit code."""
-    from compoundkin.analysis.equations import loop_equations
-    from compoundkin.view.report.loop_sections import written_section
+    from compoundkin.analysis.equations.loop_equations import loop_equations
+    from compoundkin.view.report.equations_section import equations_section
     from compoundkin.view.report.rate_sections import constants_section, rates_section
 
     found = loop_equations(structure, asked["order"])
-    sections = [written_section(found), constants_section(found), rates_section(found) if found.rates else None]
+    sections = [equations_section(found), constants_section(found), rates_section(found) if found.rates else None]
     code = 0
     if any(asked[name] for name in OF_EQUATIONS if name != "order") and not structure.faults:
         from compoundkin.view.report.pose_numbers_section import pose_section
@@ -128,7 +128,7 @@ def _newton(structure: Structure, driven: dict[str, float], motion: Motion, esti
     """The section on Newton's iterations."""
     import numpy as np
 
-    from compoundkin.analysis.equations import loop_equations
+    from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.analysis.equations.newton_iterations import newton_iterations
     from compoundkin.analysis.equations.pose_values import pose_values
     from compoundkin.cli.drive_options import of_unknowns

@@ -33,7 +33,7 @@ from compoundkin.structure import Structure
 class SymbolArray(PrintsShort):
     """A matrix of expressions, or a column of them: rows of entries.
 
-    >>> from compoundkin.analysis.equations import loop_equations
+    >>> from compoundkin.analysis.equations.loop_equations import loop_equations
     >>> from compoundkin.files.shipped_mechanisms import load_named
     >>> found = loop_equations(load_named("slider-crank"), order=2).acceleration
     >>> found.right_side.entries[0][0].text
@@ -133,7 +133,7 @@ class RateEquations(PrintsShort):
         Raises InvalidInput for a motion that was not solved to the order of the equations or is of another mechanism,
         and for values left out or that do not broadcast.
 
-        >>> from compoundkin.analysis.equations import loop_equations
+        >>> from compoundkin.analysis.equations.loop_equations import loop_equations
         >>> from compoundkin.files.shipped_mechanisms import load_named
         >>> from compoundkin.kinematics import solve
         >>> m = load_named("slider-crank")

@@ -16,7 +16,7 @@ def text(equation: Equation) -> str:
     """Write an equation as a line of text.
 
     >>> from compoundkin.files.shipped_mechanisms import load_named
-    >>> from compoundkin.analysis.equations import loop_equations
+    >>> from compoundkin.analysis.equations.loop_equations import loop_equations
     >>> text(loop_equations(load_named("slider-crank")).loops[0])
     'OA e^(i crank) + AB e^(i rod) - s(stroke) = 0'
     """

@@ -1,33 +1,18 @@
-"""Loops, equations against unknowns, and the vector-loop equations written out."""
+"""Loops, and how many equations there are for how many unknowns."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.analysis.equations import Implicit, LoopEquations, Unknown, latex, loop_equations, pair_terms, text
+from compoundkin.analysis.equations.pair_terms import pair_terms
 from compoundkin.structure import Structure, loop_count
-from compoundkin.view.report.report_data import Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock
-from compoundkin.view.report.wording import counted, joined, listed
+from compoundkin.view.report.report_data import Block, Column, FormulaBlock, Paragraph, Section, TableBlock
+from compoundkin.view.report.wording import counted, listed
 
 # Beyond these a report lists only the first: a reader has seen enough.
 MOST_LOOPS = 20
-NOTATION = (
-    "A vector AB e^(i crank) has the length AB and is turned by the angle of the link crank; "
-    "the frame's angle is zero. AB' starts or ends where a guide is, from which its displacement counts."
-)
-FUNCTIONS = "Of {pairs} no more is known than functions F of the angles and displacements in brackets."
-_MEANING = {
-    "angle": "angle of the link",
-    "displacement": "displacement along the guide",
-    "direction": "direction of the line between centres",
-    "parameter": "parameter of the profile at the contact",
-    "x": "way across the pair in x of its first link",
-    "y": "way across the pair in y of its first link",
-    "given": "value of the driver",
-}
 
 
 @dataclass(frozen=True)
@@ -127,49 +112,3 @@ def _verdict(count: EquationCount) -> tuple[Block, ...]:
     there = f"{'There is' if gap == 1 else 'There are'} {counted(gap, 'equation')}"
     side = "too many" if count.equations > count.unknowns else "too few"
     return (Paragraph(f"{there} {side} for the unknowns.{auxiliary}"),)
-
-
-def equations_section(structure: Structure) -> Section:
-    """Return the loop equations, the auxiliary ones and those of the drivers. What is unknown, what is known."""
-    return written_section(loop_equations(structure))
-
-
-def written_section(found: LoopEquations) -> Section:
-    """Return the same of equations that are known already."""
-    return Section("equations", "Vector-loop equations", tuple(_blocks(found)))
-
-
-def _blocks(found: LoopEquations) -> Iterator[Block]:
-    yield Paragraph(NOTATION)
-    for k, loop in enumerate(found.loops, 1):
-        yield Paragraph(f"Loop {k}: {loop.loop}")
-        yield FormulaBlock(text(loop), latex(loop))
-    for title, equations in (("Auxiliary equations:", found.auxiliary), ("Drivers:", found.drivers)):
-        if equations:
-            yield Paragraph(title)
-        for equation in equations:
-            yield FormulaBlock(text(equation), latex(equation))
-    unwritten = list(dict.fromkeys(one.pair for one in found.auxiliary if isinstance(one, Implicit)))
-    if unwritten:
-        yield Paragraph(FUNCTIONS.format(pairs=joined(unwritten)))
-    yield Paragraph(_counted_equations(found))
-    yield TableBlock((Column("unknown"), Column("what it is")), tuple(_unknown(one) for one in found.unknowns))
-    known = tuple((symbol, _length(length)) for symbol, length in found.lengths.items())
-    if known:
-        yield TableBlock((Column("known"), Column("length", style="each")), known)
-
-
-def _counted_equations(found: LoopEquations) -> str:
-    loops, others = len(found.loops), len(found.auxiliary) + len(found.drivers)
-    sides = f"{2 * loops} equations of {counted(loops, 'loop')} in x and y, and {others} more"
-    verdict = "as many" if found.is_solvable else "not as many"
-    return f"{sides}: {found.equations} for {counted(len(found.unknowns), 'unknown')}, {verdict}."
-
-
-def _unknown(one: Unknown) -> tuple[Cell, ...]:
-    return one.key, f"{_MEANING[one.kind]} {one.owner}" if one.kind == "angle" else f"{_MEANING[one.kind]}, {one.owner}"
-
-
-def _length(length: object) -> float:
-    """A length, of several designs the first."""
-    return float(np.ravel(np.asarray(length))[0])

@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.equations import LoopEquations, RateSolution, Unknown
+from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.analysis.equations.newton_iterations import NewtonIterations
 from compoundkin.analysis.equations.pose_values import given_values, pose_values
+from compoundkin.analysis.equations.rate_solution import RateSolution
 from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_of
+from compoundkin.model.pairs.loop_vectors import Unknown
 from compoundkin.view.report.gaps_section import gap_sentence, gaps_of
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
 from compoundkin.view.report.shown_poses import Sample

@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.analysis.equations import LoopEquations, RateEquations, Unknown
 from compoundkin.analysis.equations.freudenstein import constants_of
 from compoundkin.analysis.equations.loop_constants import FourBarConstants
+from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.analysis.equations.notation import LATEX, TEXT, plain, sum_written
+from compoundkin.analysis.equations.rate_equations import RateEquations
+from compoundkin.model.pairs.loop_vectors import Unknown
 from compoundkin.view.report.report_data import Block, FormulaBlock, Paragraph, Section
 from compoundkin.view.report.wording import listed, number
 

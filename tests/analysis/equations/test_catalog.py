@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.equations import LoopEquations, Vector, latex, loop_equations, pair_terms, text
+from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
+from compoundkin.analysis.equations.pair_terms import pair_terms
+from compoundkin.analysis.equations.written_equations import latex, text
 from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.model.pairs.loop_vectors import Vector
 from compoundkin.view.report.loop_sections import equation_count
 from tests import catalog
 

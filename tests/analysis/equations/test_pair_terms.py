@@ -12,10 +12,12 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.equations import LoopEquations, latex, loop_equations, text
+from compoundkin.analysis.equations.loop_equations import LoopEquations, loop_equations
+from compoundkin.analysis.equations.written_equations import latex, text
 from compoundkin.structure import assur_groups
 from compoundkin.view.page.mathml import mathml
-from compoundkin.view.report.loop_sections import FUNCTIONS, equation_count, equations_section
+from compoundkin.view.report.equations_section import FUNCTIONS, equations_section
+from compoundkin.view.report.loop_sections import equation_count
 from compoundkin.view.report.report_data import Paragraph
 
 PAGE = (Path(__file__).parents[3] / "docs" / "adding.md").read_text(encoding="utf-8")
@@ -78,7 +80,7 @@ def test_what_only_its_closure_says_is_written_as_a_function(oldham: Any) -> Non
     if "x(tray/frame)" in keys:
         assert text(own) == "F1[tray/frame](tray, x(tray/frame), y(tray/frame)) = 0"
         assert text(loop).endswith("- y(tray/frame) e^(i (90 deg)) - x(tray/frame) = 0")
-        said = [block.text for block in equations_section(equations.structure).blocks if isinstance(block, Paragraph)]
+        said = [block.text for block in equations_section(equations).blocks if isinstance(block, Paragraph)]
         assert FUNCTIONS.format(pairs="tray/frame") in said
     else:
         assert keys[-2:] == ["s(tray/frame (x))", "s(tray/frame (y))"]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.equations import Unknown
 from compoundkin.analysis.equations.pose_values import pose_values
 from compoundkin.files.shipped_mechanisms import load_named, names
+from compoundkin.model.pairs.loop_vectors import Unknown
 from tests import catalog
 from tests.scaled import scaled
 

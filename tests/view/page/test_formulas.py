@@ -8,7 +8,8 @@ from xml.etree import ElementTree
 import pytest
 
 import compoundkin as ck
-from compoundkin.analysis.equations import latex, loop_equations, text
+from compoundkin.analysis.equations.loop_equations import loop_equations
+from compoundkin.analysis.equations.written_equations import latex, text
 from compoundkin.files import shipped_mechanisms
 from compoundkin.view.page.mathml import Unread, mathml
 from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section
