@@ -60,7 +60,9 @@ def is_finite(value: Any) -> bool:
     try:
         if isinstance(value, _NUMBERS):
             return cmath.isfinite(value)
-        return bool(np.size(value)) and bool(np.all(np.isfinite(value)))
+        given = np.asarray(value)
+        # to NumPy dates are finite
+        return given.dtype.kind not in "mM" and bool(given.size) and bool(np.all(np.isfinite(given)))
     except (TypeError, ValueError, OverflowError):  # a text, a ragged list, a whole number of hundreds of digits
         return False
 

@@ -77,6 +77,7 @@ MISTAKES: list[tuple[str, Callable[[], list[tuple[str, str, str]]], str, str, st
     ("expected value", lambda: problems(ck.expect("rocker.angle", np.nan, 1)), "expected[0].value", "not finite", ""),
     ("tolerance", lambda: problems(ck.expect("rocker.angle", 1, -1)), "expected[0].tolerance", "not a tolerance", "not negative"),
     ("shapes", lambda: problems(crank=ck.link("crank", A=0, B=([1, 2], 0)), drive=ck.drive("crank", values=[1, 2, 3])), "drives[0].values", "(3,) does not broadcast with (2,)", "last axis"),
+    ("dates", lambda: problems(slide=ck.slide("rod", on="frame", at="R", through="Q", offset=np.datetime64("2020-01-01"))), "slides[0].offset", "not a number", ""),
     ("slide shape", lambda: problems(crank=ck.link("crank", A=0, B=([1, 2], 0)), slide=ck.slide("rod", on="frame", at="R", through="Q", offset=np.ones(3))), "slides[0].offset", "does not broadcast", "last axis"),
 ]  # fmt: skip
 
