@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
-    from compoundkin.configurations.reached_region import workspace
     from compoundkin.files import load, save
     from compoundkin.kinematics import solve
     from compoundkin.kinematics.gaps import gaps
@@ -100,7 +99,6 @@ __all__ = [
     "verify",
     "with_driver",
     "with_frame",
-    "workspace",
 ]
 
 # A room has the name of a function: the room is loaded once and its name given back, so that `__getattr__` finds the
@@ -131,7 +129,6 @@ _LATE = {
     "verify": "analysis.checks",
     "with_driver": "synthesis.inversion",
     "with_frame": "synthesis.inversion",
-    "workspace": "configurations.reached_region",
 }
 
 # The modules that hold all other public names: no rooms, each a list of what rooms have.

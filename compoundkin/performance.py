@@ -1,4 +1,4 @@
-"""Figures of a motion: types of four-bars and slider-cranks, features of coupler curves.
+"""Figures of a mechanism: types of linkages, features of coupler curves, workspaces.
 
 >>> import compoundkin as ck
 >>> ck.performance.linkage_types(ck.catalog.load_named("double-crank"))[0].name
@@ -17,6 +17,7 @@ from compoundkin.analysis.characteristics.output_dwells import Dwell
 from compoundkin.analysis.characteristics.output_figures import OutputFigures
 from compoundkin.analysis.characteristics.output_strokes import QuickReturn
 from compoundkin.analysis.characteristics.path_stretches import Stretch, straightness
+from compoundkin.configurations.reached_region import workspace
 
 __all__ = [
     "AdvantageFigures",
@@ -34,4 +35,5 @@ __all__ = [
     "linkage_types",
     "path_features",
     "straightness",
+    "workspace",
 ]

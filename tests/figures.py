@@ -72,7 +72,7 @@ def workspace() -> ck.results.Picture:
     """The region that the tip of a five-bar reaches in the drawn mode, around the robot, and the lens of all modes."""
     robot = load_named("five-bar")
     motion = ck.solve(robot, {"left": [ck.deg(100)], "right": [ck.deg(75)]})
-    outlines = [ck.workspace(robot, "P", modes=modes, cells=160).outer[0] for modes in (None, "all")]
+    outlines = [ck.performance.workspace(robot, "P", modes=modes, cells=160).outer[0] for modes in (None, "all")]
     scene = scene_of(motion, None, None, 0)
     window = window_on(scene)
     window = fitted(window, np.concatenate([window.at(outline) for outline in outlines]))

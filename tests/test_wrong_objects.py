@@ -28,7 +28,7 @@ def at_hand() -> dict[str, Any]:
     arm = ck.Mechanism("arm", ck.link("frame", A=0), upper, fore, ck.drive("upper"), ck.drive("fore", on="upper"))
     return {
         "arm": arm,
-        "region": ck.workspace(arm, "P", cells=8),
+        "region": ck.performance.workspace(arm, "P", cells=8),
         "bar": bar,
         "structure": ck.decompose(bar),
         "motion": rocker,
@@ -120,8 +120,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "with_driver": {"mechanism": m, "link": "rocker", "on": "frame", "pair": "", "instead": "crank", "speed": 1.0,
                         "values": None},
         "with_frame": {"mechanism": m, "link": "crank"},
-        "workspace": {"mechanism": h["arm"], "point": "P", "ranges": None, "orientation": None, "modes": None,
-                      "cells": 8},
+        "performance.workspace": {"mechanism": h["arm"], "point": "P", "ranges": None, "orientation": None,
+                                  "modes": None, "cells": 8},
         "advantage.ForcePort": {"link": "a", "point": "C", "angle": 0.0, "on": "frame"},
         "advantage.TorquePort": {"link": "a", "on": "frame"},
         "advantage.mechanical_advantage": {"motion": motion, "output": "rocker", "input": "crank"},
