@@ -28,7 +28,8 @@ from compoundkin.base.display import counted, short
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.extremes import Measure
+from compoundkin.kinematics.extremes import Measure, closed_cycles
+from compoundkin.model.elements import FRAME
 
 # A dwell changes by no more than this part of the stroke; a straight stretch is off by no more than that of the path.
 DWELL, STRAIGHT = 0.01, 0.001
@@ -59,6 +60,19 @@ class Characteristics:
     def types(self) -> tuple[FourBar | SliderCrank, ...]:
         """The types of its loops of four links."""
         return linkage_types(self.motion.structure, self.design if self._has_designs else 0)
+
+    @cached_property
+    def full_turns(self) -> Mapping[str, int]:
+        """How many full turns each link makes over a closed cycle; nothing where the motion is none."""
+        shape = self.motion.failed.shape
+        if self.motion.inputs.poses < 3 or not closed_cycles(self.motion)[self.design]:
+            return {}
+        rows = {
+            name: np.broadcast_to(link.angle, self.motion.shape).reshape(shape)[self.design]
+            for name, link in self.motion.links.items()
+            if name != FRAME
+        }
+        return {name: round(float(row[-1] - row[0]) / (2.0 * np.pi)) for name, row in rows.items()}
 
     @property
     def _has_designs(self) -> bool:

@@ -9,8 +9,6 @@ import numpy as np
 from compoundkin.analysis.characteristics.characteristics_of_motion import Characteristics
 from compoundkin.analysis.characteristics.curve_features import PathFeatures, simple_shape
 from compoundkin.analysis.characteristics.figure import PlacedFigure, Range
-from compoundkin.analysis.characteristics.four_bar_types import FourBar
-from compoundkin.analysis.characteristics.linkage_types import SliderCrank
 from compoundkin.analysis.characteristics.output_figures import OutputFigures
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import ADVANTAGE, DEGREES, LENGTH, RADIANS, TIME, VELOCITY_RATIO
@@ -55,6 +53,7 @@ def _blocks(sample: Sample, found: Characteristics, told: Sequence[str], named: 
     yield from _dwells(found)
     yield from _paths(found)
     yield from _types(found)
+    yield from _full_turns(found)
 
 
 def _strokes(found: Characteristics) -> Iterator[Block]:
@@ -177,7 +176,8 @@ def _types(found: Characteristics) -> Iterator[Block]:
     """What four-bars and slider-cranks there are."""
     loops = found.types[:MOST_LOOPS]
     rows = tuple(
-        (", ".join(one.links), f"{one.name} ({one.code})" if one.code else one.name, _turns(one)) for one in loops
+        (", ".join(one.links), f"{one.name} ({one.code})" if one.code else one.name, ", ".join(one.turns) or "none")
+        for one in loops
     )
     if rows:
         yield TableBlock((Column("loop of four links"), Column("type"), Column("full turns")), rows)
@@ -185,9 +185,12 @@ def _types(found: Characteristics) -> Iterator[Block]:
         yield Paragraph(f"... and {counted(len(found.types) - MOST_LOOPS, 'loop')} of four links more.")
 
 
-def _turns(one: FourBar | SliderCrank) -> str:
-    """Which links turn fully against the first one of a loop."""
-    return ", ".join(one.turns) or "none"
+def _full_turns(found: Characteristics) -> Iterator[Block]:
+    """Which links turn fully over a closed cycle, and how often."""
+    turning = [f"{name} {'once' if abs(k) == 1 else f'{abs(k)} times'}" for name, k in found.full_turns.items() if k]
+    if 0 < len(turning) <= MOST_LOOPS:
+        others = "" if len(turning) == len(found.full_turns) else "; no other link"
+        yield Paragraph(f"Full turns over the cycle: {listed(turning)}{others}.")
 
 
 def _place(sample: Sample, word: str) -> Column:

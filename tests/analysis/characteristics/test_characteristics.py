@@ -244,3 +244,12 @@ def test_names_that_mean_nothing_are_told() -> None:
         ck.characteristics(motion)[5]  # type: ignore[index]
     still = ck.characteristics(ck.solve(motion.mechanism, speed=0.0))
     assert still.notes[0].startswith("No driver has a speed")
+
+
+def test_full_turns_are_those_of_grashof_and_none_of_an_open_motion() -> None:
+    # the crank of a crank-rocker turns alone; of a drag link all turn, and backwards with the crank
+    assert ck.characteristics(catalog.motion("crank-rocker")).full_turns == {"crank": 1, "coupler": 0, "rocker": 0}
+    drag = ck.solve(catalog.mechanism("double-crank"), ck.deg(np.arange(0, -721, -5)))
+    assert ck.characteristics(drag).full_turns == {"crank": -2, "coupler": -2, "follower": -2}
+    half = ck.solve(catalog.mechanism("double-crank"), ck.deg(np.arange(0, 181, 5)))
+    assert ck.characteristics(half).full_turns == {}
