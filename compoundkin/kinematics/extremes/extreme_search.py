@@ -181,8 +181,8 @@ class ExtremeSearch(PrintsShort):
         return Offers(kind.ravel(), (SIGNS[items.s][:, None] * values).ravel(), places.ravel())
 
     def _without_limit(self) -> Iterator[Offers]:
-        """Offer infinity where rates grow without limit next to a limit position."""
-        which, end = np.nonzero(self.stretches.limits)
+        """Offer infinity where rates grow without limit next to a limit position, or a pole at a pose."""
+        which, end = np.nonzero(self.stretches.limits | np.isinf(self.ends).any(axis=0))
         rates = np.array([one.order > 0 for one in self.measures], dtype=bool)
         if not len(which) or not rates.any():
             return

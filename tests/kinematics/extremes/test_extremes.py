@@ -149,3 +149,10 @@ def test_what_has_no_extremes_says_so() -> None:
         zeros(solved("crank-rocker"), "rokcer.angle")
     with pytest.raises(ck.errors.InvalidInput, match="99 is no place"):
         between(solved("crank-rocker"), 0, [99.0])
+
+
+def test_a_pole_exactly_at_a_pose_is_without_limit_on_both_sides() -> None:
+    # at the dead points 0 and 180 degrees, which are poses, the piston's rate changes sign
+    (found,) = extremes(solved("slider-crank"), "stroke.advantage")
+    assert found.least.value == -np.inf
+    assert found.greatest.value == np.inf
