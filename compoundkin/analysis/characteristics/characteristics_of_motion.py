@@ -63,7 +63,10 @@ class Characteristics:
 
     @cached_property
     def full_turns(self) -> Mapping[str, int]:
-        """How many full turns each link makes over a closed cycle; nothing where the motion is none."""
+        """How many full turns each link makes over a closed cycle.
+
+        It is empty where the motion is none.
+        """
         shape = self.motion.failed.shape
         if self.motion.inputs.poses < 3 or not closed_cycles(self.motion)[self.design]:
             return {}
