@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import Group
 
-_PIN = "R"
-
 
 @dataclass(frozen=True)
 class Place:
@@ -55,7 +53,9 @@ def four_bar_loops(structure: Structure) -> Mapping[int, FourBarLoops]:
 
 def _closed_by(structure: Structure, group: Group, before: set[str]) -> FourBarLoops | None:
     """Return the loops of four pins that a group closes with two links solved before it. None where there is none."""
-    if len(group.bodies) != 2 or {pair.code for pair in (*group.inner, *group.outer)} != {_PIN}:
+    if len(group.bodies) != 2 or not all(
+        pair.is_simple and pair.free_is_angle for pair in (*group.inner, *group.outer)
+    ):
         return None
     inner = set(group.inner[0].members)
     if not all(

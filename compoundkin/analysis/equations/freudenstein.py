@@ -21,9 +21,6 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.loop_vectors import Sum, Term, Unknown, Vector
 from compoundkin.structure import Loop, Structure
 
-# The letter of pairs that are pins.
-PIN = "R"
-
 
 @checked
 def freudenstein(mechanism: Mechanism | Structure) -> tuple[FourBarConstants | SliderCrankConstants, ...]:
@@ -72,8 +69,8 @@ def _slider_crank(loop: Loop, terms: Sequence[Term], equations: LoopEquations) -
     """Of a crank on the frame, a rod, and a displacement in a fixed direction."""
     still, moving = _around(terms)
     sliding = [own for own in still if own.length.parts]
-    pinned = {name for pair in equations.structure.pairs if pair.code == PIN and FRAME in pair.members
-              for name in pair.members}  # fmt: skip
+    pins = (pair for pair in equations.structure.pairs if pair.is_simple and pair.free_is_angle)
+    pinned = {name for pin in pins if FRAME in pin.members for name in pin.members}
     cranks = [own for own in moving if _owner(own).owner in pinned]
     if len(moving) != 2 or len(sliding) != 1 or len(cranks) != 1:
         return None

@@ -50,6 +50,16 @@ class Closed(NamedTuple):
     meeting: Series | None = None
 
 
+class AssembledDyad(NamedTuple):
+    """A dyad at one pose: sides, poses of its bodies, letters of its pairs."""
+
+    first: OuterPair
+    inner: tuple[End, End]
+    second: OuterPair
+    poses: tuple[Pose, Pose]
+    names: tuple[str, str, str]
+
+
 class DyadSolver(GroupSolver):
     """The solver of a group of two bodies.
 
@@ -83,17 +93,8 @@ class DyadSolver(GroupSolver):
         """Return a complex number at the transmission angle, folded to a right angle. The sides are in the world."""
 
     @staticmethod
-    def loci(
-        first: OuterPair,
-        inner: tuple[End, End],
-        second: OuterPair,
-        poses: tuple[Pose, Pose],
-        names: tuple[str, str, str],
-    ) -> Loci | None:
-        """Return the construction of one assembled pose by circles and lines.
-
-        `poses` are those of its bodies, `names` the letters of its pairs. None where a kind tells of none.
-        """
+    def loci(own: AssembledDyad) -> Loci | None:
+        """Return the construction of one assembled pose by circles and lines. None where a kind tells of none."""
         return None
 
     def __init__(self, index: int, group: Group, size: float, dyad: Group, ends: Mapping[str, Ends]) -> None:
@@ -162,7 +163,7 @@ class DyadSolver(GroupSolver):
         k = 0 if self.bodies[0] in self.group.bodies else 1
         own = block.world[self.bodies[k].links[0]]
         modes.sort(key=lambda poses: abs(place_of(poses[k].z - own.z)) / self.size + abs(place_of(poses[k].u - own.u)))
-        found = [self.loci(*asked, poses, self.letters) for poses in modes]
+        found = [self.loci(AssembledDyad(*asked, poses, self.letters)) for poses in modes]
         return tuple(loci for loci in found if loci is not None)
 
     @property

@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of
-from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at
+from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair, placed_at
 from compoundkin.kinematics.limits import Root, clipped_root
 
 # Guides nearer to parallel than this (the sine of the angle between them) fix no point: their meeting
@@ -46,17 +46,11 @@ class PRP(DyadSolver):
         return np.conjugate(first.along.c[0]) * second.along.c[0]
 
     @staticmethod
-    def loci(
-        first: OuterPair,
-        inner: tuple[End, End],
-        second: OuterPair,
-        poses: tuple[Pose, Pose],
-        names: tuple[str, str, str],
-    ) -> Loci:
+    def loci(own: AssembledDyad) -> Loci:
         """Return the two lines on which the inner pin runs."""
-        meeting = place_of(poses[0].at(inner[0].point))
-        lines = (LineLocus(meeting, direction_of(side.world)) for side in (first, second))
-        told = f"{names[1]}: the lines on which it runs along its two guides meet"
+        meeting = place_of(own.poses[0].at(own.inner[0].point))
+        lines = (LineLocus(meeting, direction_of(side.world)) for side in (own.first, own.second))
+        told = f"{own.names[1]}: the lines on which it runs along its two guides meet"
         return Loci(tuple(lines), meeting, (told,))
 
     @staticmethod

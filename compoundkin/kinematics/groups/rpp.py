@@ -9,10 +9,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.poses import End, Pose
+from compoundkin.base.poses import End
 from compoundkin.base.series import Number, as_series
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of
-from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at
+from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair, placed_at
 from compoundkin.kinematics.groups.prp import separated
 from compoundkin.kinematics.limits import Root, clipped_root
 
@@ -46,18 +46,13 @@ class RPP(DyadSolver):
         return np.conjugate(inner.along.c[0]) * second.along.c[0]
 
     @staticmethod
-    def loci(
-        first: OuterPair,
-        inner: tuple[End, End],
-        second: OuterPair,
-        poses: tuple[Pose, Pose],
-        names: tuple[str, str, str],
-    ) -> Loci:
+    def loci(own: AssembledDyad) -> Loci:
         """Return the line of the inner guide, and the way of its point."""
-        meeting = place_of(poses[1].at(inner[1].point))
-        held = LineLocus(place_of(poses[0].at(inner[0].point)), direction_of(poses[0].carry(inner[0])))
-        way = LineLocus(meeting, direction_of(second.world))
-        told = f"the line of the guide of {names[1]}, held by {names[0]}, meets the line along the guide of {names[2]}"
+        meeting = place_of(own.poses[1].at(own.inner[1].point))
+        held = LineLocus(place_of(own.poses[0].at(own.inner[0].point)), direction_of(own.poses[0].carry(own.inner[0])))
+        way = LineLocus(meeting, direction_of(own.second.world))
+        pin, inner, outer = own.names
+        told = f"the line of the guide of {inner}, held by {pin}, meets the line along the guide of {outer}"
         return Loci((held, way), meeting, (told,))
 
     @staticmethod

@@ -10,10 +10,19 @@ from typing import ClassVar
 import numpy as np
 
 from compoundkin.base.composition import planar
-from compoundkin.base.poses import End, Pose
+from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.dyad_loci import CircleLocus, LineLocus, Loci, direction_of, place_of, radius_about
-from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, element, placed_at, spot, text
+from compoundkin.kinematics.groups.dyad import (
+    AssembledDyad,
+    Closed,
+    DyadSolver,
+    OuterPair,
+    element,
+    placed_at,
+    spot,
+    text,
+)
 from compoundkin.kinematics.limits import Root, clipped_root
 
 # A pin nearer to the guide's line than this part of the pins' distance is on it.
@@ -51,28 +60,22 @@ class RPR(DyadSolver):
         return np.conjugate(spot(second) - spot(first)) * inner.along.c[0] * 1j
 
     @staticmethod
-    def loci(
-        first: OuterPair,
-        inner: tuple[End, End],
-        second: OuterPair,
-        poses: tuple[Pose, Pose],
-        names: tuple[str, str, str],
-    ) -> Loci:
+    def loci(own: AssembledDyad) -> Loci:
         """Return the guide, and the circles that it touches.
 
         They are about the pins; the one over the distance of these gives the place.
         """
-        pins = place_of(first.world.point), place_of(second.world.point)
-        along = direction_of(poses[0].carry(inner[0]))
-        on_guide = place_of(poses[0].at(inner[0].point))
+        pins = place_of(own.first.world.point), place_of(own.second.world.point)
+        along = direction_of(own.poses[0].carry(own.inner[0]))
+        on_guide = place_of(own.poses[0].at(own.inner[0].point))
         feet = tuple(on_guide + along * (np.conj(along) * (pin - on_guide)).real for pin in pins)
         span = abs(pins[1] - pins[0])
         apart = [k for k in (0, 1) if abs(feet[k] - pins[k]) > NO_OFFSET * span]
         circles = [radius_about(pins[k], feet[k], "e") for k in apart]
         over = [CircleLocus((pins[0] + pins[1]) / 2.0, span / 2.0)] if len(apart) == 1 else []
         guide = LineLocus(on_guide, along)
-        at, through = (names[2 * k] for k in (apart[0], 1 - apart[0])) if apart else (names[0], names[2])
-        guide_of = f"the guide of {names[1]}"
+        at, through = (own.names[2 * k] for k in (apart[0], 1 - apart[0])) if apart else (own.names[0], own.names[2])
+        guide_of = f"the guide of {own.names[1]}"
         told = (
             (f"{guide_of} runs through {at} and {through}",),
             (f"{guide_of} touches the circle about {at}", f"the touching point is on the circle over {at}{through}"),

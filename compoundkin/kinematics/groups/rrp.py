@@ -13,7 +13,7 @@ import numpy as np
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of, radius_about
-from compoundkin.kinematics.groups.dyad import Closed, DyadSolver, OuterPair, placed_at, spot, text
+from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair, placed_at, spot, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -44,19 +44,13 @@ class RRP(DyadSolver):
         return np.conjugate(spot(inner) - spot(first)) * second.along.c[0] * 1j
 
     @staticmethod
-    def loci(
-        first: OuterPair,
-        inner: tuple[End, End],
-        second: OuterPair,
-        poses: tuple[Pose, Pose],
-        names: tuple[str, str, str],
-    ) -> Loci:
+    def loci(own: AssembledDyad) -> Loci:
         """Return the rod's circle, and the line of its other pin."""
-        outer, pin, guide = names
-        meeting = place_of(poses[0].at(inner[0].point))
-        rod = radius_about(place_of(first.world.point), meeting, outer, pin)
+        outer, pin, guide = own.names
+        meeting = place_of(own.poses[0].at(own.inner[0].point))
+        rod = radius_about(place_of(own.first.world.point), meeting, outer, pin)
         told = f"{pin}: the circle about {outer} with {rod.name} meets the line along the guide of {guide}"
-        return Loci((rod, LineLocus(meeting, direction_of(second.world))), meeting, (told,))
+        return Loci((rod, LineLocus(meeting, direction_of(own.second.world))), meeting, (told,))
 
     @staticmethod
     def explain(

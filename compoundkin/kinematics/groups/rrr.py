@@ -10,10 +10,20 @@ from typing import ClassVar
 import numpy as np
 
 from compoundkin.base.composition import planar
-from compoundkin.base.poses import End, Pose
+from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.dyad_loci import Loci, place_of, radius_about
-from compoundkin.kinematics.groups.dyad import COINCIDENT, Closed, DyadSolver, OuterPair, element, placed_at, spot, text
+from compoundkin.kinematics.groups.dyad import (
+    COINCIDENT,
+    AssembledDyad,
+    Closed,
+    DyadSolver,
+    OuterPair,
+    element,
+    placed_at,
+    spot,
+    text,
+)
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -50,18 +60,12 @@ class RRR(DyadSolver):
         return np.conjugate(pin - spot(first)) * (pin - spot(second))
 
     @staticmethod
-    def loci(
-        first: OuterPair,
-        inner: tuple[End, End],
-        second: OuterPair,
-        poses: tuple[Pose, Pose],
-        names: tuple[str, str, str],
-    ) -> Loci:
+    def loci(own: AssembledDyad) -> Loci:
         """Return the circles of both links about their outer pins."""
-        outer, pin, other = names
-        meeting = place_of(poses[0].at(inner[0].point))
-        one = radius_about(place_of(first.world.point), meeting, outer, pin)
-        two = radius_about(place_of(second.world.point), meeting, pin, other)
+        outer, pin, other = own.names
+        meeting = place_of(own.poses[0].at(own.inner[0].point))
+        one = radius_about(place_of(own.first.world.point), meeting, outer, pin)
+        two = radius_about(place_of(own.second.world.point), meeting, pin, other)
         told = f"{pin}: the circle about {outer} with {one.name} meets that about {other} with {two.name}"
         return Loci((one, two), meeting, (told,))
 
