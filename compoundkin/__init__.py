@@ -17,6 +17,7 @@ import compoundkin.view  # noqa: F401  (says how objects show themselves)
 from compoundkin.base.version import VERSION
 from compoundkin.model.elements import drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
+from compoundkin.model.loads import force, gravity, mass, torque
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
 from compoundkin.model.pairs.cylinder import cylinder
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from compoundkin.analysis.equations.loop_equations import loop_equations
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
+    from compoundkin.dynamics.force_analysis import force_analysis
     from compoundkin.files import load, save
     from compoundkin.kinematics import solve
     from compoundkin.kinematics.gaps import gaps
@@ -76,12 +78,16 @@ __all__ = [
     "drive",
     "expect",
     "face",
+    "force",
+    "force_analysis",
     "gaps",
     "gear",
+    "gravity",
     "instant_centres",
     "link",
     "load",
     "loop_equations",
+    "mass",
     "mobility_analysis",
     "mode",
     "page",
@@ -96,6 +102,7 @@ __all__ = [
     "slide",
     "slot",
     "solve",
+    "torque",
     "verify",
     "with_driver",
     "with_frame",
@@ -115,6 +122,7 @@ _LATE = {
     "configurations": "configurations.enumeration",
     "decompose": "structure",
     "draw": "view.sketch",
+    "force_analysis": "dynamics.force_analysis",
     "gaps": "kinematics.gaps",
     "instant_centres": "analysis.centres.centres_of_motion",
     "load": "files",

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.nested_values import same
 from compoundkin.base.series import Number
 from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
@@ -17,7 +18,7 @@ from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.laws.program_segments import ProgramSegment
-from compoundkin.model.mechanism import Mechanism, same
+from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN
 from compoundkin.model.written import CYLINDERS, DRIVES
 

@@ -42,7 +42,7 @@ class Inputs(PrintsShort):
 
     def cut(self, designs: slice, poses: slice) -> Inputs:
         """Return a rectangle of designs and poses."""
-        return self._each(lambda v: _cut(v, designs, poses))
+        return self._each(lambda v: rectangle(v, designs, poses))
 
     def at(self, s: Number) -> Inputs:
         """Return all designs at places `s` (1-D) along the motion. Fractional ones are in between poses.
@@ -181,7 +181,8 @@ def fit(shape: tuple[int, ...]) -> Callable[[Number], Number]:
     return fitted
 
 
-def _cut(value: Number, designs: slice, poses: slice) -> Number:
+def rectangle(value: Number, designs: slice, poses: slice) -> Number:
+    """Return what of a value belongs to a rectangle of designs and poses."""
     if np.ndim(value) == 0:
         return value
     return value[designs if value.shape[0] > 1 else slice(None), poses if value.shape[1] > 1 else slice(None)]

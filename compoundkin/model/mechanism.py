@@ -7,24 +7,24 @@ from dataclasses import fields
 from functools import cached_property
 from typing import Any, cast
 
-import numpy as np
-
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import ShowsPicture, counted
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, nearest
+from compoundkin.base.nested_values import same
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
 from compoundkin.model.drawn_poses import told_poses
 from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Lead, Link, Mode
 from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
 from compoundkin.model.pairs.contact import as_profiled
+from compoundkin.model.units import as_units
 from compoundkin.model.validation import problems_of
 from compoundkin.model.written import Written
 
 # An error names so many links.
 MOST_NAMED = 12
 # What is written of a mechanism beside its items.
-_ABOUT = ("title", "unit", "source", "description", "outputs", "time")
+_ABOUT = ("title", "unit", "source", "description", "outputs", "time", "units")
 
 
 class Mechanism(Written, ShowsPicture):
@@ -59,9 +59,11 @@ class Mechanism(Written, ShowsPicture):
         description: str = "",
         outputs: str | Sequence[str] = (),
         time: Any = None,
+        units: Any = None,
     ) -> None:
         self.title = title
-        self.unit = unit
+        self.units = as_units(units)
+        self.unit = self.units.length if self.units else unit
         self.source = source
         self.description = description
         self.outputs: tuple[str, ...] = (outputs,) if isinstance(outputs, str) else tuple(outputs)
@@ -136,14 +138,16 @@ class Mechanism(Written, ShowsPicture):
         """
         keys = {_identity(item): item for item in items}
         kept = [keys.pop(_identity(item), item) for item in self.items]
-        words = {k: getattr(self, k) for k in _ABOUT[1:]}
+        words = {k: getattr(self, k) for k in _ABOUT[1:] if k != "unit" or self.units is None}
         title = changes.pop("title", self.title)
         return Mechanism(title, *kept, *keys.values(), **{**words, **changes})
 
     def without_leads(self) -> Mechanism:
         """Return the mechanism itself, without what leads its points and turns its links."""
         gone = (Lead, Expectation)
-        return Mechanism(self.title, *(item for item in self.items if not isinstance(item, gone)), unit=self.unit)
+        return Mechanism(
+            self.title, *(item for item in self.items if not isinstance(item, gone)), unit=self.unit, units=self.units
+        )
 
     def link(self, name: str) -> Link:
         """Return the link of a name; raises UnknownName."""
@@ -181,17 +185,6 @@ def _places_wanted(unplaced: Mapping[str, tuple[str, ...]]) -> Iterator[Problem]
         what += f" of {name!r} {'has' if len(letters) == 1 else 'have'} no place"
         remedy = f"give all coordinates as {letters[0]} = (x, y), or a place in the drawing; the structure needs none"
         yield Problem(f"links.{name}.points", what, "" if number else remedy)
-
-
-def same(a: Any, b: Any) -> bool:
-    """Return whether two nested values are equal, arrays element by element."""
-    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
-        return np.shape(a) == np.shape(b) and bool(np.array_equal(a, b))
-    if isinstance(a, Mapping) and isinstance(b, Mapping):
-        return list(a) == list(b) and all(same(a[k], b[k]) for k in a)
-    if isinstance(a, tuple | list) and isinstance(b, tuple | list):
-        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b, strict=True))
-    return bool(a == b)
 
 
 def _identity(item: Item) -> tuple[Any, ...]:

@@ -11,13 +11,15 @@ from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Lead, Li
 from compoundkin.model.pairs import Pair, pairs_among
 from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.pairs.optional_answers import as_drivable
+from compoundkin.model.units import Units
+from compoundkin.model.written_loads import WrittenLoads
 
 # The tables of cylinders and of drivers in a mechanism file.
 CYLINDERS = "cylinders"
 DRIVES = "drives"
 
 
-class Written:
+class Written(WrittenLoads):
     """A mechanism as written, checked or not. Its words, sorted and looked up by name."""
 
     title: str
@@ -26,7 +28,7 @@ class Written:
     description: str
     outputs: tuple[str, ...]
     time: Number | None
-    items: tuple[Item, ...]
+    units: Units | None
 
     @cached_property
     def cylinders(self) -> dict[str, Cylinder]:

@@ -10,7 +10,19 @@ from typing import TypeVar
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Lead, Link, Mode
+from compoundkin.model.elements import (
+    FRAME,
+    Drawn,
+    Drive,
+    Expectation,
+    Gravity,
+    Item,
+    Lead,
+    Link,
+    Load,
+    Mass,
+    Mode,
+)
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder
@@ -121,7 +133,10 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
         return replace(item, name=names.get(item.name, item.name))
     if isinstance(item, Drive | Lead):
         return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
-    return item if isinstance(item, Mode | Drawn | Expectation) else renamed_pair(item, names)
+    if isinstance(item, Mass | Load):
+        links = {key: names.get(getattr(item, key), getattr(item, key)) for key in item.link_keys}
+        return replace(item, **links)
+    return item if isinstance(item, Mode | Drawn | Expectation | Gravity) else renamed_pair(item, names)
 
 
 def renamed_pair(pair: Joint, names: Mapping[str, str]) -> Joint:

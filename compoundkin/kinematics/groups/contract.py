@@ -14,8 +14,10 @@ import numpy as np
 
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
+from compoundkin.kinematics.groups.equilibrium import reactions_of
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contact_search import Freedom
@@ -101,6 +103,16 @@ class GroupSolver(ABC):
         The group's links are known in the block; it is asked only of a group that tells it.
         """
         raise NotImplementedError
+
+    def reactions(self, block: Block, loads: Mapping[str, Wrench]) -> dict[str, Wrench]:
+        """Return the wrench on the second member of each of its pairs.
+
+        It is that from the first member, by the pairs' names.
+
+        The group is assembled in the block; `loads` are all other wrenches on its links, about the world's origin.
+        By the transposed Jacobian, unless a kind knows a closed form.
+        """
+        return reactions_of(self.group, block, loads)
 
     def followed(self) -> GroupSolver | None:
         """Return the solver that follows configurations which have no sign here. It is None where there are none."""

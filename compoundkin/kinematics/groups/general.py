@@ -18,7 +18,7 @@ from compoundkin.kinematics.configuration_arrays import Configurations, state_di
 from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations
-from compoundkin.kinematics.groups.transmission import Force, forces_of, worst_transmission
+from compoundkin.kinematics.groups.transmission import PassedForce, forces_of, worst_transmission
 from compoundkin.model.pairs.contact import as_profiled
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.parts import Body, Group
@@ -65,7 +65,7 @@ class GeneralSolver(GroupSolver):
             block.publish(body, pose)
 
     @cached_property
-    def _forces(self) -> tuple[GroupEquations, tuple[Force, ...]]:
+    def _forces(self) -> tuple[GroupEquations, tuple[PassedForce, ...]]:
         """The equations of all bodies, none of them left out as a bar, and the forces that pass between them."""
         own = self.equations
         whole = GroupEquations(own.n, own.pairs, own.members, own.size, own.middles, bars=False)

@@ -60,7 +60,7 @@ def _folded(force: Number, motion: Number) -> Number:
 
 
 @dataclass(frozen=True)
-class Force:
+class PassedForce:
     """The one force that a body or a contact passes on.
 
     By the pair where it is cut, and the sides there; for a body also by its other pair, and whether that is a guide.
@@ -72,12 +72,12 @@ class Force:
     is_guided: bool = False
 
 
-def forces_of(equations: GroupEquations) -> tuple[Force, ...]:
+def forces_of(equations: GroupEquations) -> tuple[PassedForce, ...]:
     """Return the forces that bodies with two lower pairs and contacts pass on. All bodies are to be kept."""
     return (*_of_bodies(equations), *_of_contacts(equations))
 
 
-def _of_bodies(equations: GroupEquations) -> Iterator[Force]:
+def _of_bodies(equations: GroupEquations) -> Iterator[PassedForce]:
     pairs, members = equations.pairs, equations.members
     for body in range(equations.n):
         own = [k for k, sides in enumerate(members) if body in (side.body for side in sides)]
@@ -90,17 +90,17 @@ def _of_bodies(equations: GroupEquations) -> Iterator[Force]:
         cuts = [k for k in pins if far[k].body is not None] or pins
         for cut in cuts if len(pins) == 2 else pins:
             other = next(k for k in own if k != cut)
-            yield Force(cut, (far[other], far[cut]), other, not pairs[other].free_is_angle)
+            yield PassedForce(cut, (far[other], far[cut]), other, not pairs[other].free_is_angle)
 
 
-def _of_contacts(equations: GroupEquations) -> Iterator[Force]:
+def _of_contacts(equations: GroupEquations) -> Iterator[PassedForce]:
     for k, (pair, sides) in enumerate(zip(equations.pairs, equations.members, strict=True)):
         if as_contact(pair):
-            yield Force(k, (sides[0], sides[1]))
+            yield PassedForce(k, (sides[0], sides[1]))
 
 
 def worst_transmission(
-    equations: GroupEquations, forces: Sequence[Force], block: Block, bases: Sequence[str]
+    equations: GroupEquations, forces: Sequence[PassedForce], block: Block, bases: Sequence[str]
 ) -> Number:
     """Return a complex number at the transmission angle of the body that transmits worst.
 
@@ -131,7 +131,7 @@ class _CutMotions:
     inverse: Number
     spots: Number
 
-    def folded(self, force: Force) -> Number:
+    def folded(self, force: PassedForce) -> Number:
         """Return a complex number at the transmission angle of a force."""
         pair = self.equations.pairs[force.cut]
         row = sum(other.held for other in self.equations.pairs[: force.cut])
@@ -145,12 +145,12 @@ class _CutMotions:
         first, second = (self._velocity(member, motion, place) for member in force.ends)
         return _folded(along, second - first)
 
-    def _at_contact(self, pair: Pair, force: Force) -> tuple[Number, Number]:
+    def _at_contact(self, pair: Pair, force: PassedForce) -> tuple[Number, Number]:
         contact = as_contact(pair)
         assert contact is not None
         return contact_point(contact, self.block, force.ends[1].body is not None)
 
-    def _at_pin(self, pair: Pair, force: Force) -> tuple[Number, Number]:
+    def _at_pin(self, pair: Pair, force: PassedForce) -> tuple[Number, Number]:
         assert force.other is not None
         place = as_series(in_world(pair, self.block).point).c[0]
         other = in_world(self.equations.pairs[force.other], self.block)

@@ -13,12 +13,15 @@ from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
+from compoundkin.base.arrays import joined
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import DeclaredKeys, NameWording, link_fields, name_problems, only_points, value_key
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.loop_terms import LoopTerms
+from compoundkin.model.pairs.pose_rates import line_rows, moved_alone_in, row_at
 from compoundkin.model.pairs.symbols import Mark
 
 
@@ -124,11 +127,22 @@ class Pair(ABC):
         still = [pose.trimmed(0) for pose in poses]
         columns = []
         for k, pose in enumerate(still):
-            for moved in _moving(pose):
+            for moved in moved_alone_in(pose):
                 moving = (*still[:k], moved, *still[k + 1 :])
                 rows = *self.closure(fixed, moving), self.coordinate(fixed, moving)
                 columns.append([row.c[1] if len(row.c) > 1 else 0.0 for row in rows])
         return table(*zip(*columns, strict=True))
+
+    def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
+        """Return unit wrenches on the second member, the opposites on the first. Those by which it holds come first.
+
+        There is one for each held coordinate; the last is that of an effort along the free coordinate. By the
+        Jacobian, unless a kind knows the place where its force acts.
+        """
+        rows, origin = self.jacobian(ends, poses), poses[1].z.c[0]
+        return tuple(
+            Wrench.at(origin, joined(rows[..., k, 3], rows[..., k, 4]), rows[..., k, 5]) for k in range(self.held + 1)
+        )
 
     def centre(self, ends: Ends, poses: Poses) -> Point | Line:
         """Return the relative instant centre of the first two members. It is a point, or a line it must lie on.
@@ -137,17 +151,17 @@ class Pair(ABC):
         Jacobian, unless a kind knows it; with a carrier the members turn about their own points.
         """
         rows = self.jacobian(ends, poses)
-        first, second = (_lines(rows[..., 3 * k : 3 * k + 3], poses[k].z.c[0]) for k in range(2))
+        first, second = (line_rows(rows[..., 3 * k : 3 * k + 3], poses[k].z.c[0]) for k in range(2))
         if len(self.members) == 2 and self.held == 1:
             return Line(*second[0])
         if len(self.members) == 2:
             (a, b, c), (d, e, f), free = second
             place = b * f - c * e, c * d - a * f, a * e - b * d
-            return Point(*(at / _dot(free, place) for at in place))
+            return Point(*(at / row_at(free, place) for at in place))
         axes = [pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True)]
         one, two = ((axis.real, axis.imag, 1.0) for axis in axes)
-        turn, other = -_dot(second[0], two), _dot(first[0], one)
-        rate = turn * _dot(first[-1], one) + other * _dot(second[-1], two)
+        turn, other = -row_at(second[0], two), row_at(first[0], one)
+        rate = turn * row_at(first[-1], one) + other * row_at(second[-1], two)
         return Point(*((other * at - turn * before) / rate for before, at in zip(one, two, strict=True)))
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
@@ -180,24 +194,6 @@ class Pair(ABC):
 
         `ends` are numbers, `poses` a whole motion (poses,).
         """
-
-
-def _lines(rows: Number, z: Number) -> list[tuple[Number, Number, Number]]:
-    """By each Jacobian row (a, b, c): a twist of the member about (x, y, w) changes ``a x + b y + c w``."""
-    across = np.moveaxis(rows, (-2, -1), (0, 1))
-    return [(-y, x, turn + y * z.real - x * z.imag) for x, y, turn in across]
-
-
-def _dot(line: tuple[Number, ...], place: tuple[Number, ...]) -> Number:
-    return sum(own * at for own, at in zip(line, place, strict=True))
-
-
-def _moving(pose: Pose) -> Iterator[Pose]:
-    """A pose as it moves at unit rate in x, in y and in angle."""
-    yield Pose(Series((pose.z.c[0], 1.0 + 0j)), pose.u, pose.theta)
-    yield Pose(Series((pose.z.c[0], 1j)), pose.u, pose.theta)
-    theta = None if pose.theta is None else Series((pose.theta.c[0], 1.0))
-    yield Pose(pose.z, Series((pose.u.c[0], 1j * pose.u.c[0])), theta)
 
 
 def table(*rows: tuple[Number, ...]) -> Number:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Pair, Poses
 
@@ -25,6 +26,14 @@ class Drivable(Pair):
     def driven_by(self, link: str) -> int:
         """Return +1 if driving `link` drives the coordinate itself, else -1."""
         return 1
+
+    def effort(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
+        """Return the torque or thrust of a wrench on the second member.
+
+        It is along the coordinate: the power of the wrench as that moves at unit rate.
+        """
+        x, y, w = self.centre(ends, poses)
+        return wrench.force.real * y - wrench.force.imag * x + wrench.moment * w
 
     def shown_coordinate(self, ends: Ends, poses: Poses) -> Number:
         """Return the free coordinate at the members' drawn poses."""

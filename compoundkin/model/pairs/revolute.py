@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
 from compoundkin.model.pairs.loop_terms import LoopTerms
@@ -75,6 +76,11 @@ class Revolute(Drivable):
             (0.0, -1.0, -arm[0].real, 0.0, 1.0, arm[1].real),
             (0.0, 0.0, -1.0, 0.0, 0.0, 1.0),
         )
+
+    def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
+        """Return forces in x and in y at the pin, and a couple."""
+        pin = poses[0].at(ends[0].point).c[0]
+        return Wrench.at(pin, 1.0 + 0j), Wrench.at(pin, 1j), Wrench(0j, 1.0)
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
         """Return the pin."""

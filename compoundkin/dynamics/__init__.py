@@ -1,0 +1,1 @@
+"""Forces and dynamics: reactions group by group, friction, power, balance, simulation."""

@@ -1,0 +1,53 @@
+"""Kinetostatics: the forces in all pairs of a motion, and the efforts of its drivers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.forces import Forces, JoinedWrenches
+from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
+from compoundkin.dynamics.reverse_pass import reverse_pass
+from compoundkin.kinematics.motion import Motion
+
+# What the mechanism does to its frame, among the wrenches by pairs.
+ON_FRAME = ""
+
+
+@checked
+def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
+    """Return the forces in all pairs at every pose, and the drivers' efforts.
+
+    With ``inertia=False`` masses have weight only: statics. Raises InvalidInput for a mechanism without units, and for
+    a motion without accelerations where masses move.
+    """
+    _hold(motion, inertia)
+    store = JoinedWrenches(motion.failed.shape)
+    with np.errstate(all="ignore"):
+        for loaded in loaded_blocks(motion):
+            reactions = reverse_pass(motion.solving_order, loaded.block, known_wrenches(loaded, inertia))
+            for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():
+                store.take(name, wrench, loaded.designs, loaded.poses)
+    wrenches = store.wrenches()
+    return Forces(motion, inertia, wrenches, wrenches.pop(ON_FRAME))
+
+
+def known_wrenches(loaded: LoadedBlock, inertia: bool) -> dict[str, Wrench]:
+    """Return what is known to act on every link. Loads, weights, and inertia where it is asked for."""
+    found = loaded.applied()
+    for mass in loaded.motion.mechanism.masses.values() if inertia else ():
+        found[mass.link] = found.get(mass.link, Wrench()) + loaded.inertia(mass)
+    return found
+
+
+def _hold(motion: Motion, inertia: bool) -> None:
+    """Raise InvalidInput for a mechanism and a motion of which no forces can be told."""
+    mechanism = motion.mechanism
+    if mechanism.units is None:
+        remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
+        raise InvalidInput(Problem("units", "forces need units of length, mass and force", remedy))
+    if inertia and mechanism.masses and motion.order < 2:
+        what = f"the motion was solved to order {motion.order}, and inertia takes accelerations"
+        raise InvalidInput(Problem("motion", what, "solve(..., order=2), or inertia=False for statics"))

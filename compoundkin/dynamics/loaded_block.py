@@ -1,0 +1,132 @@
+"""Some designs x some poses of a solved motion with all that loads ask for, and what acts on each link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.wrenches import Wrench
+from compoundkin.kinematics.block import Block, blocks
+from compoundkin.kinematics.inputs import fit, rectangle
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.elements import FRAME, Load, Mass
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.units import Units
+
+
+@dataclass(frozen=True)
+class LoadedBlock:
+    """Some designs x some poses of a motion. It answers what loads ask for."""
+
+    motion: Motion
+    block: Block
+    designs: slice
+    poses: slice
+
+    @cached_property
+    def units(self) -> Units:
+        """The mechanism's units."""
+        units = self.motion.mechanism.units
+        assert units is not None
+        return units
+
+    @property
+    def time(self) -> Number | None:
+        """The times in seconds, None for a motion that is not in time."""
+        return None if self.motion.time is None else self.fitted(self.motion.time)
+
+    def pose(self, link: str) -> Pose:
+        """Return the pose of a link with its derivatives."""
+        return self.block.world[link]
+
+    def place(self, link: str, point: str | complex) -> Series:
+        """Return where a point of a link is. By its letter or its place in the link."""
+        own = self.motion.mechanism.geometry.points[link][point] if isinstance(point, str) else point
+        return as_series(self.block.world[link].at(self.fitted(own)))
+
+    def pair(self, name: str) -> tuple[Pair, Ends]:
+        """Return a pair by its name, and its sides on its links."""
+        return self.motion.solving_order.pairs[name], self.block.ends[name]
+
+    def coordinate(self, pair: str) -> Series:
+        """Return the free coordinate of a pair, angles counted along the motion."""
+        kind, ends = self.pair(pair)
+        found = kind.coordinate(ends, tuple(self.block.world[name] for name in kind.members))
+        value = fit(self.motion.shape)(self.motion.pairs[pair].value)
+        return Series((rectangle(value, self.designs, self.poses), *found.c[1:]))
+
+    def fitted(self, value: Any) -> Number:
+        """Return what of a number or an array belongs to these poses."""
+        return rectangle(fit(self.motion.shape)(value), self.designs, self.poses)
+
+    def applied(self) -> dict[str, Wrench]:
+        """Return what loads and weights do to every link."""
+        found: dict[str, Wrench] = {}
+        for _, link, wrench in self.named_loads():
+            found[link] = found.get(link, Wrench()) + wrench
+        return found
+
+    def named_loads(self) -> Iterator[tuple[Load | Mass, str, Wrench]]:
+        """Yield each load and each weight, with a link and its wrench there."""
+        mechanism = self.motion.mechanism
+        for load in mechanism.loads.values():
+            for link, wrench in load.wrenches(self):
+                yield load, link, wrench
+        for mass in mechanism.masses.values() if mechanism.gravity != 0 else ():
+            yield mass, mass.link, self.weight(mass)
+
+    def weight(self, mass: Mass) -> Wrench:
+        """Return the weight of a link."""
+        free_fall = self.motion.mechanism.gravity * self.units.metre
+        pull = self.fitted(mass.mass) * (self.units.inertia * free_fall)
+        return Wrench.at(self.place(mass.link, mass.at).c[0], pull)
+
+    def inertia(self, mass: Mass) -> Wrench:
+        """Return the inertia wrench of a link.
+
+        It is minus mass times acceleration, minus inertia times that of the angle.
+
+        Source: J. le Rond d'Alembert's principle, about the mass centre.
+        """
+        factor = self.units.inertia
+        centre = self.place(mass.link, mass.at)
+        pull = _second(centre) * (self.fitted(mass.mass) * -factor)
+        turning = self.block.world[mass.link].u
+        spin = _angular_acceleration(turning) * (self.fitted(mass.inertia) * -factor)
+        return Wrench.at(centre.c[0], pull, spin)
+
+
+def loaded_blocks(motion: Motion) -> Iterator[LoadedBlock]:
+    """Yield a motion in blocks whose arrays stay in cache."""
+    inputs = motion.inputs
+    for designs, poses in blocks(inputs.designs, inputs.poses):
+        cut = inputs.cut(designs, poses)
+        world = {name: _pose(pose, designs, poses) for name, pose in motion.poses.items()}
+        shape = (designs.stop - designs.start, poses.stop - poses.start)
+        yield LoadedBlock(motion, Block(shape, cut.ends, world, {}, motion.order), designs, poses)
+
+
+def without_rates(block: LoadedBlock) -> LoadedBlock:
+    """Return a block at rest: the same poses, all rates zero."""
+    still = {name: pose if name == FRAME else pose.trimmed(0) for name, pose in block.block.world.items()}
+    return replace(block, block=replace(block.block, world=still, order=0))
+
+
+def _pose(pose: Pose, designs: slice, poses: slice) -> Pose:
+    if pose is FIXED:
+        return pose
+    return pose.mapped(lambda series: Series(tuple([rectangle(c, designs, poses) for c in series.c])))
+
+
+def _second(series: Series) -> Number:
+    """Return the second time derivative."""
+    return series.c[2] * 2.0 if len(series.c) > 2 else 0j
+
+
+def _angular_acceleration(turning: Series) -> Number:
+    return turning.turning().c[1] if len(turning.c) > 2 else 0.0

@@ -1,0 +1,85 @@
+"""The units of length, mass and force in which a mechanism is written; seconds and radians are understood."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from compoundkin.base.errors import InvalidMechanism, Problem, nearest
+
+# In metres, kilograms, newtons; feet, pounds and their kin as defined by the international agreement of 1959, the
+# pound-force by the standard acceleration of 9.80665 m/s^2.
+_FOOT, _POUND, STANDARD_GRAVITY = 0.3048, 0.45359237, 9.80665
+LENGTHS = {"m": 1.0, "dm": 1e-1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": _FOOT / 12.0, "ft": _FOOT}
+MASSES = {
+    **{"kg": 1.0, "g": 1e-3, "mg": 1e-6, "t": 1e3, "lb": _POUND, "lbm": _POUND, "oz": _POUND / 16.0},
+    # what a pound-force gives one foot, one inch per second squared
+    **{"slug": _POUND * STANDARD_GRAVITY / _FOOT, "blob": _POUND * STANDARD_GRAVITY / (_FOOT / 12.0)},
+}
+FORCES = {
+    **{"N": 1.0, "uN": 1e-6, "mN": 1e-3, "kN": 1e3, "MN": 1e6, "dyn": 1e-5, "kgf": STANDARD_GRAVITY},
+    **{"lbf": _POUND * STANDARD_GRAVITY, "ozf": _POUND * STANDARD_GRAVITY / 16.0},
+    **{"kip": 1e3 * _POUND * STANDARD_GRAVITY},
+}
+_KNOWN: Mapping[str, Mapping[str, float]] = {"length": LENGTHS, "mass": MASSES, "force": FORCES}
+
+
+@dataclass(frozen=True)
+class Units:
+    """The units of length, mass and force. Numbers are converted by them, never reinterpreted.
+
+    >>> Units("mm", "kg", "N").inertia
+    0.001
+    """
+
+    length: str
+    mass: str
+    force: str
+
+    @property
+    def inertia(self) -> float:
+        """The force that a unit of mass takes for a unit of acceleration."""
+        return LENGTHS[self.length] * MASSES[self.mass] / FORCES[self.force]
+
+    @property
+    def metre(self) -> float:
+        """A metre in units of length."""
+        return 1.0 / LENGTHS[self.length]
+
+    @property
+    def moment(self) -> str:
+        """The unit of moments."""
+        return f"{self.force} {self.length}"
+
+
+def as_units(given: Any) -> Units | None:
+    """Return units as given: by names, as a mapping or as such an object. None where nothing is given.
+
+    Raises InvalidMechanism for what is unknown or missing.
+
+    >>> as_units({"length": "in", "mass": "blob", "force": "lbf"}).inertia
+    1.0
+    """
+    if given is None or isinstance(given, Units):
+        return given
+    problems = list(_problems(given))
+    if problems:
+        raise InvalidMechanism(problems)
+    return Units(given["length"], given["mass"], given["force"])
+
+
+def _problems(given: Any) -> Iterator[Problem]:
+    if not isinstance(given, Mapping):
+        remedy = 'write units={"length": "mm", "mass": "kg", "force": "N"}'
+        yield Problem("units", f"{given!r} does not name units", remedy)
+        return
+    for key in given:
+        if key not in _KNOWN:
+            yield Problem(f"units.{key}", f"{key!r} has no unit here", "known: length, mass, force")
+    for key, known in _KNOWN.items():
+        if key not in given:
+            yield Problem(f"units.{key}", f"the unit of {key} is missing", f"known: {', '.join(known)}")
+        elif given[key] not in known:
+            what = f"{given[key]!r} is no known unit of {key}"
+            yield Problem(f"units.{key}", what, nearest(given[key], list(known)))
