@@ -6,9 +6,8 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces, JoinedWrenches
-from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
+from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.reverse_pass import reverse_pass
 from compoundkin.kinematics.motion import Motion
 
@@ -27,19 +26,11 @@ def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
     store = JoinedWrenches(motion.failed.shape)
     with np.errstate(all="ignore"):
         for loaded in loaded_blocks(motion):
-            reactions = reverse_pass(motion.solving_order, loaded.block, known_wrenches(loaded, inertia))
+            reactions = reverse_pass(motion.solving_order, loaded.block, loaded.known(inertia))
             for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():
                 store.take(name, wrench, loaded.designs, loaded.poses)
     wrenches = store.wrenches()
     return Forces(motion, inertia, wrenches, wrenches.pop(ON_FRAME))
-
-
-def known_wrenches(loaded: LoadedBlock, inertia: bool) -> dict[str, Wrench]:
-    """Return what is known to act on every link. Loads, weights, and inertia where it is asked for."""
-    found = loaded.applied()
-    for mass in loaded.motion.mechanism.masses.values() if inertia else ():
-        found[mass.link] = found.get(mass.link, Wrench()) + loaded.inertia(mass)
-    return found
 
 
 def _hold(motion: Motion, inertia: bool) -> None:

@@ -64,6 +64,13 @@ class LoadedBlock:
         """Return what of a number or an array belongs to these poses."""
         return rectangle(fit(self.motion.shape)(value), self.designs, self.poses)
 
+    def known(self, inertia: bool) -> dict[str, Wrench]:
+        """Return what is known to act on every link. Loads, weights, and inertia where it is asked for."""
+        found = self.applied()
+        for mass in self.motion.mechanism.masses.values() if inertia else ():
+            found[mass.link] = found.get(mass.link, Wrench()) + self.inertia(mass)
+        return found
+
     def applied(self) -> dict[str, Wrench]:
         """Return what loads and weights do to every link."""
         found: dict[str, Wrench] = {}

@@ -1,0 +1,53 @@
+"""Efforts of drivers by virtual work: without a single reaction, at unit rates, so that dwells are like other poses.
+
+The work of all that acts on the links, when one driver alone moves at unit rate, is that of its effort. Reactions do
+none, so that this holds against the reverse pass; friction does some, and is not in it.
+
+Source: the principle of virtual work, e.g. R. L. Norton, Design of Machinery, section 11.10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.unit_rates import moved_alone
+
+
+def virtual_efforts(motion: Motion, inertia: bool) -> dict[str, Number]:
+    """Return the effort of every driver by virtual work, (designs, poses).
+
+    NaN where the motion at unit rate is not determined.
+    """
+    found = {name: np.zeros(motion.failed.shape) for name in motion.inputs.drives}
+    alone = {name: moved_alone(motion, name) for name in motion.inputs.drives}
+    with np.errstate(all="ignore"):
+        for parts in zip(loaded_blocks(motion), *map(loaded_blocks, alone.values()), strict=True):
+            at, *units = parts
+            known = free_wrenches(at, inertia)
+            for name, unit in zip(alone, units, strict=True):
+                found[name][at.designs, at.poses] = -work(known, unit)
+    return found
+
+
+def work(wrenches: Mapping[str, Wrench], moving: LoadedBlock) -> Number:
+    """Return the power of wrenches on links as the links move."""
+    total: Number = np.zeros(moving.block.shape)
+    for link, wrench in wrenches.items():
+        total = total + wrench.power(moving.pose(link))
+    return total
+
+
+def free_wrenches(at: LoadedBlock, inertia: bool) -> dict[str, Wrench]:
+    """Return what is known to act on every link. A link that may turn freely, such as a roller, is not turned."""
+    known = at.known(inertia)
+    for step in (step for body in at.motion.structure.bodies for step in body.driven if step.is_passive):
+        if step.link in known:
+            side = at.block.ends[step.pair.name][step.pair.members.index(step.link)]
+            known[step.link] = Wrench.at(at.pose(step.link).at(side.point).c[0], known[step.link].force)
+    return known
