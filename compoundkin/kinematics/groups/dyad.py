@@ -14,17 +14,18 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.series import Number, Series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.dyad_loci import Loci, place_of
 from compoundkin.kinematics.groups.contract import GroupSolver, in_world, side_of
+from compoundkin.kinematics.groups.equilibrium import load_on
+from compoundkin.kinematics.groups.lower_dyads import lower_dyad
 from compoundkin.kinematics.groups.transmission import contact_transmission
 from compoundkin.kinematics.limits import Root, clipped_root
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.optional_answers import lower_equivalent
-from compoundkin.structure.assur_groups import named_group
-from compoundkin.structure.parts import Body, Group
+from compoundkin.structure.parts import Group
 
 # Outer pins nearer to each other than this part of a link coincide but for rounding, which must not choose
 # the direction of that link.
@@ -93,6 +94,15 @@ class DyadSolver(GroupSolver):
         """Return a complex number at the transmission angle, folded to a right angle. The sides are in the world."""
 
     @staticmethod
+    @abstractmethod
+    def first_reaction(first: End, inner: End, second: End, loads: tuple[Wrench, Wrench]) -> Wrench:
+        """Return the wrench of the first outer pair on the first body. The others follow by equilibrium.
+
+        The sides are in the world; `loads` are all other wrenches on the first and on the second body. It is not finite
+        at the limit position.
+        """
+
+    @staticmethod
     def loci(own: AssembledDyad) -> Loci | None:
         """Return the construction of one assembled pose by circles and lines. None where a kind tells of none."""
         return None
@@ -113,7 +123,7 @@ class DyadSolver(GroupSolver):
         """Return the solver of a dyad of this kind. A body is one for whose higher pair such a dyad stands."""
         if group.name == cls.name:
             return cls(index, group, size, group, {})
-        dyad, more = _by_lower_pairs(group, ends)
+        dyad, more = lower_dyad(group, ends)
         return cls(index, group, size, dyad, more) if dyad.name == cls.name else None
 
     def arguments(self, block: Block) -> tuple[OuterPair, tuple[End, End], OuterPair]:
@@ -166,6 +176,21 @@ class DyadSolver(GroupSolver):
         found = [self.loci(AssembledDyad(*asked, poses, self.letters)) for poses in modes]
         return tuple(loci for loci in found if loci is not None)
 
+    def reactions(self, block: Block, loads: Mapping[str, Wrench]) -> dict[str, Wrench]:
+        """Return the wrench on the second member of each of its pairs.
+
+        It is that from the first member, by its closed form. Where lower pairs stand for a higher one it is by the transposed Jacobian of the pairs that there are.
+        """
+        if len(self.group.bodies) == 1:
+            return super().reactions(block, loads)
+        one, two = (load_on(body, loads) for body in self.bodies)
+        outer, other = (in_world(side.pair, block) for side in self.outer)
+        held = self.first_reaction(outer, in_world(self.inner[0].pair, block), other, (one, two))
+        passed = held + one
+        sides = (self.outer[0], self.inner[1], self.outer[1])
+        found = zip(sides, (held, passed, -(passed + two)), strict=True)
+        return {side.pair.name: wrench if side.own else -wrench for side, wrench in found}
+
     @property
     def letters(self) -> tuple[str, str, str]:
         """The letters of its pairs. The first outer one, the inner one, the second outer one."""
@@ -179,40 +204,3 @@ class DyadSolver(GroupSolver):
     def why(self, block: Block, at: int) -> str:
         """Say why it cannot be assembled at a pose."""
         return self.explain(*self.arguments(block), at, self.letters)
-
-
-def _by_lower_pairs(group: Group, ends: Mapping[str, Ends]) -> tuple[Group, Mapping[str, Ends]]:
-    """Return the dyad of a body and the link that stands, with two lower pairs, for its higher pair; the pairs' ends.
-
-    The group itself where it is no single body, or nothing stands for its pair.
-    """
-    if len(group.bodies) != 1 or len(group.outer) != 2:
-        return group, {}
-    lower, higher = sorted(group.outer, key=lambda pair: -pair.held)
-    found = lower_equivalent(higher, ends[higher.name])
-    if found is None:
-        return group, {}
-    own = next(j for j, name in enumerate(higher.members) if name in group.links)
-    inner, outer = found.pairs[own], found.pairs[1 - own]
-    return named_group([*group.bodies, Body((found.link,))], [inner], [lower, outer]), found.ends
-
-
-def placed_at(point: Series, u: Series, local: Series | Number) -> Pose:
-    """Return the pose with orientation `u` that has the body's point `local` at `point`."""
-    return Pose(Pose(point, u).at(-local), u)
-
-
-def spot(end: End) -> Number:
-    """Return where a side of a pair is."""
-    return as_series(end.point).c[0]
-
-
-def element(value: Number, at: int) -> float:
-    """Return one element of an array by its flat index. A number holds for all indices."""
-    flat = np.asarray(value).ravel()
-    return float(flat[at if flat.size > 1 else 0])
-
-
-def text(value: Number, at: int) -> str:
-    """Return one element of a number or array, for a sentence."""
-    return f"{element(value, at):.6g}"

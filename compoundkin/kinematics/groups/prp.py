@@ -9,10 +9,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import cross, dot, reciprocal
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of
-from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair, placed_at
+from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
+from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot
 from compoundkin.kinematics.limits import Root, clipped_root
 
 # Guides nearer to parallel than this (the sine of the angle between them) fix no point: their meeting
@@ -44,6 +47,13 @@ class PRP(DyadSolver):
     def transmitted(first: End, inner: End, second: End) -> Number:
         """Return the angle between the guides."""
         return np.conjugate(first.along.c[0]) * second.along.c[0]
+
+    @staticmethod
+    def first_reaction(first: End, inner: End, second: End, loads: tuple[Wrench, Wrench]) -> Wrench:
+        """Return the force across the first guide, and the moment. The pin takes no moment."""
+        pin, e, g, (one, two) = spot(inner), heading(first), heading(second), loads
+        across = dot(g, one.force + two.force) * reciprocal(cross(g, e))
+        return Wrench.at(pin, 1j * e * across, -one.about(pin))
 
     @staticmethod
     def loci(own: AssembledDyad) -> Loci:

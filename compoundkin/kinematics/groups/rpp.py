@@ -9,10 +9,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import cross, dot, reciprocal
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, as_series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of
-from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair, placed_at
+from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
+from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot
 from compoundkin.kinematics.groups.prp import separated
 from compoundkin.kinematics.limits import Root, clipped_root
 
@@ -44,6 +47,13 @@ class RPP(DyadSolver):
     def transmitted(first: End, inner: End, second: End) -> Number:
         """Return the angle between the guides."""
         return np.conjugate(inner.along.c[0]) * second.along.c[0]
+
+    @staticmethod
+    def first_reaction(first: End, inner: End, second: End, loads: tuple[Wrench, Wrench]) -> Wrench:
+        """Return the force at the outer pin. Neither guide takes anything along it."""
+        e, g, (one, two) = heading(inner), heading(second), loads
+        lacking = g * dot(e, one.force) - e * dot(g, one.force + two.force)
+        return Wrench.at(spot(first), 1j * lacking * reciprocal(cross(e, g)))
 
     @staticmethod
     def loci(own: AssembledDyad) -> Loci:

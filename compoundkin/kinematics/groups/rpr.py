@@ -9,20 +9,14 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import dot, reciprocal
 from compoundkin.base.composition import planar
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import CircleLocus, LineLocus, Loci, direction_of, place_of, radius_about
-from compoundkin.kinematics.groups.dyad import (
-    AssembledDyad,
-    Closed,
-    DyadSolver,
-    OuterPair,
-    element,
-    placed_at,
-    spot,
-    text,
-)
+from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
+from compoundkin.kinematics.groups.dyad_sides import element, heading, placed_at, spot, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 # A pin nearer to the guide's line than this part of the pins' distance is on it.
@@ -58,6 +52,15 @@ class RPR(DyadSolver):
         The force goes across the guide through an outer pin, which moves across that line.
         """
         return np.conjugate(spot(second) - spot(first)) * inner.along.c[0] * 1j
+
+    @staticmethod
+    def first_reaction(first: End, inner: End, second: End, loads: tuple[Wrench, Wrench]) -> Wrench:
+        """Return the force at the outer pin. The guide takes nothing along it; all moments are about the other pin."""
+        pin, e, (one, two) = spot(second), heading(inner), loads
+        d = spot(first) - pin
+        turning = one.about(pin) + two.about(pin)
+        force = (1j * e * turning + d * dot(e, one.force)) * -reciprocal(dot(d, e))
+        return Wrench.at(spot(first), force)
 
     @staticmethod
     def loci(own: AssembledDyad) -> Loci:

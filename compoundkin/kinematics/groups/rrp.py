@@ -10,10 +10,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import dot, reciprocal
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import LineLocus, Loci, direction_of, place_of, radius_about
-from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair, placed_at, spot, text
+from compoundkin.kinematics.groups.dyad import AssembledDyad, Closed, DyadSolver, OuterPair
+from compoundkin.kinematics.groups.dyad_sides import heading, placed_at, spot, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -42,6 +45,14 @@ class RRP(DyadSolver):
     def transmitted(first: End, inner: End, second: End) -> Number:
         """Return the angle between the rod and the normal of the guide."""
         return np.conjugate(spot(inner) - spot(first)) * second.along.c[0] * 1j
+
+    @staticmethod
+    def first_reaction(first: End, inner: End, second: End, loads: tuple[Wrench, Wrench]) -> Wrench:
+        """Return the force at the outer pin. The guide takes none along it, the rod no moment about the inner pin."""
+        pin, e, (one, two) = spot(inner), heading(second), loads
+        a = spot(first) - pin
+        force = (1j * e * one.about(pin) + a * dot(e, one.force + two.force)) * -reciprocal(dot(a, e))
+        return Wrench.at(spot(first), force)
 
     @staticmethod
     def loci(own: AssembledDyad) -> Loci:

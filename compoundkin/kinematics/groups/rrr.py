@@ -9,21 +9,14 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import cross, reciprocal
 from compoundkin.base.composition import planar
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series, as_series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.dyad_loci import Loci, place_of, radius_about
-from compoundkin.kinematics.groups.dyad import (
-    COINCIDENT,
-    AssembledDyad,
-    Closed,
-    DyadSolver,
-    OuterPair,
-    element,
-    placed_at,
-    spot,
-    text,
-)
+from compoundkin.kinematics.groups.dyad import COINCIDENT, AssembledDyad, Closed, DyadSolver, OuterPair
+from compoundkin.kinematics.groups.dyad_sides import element, placed_at, spot, text
 from compoundkin.kinematics.limits import Root, clipped_root
 
 
@@ -58,6 +51,15 @@ class RRR(DyadSolver):
         """Return the angle between the links at the inner pin."""
         pin = spot(inner)
         return np.conjugate(pin - spot(first)) * (pin - spot(second))
+
+    @staticmethod
+    def first_reaction(first: End, inner: End, second: End, loads: tuple[Wrench, Wrench]) -> Wrench:
+        """Return the force at the outer pin. Moments of both links about the inner pin give it."""
+        pin, one, two = spot(inner), *loads
+        a, c = spot(first) - pin, spot(second) - pin
+        turning = two.about(pin) - cross(c, one.force + two.force)
+        force = (a * turning + c * one.about(pin)) * -reciprocal(cross(a, c))
+        return Wrench.at(spot(first), force)
 
     @staticmethod
     def loci(own: AssembledDyad) -> Loci:
