@@ -179,7 +179,8 @@ class DyadSolver(GroupSolver):
     def reactions(self, block: Block, loads: Mapping[str, Wrench]) -> dict[str, Wrench]:
         """Return the wrench on the second member of each of its pairs.
 
-        It is that from the first member, by its closed form. Where lower pairs stand for a higher one it is by the transposed Jacobian of the pairs that there are.
+        It is that from the first member, by its closed form. Where lower pairs stand for a higher one it is by the
+        transposed Jacobian of the pairs that there are.
         """
         if len(self.group.bodies) == 1:
             return super().reactions(block, loads)

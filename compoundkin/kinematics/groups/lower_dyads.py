@@ -11,10 +11,10 @@ from compoundkin.structure.parts import Body, Group
 
 
 def lower_dyad(group: Group, ends: Mapping[str, Ends]) -> tuple[Group, Mapping[str, Ends]]:
-    """Return the dyad of a body and a link; and the ends of its lower pairs.
+    """Return the dyad of a body and a link, and the ends of its pairs.
 
-    The link stands, with two lower pairs, for the higher pair. The group itself where
-    it is no single body, or nothing stands for its pair.
+    The link stands, with two lower pairs, for the body's higher pair. It is the group itself where that is no single
+    body, or nothing stands for its pair.
     """
     if len(group.bodies) != 1 or len(group.outer) != 2:
         return group, {}
