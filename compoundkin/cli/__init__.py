@@ -25,6 +25,7 @@ VERBS = {
     "circuits": "Circuits, branches and limit positions; whether the driver turns fully.",
     "workspace": "The region that a point reaches by two or three drivers.",
     "characteristics": "Stroke, dead points, time ratio, transmission, advantage, dwells.",
+    "forces": "Forces in all pairs, drivers' efforts, shaking force.",
     "check": "Verify a motion: a table of all findings.",
     "catalog": "List, show or copy the shipped mechanisms.",
     "atlas": "All kinematic chains, trusses and Assur groups of a size.",

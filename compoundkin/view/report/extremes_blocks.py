@@ -81,7 +81,7 @@ def extremes_blocks(known: SampleExtremes) -> Iterator[Block]:
         for k in np.flatnonzero(one.least.at.design == sample.design):
             title = f"|{part.name.removesuffix(f'.{LENGTH}')}|" if part.name.endswith(f".{LENGTH}") else part.name
             where = (_piece(sample, int(k)),) if known.several else ()
-            rows.append((title, part.unit, *where, *_row(sample, one, int(k), floor)))
+            rows.append((title, part.unit, *where, *extremes_row(sample, one, int(k), floor)))
     if rows:
         yield Paragraph("Extremes, between the poses too; where a derivative jumps, of both sides:")
         yield TableBlock(_columns(sample, "output", ("between",) if known.several else ()), tuple(rows))
@@ -96,9 +96,13 @@ def _parts(found: Quantity) -> Iterator[tuple[str, Quantity]]:
 
 
 def _columns(sample: Sample, first: str, more: tuple[str, ...] = ()) -> tuple[Column, ...]:
-    at = replace(sample.places[0], name=f"at {sample.places[0].name}", style="each", follows=first != "output")
-    ends = Column("least", style="each"), at, Column("greatest", style="each"), at
-    return (Column(first), Column("unit"), *map(Column, more), *ends)
+    return (Column(first), Column("unit"), *map(Column, more), *extremes_columns(sample, first != "output"))
+
+
+def extremes_columns(sample: Sample, follows: bool = True) -> tuple[Column, ...]:
+    """Return the columns of the least and the greatest value and of their places."""
+    at = replace(sample.places[0], name=f"at {sample.places[0].name}", style="each", follows=follows)
+    return Column("least", style="each"), at, Column("greatest", style="each"), at
 
 
 def _piece(sample: Sample, k: int) -> str:
@@ -107,8 +111,11 @@ def _piece(sample: Sample, k: int) -> str:
     return f"{number(float(begin))} and {number(float(end))}"
 
 
-def _row(sample: Sample, found: Extremes, k: int, floor: float) -> tuple[Cell, ...]:
-    """The least value and where it is first taken, the greatest and where; differences by rounding are none."""
+def extremes_row(sample: Sample, found: Extremes, k: int, floor: float) -> tuple[Cell, ...]:
+    """Return the least value and where it is first taken, the greatest and where.
+
+    Differences by rounding are none.
+    """
     sides = found.least, found.greatest
     low, high = (_shown(found.unit, float(side.value[k])) for side in sides)
     if np.isnan(low):
@@ -171,7 +178,7 @@ def _cam_row(sample: Sample, measure: Measure, found: Extremes | None) -> tuple[
     """The extremes of something of a cam, at a single pose its value."""
     unit = DEGREES if measure.unit == RADIANS else measure.unit
     if found is not None:
-        return measure.name, unit, *_row(sample, found, sample.design, 0.0)
+        return measure.name, unit, *extremes_row(sample, found, sample.design, 0.0)
     value = _shown(measure.unit, float(sample.of(measure.of(sample.motion))[0]))
     return measure.name, unit, *((value, float(sample.places[1][0])) * 2 if np.isfinite(value) else (None,) * 4)
 

@@ -14,6 +14,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections
+from compoundkin.view.report.forces_section import forces_sections
 from compoundkin.view.report.gaps_section import gaps_of, gaps_section
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.outputs_section import equivalent_section, moving_sections
@@ -79,6 +80,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
             *assembly_sections(motion, design),
             *moving,
             performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
+            *forces_sections(motion, design),
             *([gaps_section(sample, missing)] if missing else []),
             checks_section(sample, check),
             *([published_section(structure, published)] if published else []),

@@ -1,0 +1,90 @@
+"""Figures of forces over a motion: extremes between the poses, means, peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.dynamics.force_analysis import force_analysis
+from compoundkin.dynamics.forces import Forces
+from compoundkin.kinematics import Motion
+from compoundkin.kinematics.extremes import Extremes, Measure, extremes
+
+# A force below this part of the largest one of all is rounding.
+ROUNDING = 1e-11
+Asked = Callable[[Forces], Number]
+
+
+@dataclass(frozen=True)
+class ForceFigure:
+    """A real figure of forces: what it is called, its unit, and how it is asked of any forces."""
+
+    name: str
+    unit: str
+    of: Asked
+    is_length: bool = False
+
+
+class LastForces:
+    """The forces of the last motion that was asked for: of one motion many figures are asked."""
+
+    def __init__(self, last: Forces) -> None:
+        self.last = last
+
+    def of(self, asked: Asked, motion: Motion) -> Number:
+        """Return a figure of the forces of a motion; what is infinite is left out."""
+        if self.last.motion is not motion:
+            self.last = force_analysis(motion, inertia=self.last.inertia)
+        values = np.asarray(asked(self.last))
+        return np.where(np.isfinite(values), values, np.nan)
+
+
+def force_extremes(forces: Forces, figures: tuple[ForceFigure, ...]) -> tuple[Extremes, ...]:
+    """Return the least and the greatest value of figures, between the poses too."""
+    known, largest = LastForces(forces), largest_of(forces)
+    measures = [Measure(one.name, one.unit, 2 if forces.inertia else 1, partial(known.of, one.of), one.is_length,
+                        largest) for one in figures]  # fmt: skip
+    return extremes(forces.motion, *measures)
+
+
+def largest_of(forces: Forces) -> float:
+    """Return the largest force or moment in any pair, for what is rounding beside it."""
+    found = [np.abs(np.asarray(value)) for wrench in forces.wrenches.values() for value in (wrench.force,)]
+    return max((float(np.max(one, initial=0.0, where=np.isfinite(one))) for one in found), default=0.0)
+
+
+def is_known_between(forces: Forces) -> bool:
+    """Tell whether the loads are known between poses: single numbers are, arrays over the motion are not."""
+    mechanism = forces.motion.mechanism
+    values = [vars(one).values() for one in (*mechanism.masses.values(), *mechanism.loads.values())]
+    return (
+        forces.motion.inputs.designs == 1
+        and forces.motion.inputs.poses > 1
+        and not any(np.ndim(v) for row in values for v in row)
+    )
+
+
+def mean(forces: Forces, values: Any, design: int) -> float:
+    """Return the mean of an array over the motion: over the time, or over the way of the only driver that moves."""
+    motion = forces.motion
+    row = np.asarray(np.broadcast_to(values, motion.shape)).reshape(motion.inputs.designs, -1)[design]
+    along = _along(motion, design)
+    known = np.isfinite(row)
+    both = known[1:] & known[:-1]
+    steps = np.abs(np.diff(along))[both]
+    if not steps.sum() > 0:
+        return float(np.mean(row[known])) if known.any() else float("nan")
+    return float(np.sum((row[1:] + row[:-1])[both] / 2.0 * steps) / np.sum(steps))
+
+
+def _along(motion: Motion, design: int) -> Number:
+    """The times of a design, else the values of the only driver that moves, else the numbers of the poses."""
+    rows = [motion.time] if motion.time is not None else [drive.value for drive in motion.drives.values()]
+    full = [np.asarray(np.broadcast_to(row, motion.shape)).reshape(motion.inputs.designs, -1)[design] for row in rows]
+    moving = [row for row in full if np.ptp(row) > 0]
+    return moving[0] if len(moving) == 1 else np.arange(motion.inputs.poses, dtype=float)

@@ -1,0 +1,220 @@
+"""Tables of forces: loads and masses as written, reactions, drivers, what the frame is shaken by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import fields
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arrays import first_entry
+from compoundkin.base.series import Number
+from compoundkin.dynamics.forces import Forces
+from compoundkin.kinematics.extremes import Extremes
+from compoundkin.model.elements import Load
+from compoundkin.model.units import Units
+from compoundkin.view.report.extremes_blocks import extremes_columns, extremes_row
+from compoundkin.view.report.force_measures import (
+    ROUNDING,
+    ForceFigure,
+    force_extremes,
+    is_known_between,
+    largest_of,
+    mean,
+)
+from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, TableBlock
+from compoundkin.view.report.shown_poses import Sample
+from compoundkin.view.report.wording import listed, number
+
+# What is below this part of the largest moment, by forces and the size of the mechanism, is rounding.
+NOTHING = 1e-9
+
+
+def units_of(forces: Forces) -> Units:
+    """Return the units of forces."""
+    units = forces.motion.mechanism.units
+    assert units is not None
+    return units
+
+
+def masses_table(forces: Forces) -> TableBlock:
+    """Return the masses as they are written, the first of several designs."""
+    units, mechanism = units_of(forces), forces.motion.mechanism
+    columns = (Column("link"), Column("mass", units.mass, "each"), Column("mass centre"),
+               Column("inertia about it", f"{units.mass} {units.length}^2", "each"))  # fmt: skip
+    rows = [(one.link, _first(one.mass), _place(one.at), _first(one.inertia)) for one in mechanism.masses.values()]
+    return TableBlock(columns, tuple(rows))
+
+
+def loads_table(forces: Forces) -> TableBlock:
+    """Return the loads as they are written: what each is, on which links, with which numbers."""
+    rows = [(one.name, one.title, ", ".join(one.links), _told(one)) for one in forces.motion.mechanism.loads.values()]
+    return TableBlock((Column("load"), Column("kind"), Column("on"), Column("as written")), tuple(rows))
+
+
+def _told(load: Load) -> str:
+    """The numbers of a load, by what they are called."""
+    names = [f.name for f in fields(load) if f.name not in ("name", *load.link_keys)]
+    values = {name: _value(getattr(load, name)) for name in names}
+    return ", ".join(f"{name} {value}" for name, value in values.items() if value)
+
+
+def _value(value: Any) -> str:
+    if value is None or isinstance(value, bool | str):
+        return str(value or "")
+    if callable(value):
+        return "a function"
+    values = np.ravel(np.asarray(value))
+    if np.iscomplexobj(values):
+        parts = [_range(values.real), _range(values.imag)]
+        return f"({', '.join(parts)})"
+    return _range(values)
+
+
+def _range(values: Number) -> str:
+    low, high = float(np.min(values)), float(np.max(values))
+    return number(low) if low == high else f"{number(low)} to {number(high)}"
+
+
+def _place(at: Any) -> str:
+    if isinstance(at, str):
+        return at
+    place = complex(_first(at))
+    return f"({number(place.real)}, {number(place.imag)})"
+
+
+def _first(value: Any) -> Any:
+    return first_entry(value) if np.ndim(value) else value
+
+
+def reaction_figures(forces: Forces) -> tuple[ForceFigure, ...]:
+    """Return what is listed of the pairs: the force, and its moment where there is one."""
+    units = units_of(forces)
+    efforts = {driven.pair.name for driven in forces.motion.structure.driven.values()}
+    found = []
+    for name, own in forces.pairs.items():
+        title = f"{name}, on {own.pair.members[1]}"
+        found.append(ForceFigure(f"{title}|force", units.force, partial(_force, name), True))
+        turns = own.pair.free_is_angle if name in efforts else False
+        if not turns and not _is_nothing(forces, own.moment):
+            found.append(ForceFigure(f"{title}|moment", units.moment, partial(_moment, name)))
+    return tuple(found)
+
+
+def _force(name: str, forces: Forces) -> Number:
+    return np.abs(forces.pairs[name].force)
+
+
+def _moment(name: str, forces: Forces) -> Number:
+    found: Number = forces.pairs[name].moment
+    return found
+
+
+def _is_nothing(forces: Forces, moment: Number) -> bool:
+    """Whether a moment is rounding at every pose."""
+    values = np.abs(np.asarray(moment))
+    largest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
+    return largest <= NOTHING * max(largest_of(forces) * forces.motion.size, 1e-300)
+
+
+def reactions_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
+    """Yield the extremes of the forces in all pairs."""
+    figures = reaction_figures(forces)
+    if not figures:
+        return
+    between = " They are solved for between the poses too." if is_known_between(forces) else ""
+    yield Paragraph(f"Reactions, the force on the second link of each pair.{between} Least and greatest:")
+    rows = []
+    for figure, row in zip(figures, extremes_rows(sample, forces, figures), strict=True):
+        (pair, _, on), _, what = figure.name.partition("|")[0].partition(", on "), "", figure.name.partition("|")[2]
+        rows.append((pair, on, what, figure.unit, *row))
+    columns = Column("pair"), Column("on"), Column(""), Column("unit"), *extremes_columns(sample)
+    yield TableBlock(columns, tuple(rows), keys=1)
+
+
+def extremes_rows(sample: Sample, forces: Forces, figures: Sequence[ForceFigure]) -> list[tuple[Cell, ...]]:
+    """Return the least and the greatest value of figures, with their places; at a single pose its value."""
+    floor = ROUNDING * largest_of(forces)
+    if is_known_between(forces):
+        found: tuple[Extremes, ...] = force_extremes(forces, tuple(figures))
+        return [extremes_row(sample, one, sample.design, floor) for one in found]
+    return [_at_poses(sample, np.asarray(sample.of(figure.of(forces)))) for figure in figures]
+
+
+def _at_poses(sample: Sample, values: Number) -> tuple[Cell, ...]:
+    if not np.isfinite(values).any():
+        return (None,) * 4
+    places = sample.places[1]
+    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
+    return float(values[low]), float(places[low]), float(values[high]), float(places[high])
+
+
+def drives_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
+    """Yield what each driver does: its effort with mean and extremes, its power."""
+    figures = tuple(figure for name in forces.drives for figure in _drive_figures(forces, name))
+    if not figures:
+        return
+    yield Paragraph("Drivers, the torque or thrust along the driver's own coordinate, positive where it drives it up:")
+    rows = []
+    for figure, row in zip(figures, extremes_rows(sample, forces, figures), strict=True):
+        values = np.asarray(figure.of(forces))
+        root = float(np.sqrt(mean(forces, values**2, sample.design)))
+        average = mean(forces, values, sample.design)
+        average = 0.0 if abs(average) <= NOTHING * root else average
+        rows.append((*figure.name.split("|"), figure.unit, average, root, *row))
+    columns = (Column("driver"), Column(""), Column("unit"), Column("mean", style="each"), Column("rms", style="each"),
+               *extremes_columns(sample))  # fmt: skip
+    yield TableBlock(columns, tuple(rows), keys=1)
+
+
+def _drive_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:
+    units, is_angle = units_of(forces), forces.motion.drives[name].is_angle
+    what, unit = ("torque", units.moment) if is_angle else ("thrust", units.force)
+    yield ForceFigure(f"{name}|{what}", unit, partial(_effort, name))
+    if forces.motion.order:
+        yield ForceFigure(f"{name}|power", f"{units.moment}/s", partial(_power, name))
+
+
+def _effort(name: str, forces: Forces) -> Number:
+    found: Number = forces.drives[name].effort
+    return found
+
+
+def _power(name: str, forces: Forces) -> Number:
+    found: Number = forces.drives[name].power
+    return found
+
+
+def shaking_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
+    """Yield by what the frame is shaken: the force, and its moment about a point of the frame."""
+    letter, place = frame_point(forces)
+    units = units_of(forces)
+    figures = (ForceFigure("force", units.force, _shaking, True),
+               ForceFigure(f"moment about {letter}", units.moment, partial(_shaking_moment, place)))  # fmt: skip
+    yield Paragraph("The mechanism on its frame (shaking force), reactions of the drivers included:")
+    rows = [(figure.name, figure.unit, *row)
+            for figure, row in zip(figures, extremes_rows(sample, forces, figures), strict=True)]  # fmt: skip
+    yield TableBlock((Column("on the frame"), Column("unit"), *extremes_columns(sample)), tuple(rows), keys=1)
+
+
+def frame_point(forces: Forces) -> tuple[str, Number]:
+    """Return the point of the frame about which moments are told: that of the first driver, else the first one."""
+    points = forces.motion.mechanism.geometry.points["frame"]
+    letters = [driven.pair.letters[0] for driven in forces.motion.structure.driven.values()]
+    letter = next((one for one in (*letters, *points) if one in points), "")
+    return (letter, points[letter]) if letter else ("the origin", 0j)
+
+
+def _shaking(forces: Forces) -> Number:
+    return np.abs(forces.shaped(forces.on_frame.force))
+
+
+def _shaking_moment(place: Number, forces: Forces) -> Number:
+    return forces.shaped(forces.on_frame.about(_first(place)))
+
+
+def undetermined(names: Sequence[str]) -> str:
+    """Return what equilibrium does not determine, in a sentence."""
+    return f"Equilibrium does not determine {listed(names)}: the mechanism is held by more than it needs."

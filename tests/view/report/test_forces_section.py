@@ -1,0 +1,67 @@
+"""The section of the forces: its numbers against closed forms, its assumptions, and where it is left out."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.view.report.forces_section import forces_report
+from tests.view.loaded import MASS, REACH, SPEED, UNITS, crank, crank_forces, six_bar_forces
+
+WEIGHT, PULL = MASS * 9.81, MASS * SPEED**2 * REACH / 1000.0
+
+
+def _rows(key: str) -> dict[str, list[object]]:
+    """The rows of a table of the crank's report, by their first cells."""
+    blocks = json.loads(forces_report(crank_forces()).json())["sections"]["forces"]["blocks"]
+    tables = [block for block in blocks if block["kind"] == "table" and block["columns"][0]["name"] == key]
+    return {" ".join(map(str, row[:2])) if key == "driver" else row[0]: row for row in tables[0]["rows"]}
+
+
+def test_extremes_are_those_of_the_closed_form_between_the_poses() -> None:
+    # a crank at constant speed: the pin carries weight and centrifugal force, the driver the weight's moment
+    force = _rows("pair")["A"]
+    assert force[4:] == pytest.approx([abs(WEIGHT - PULL), 90.0, WEIGHT + PULL, 270.0], rel=1e-6)
+    torque, power = _rows("driver")["crank torque"], _rows("driver")["crank power"]
+    peak = WEIGHT * REACH
+    assert torque[5:] == pytest.approx([-peak, 180.0, peak, 0.0], rel=1e-9, abs=1e-6)
+    assert power[7] == pytest.approx(peak * SPEED)
+    shaken = _rows("on the frame")
+    assert shaken["force"][2:] == pytest.approx([abs(WEIGHT - PULL), 90.0, WEIGHT + PULL, 270.0], rel=1e-6)
+    assert shaken["moment about A"][4] == pytest.approx(peak)
+
+
+def test_means_are_over_the_way_of_the_driver() -> None:
+    torque = _rows("driver")["crank torque"]
+    angles = np.deg2rad(np.arange(0, 361, 40))
+    square = np.trapezoid((WEIGHT * REACH * np.cos(angles)) ** 2, angles) / (2 * np.pi)
+    assert torque[3] == pytest.approx(0.0, abs=1e-9 * WEIGHT * REACH)
+    assert torque[4] == pytest.approx(np.sqrt(square))
+
+
+def test_assumptions_come_first_and_statics_says_so() -> None:
+    section = forces_report(six_bar_forces()).section("forces")
+    assert section is not None
+    first = section.blocks[0].text
+    for part in (
+        "lengths in mm",
+        "forces in N",
+        "gravity (0, -9.81) m/s^2",
+        "inertia forces",
+        "no friction",
+        "crank at",
+    ):
+        assert part in first
+    still = ck.force_analysis(crank_forces().motion, inertia=False)
+    assert "statics: no inertia" in forces_report(still).text(80).replace("\n", " ")
+
+
+def test_a_mechanism_without_loads_has_no_such_section() -> None:
+    bare = ck.Mechanism("Crank", *crank().items[:3], units=UNITS)
+    assert ck.report(bare).section("forces") is None
+    found = ck.report(crank())
+    assert found.section("forces") is not None
+    assert [section.key for section in found.sections].index("forces") < [s.key for s in found.sections].index("checks")
