@@ -11,7 +11,7 @@ from compoundkin.structure.parts import Body, Group
 
 
 def lower_dyad(group: Group, ends: Mapping[str, Ends]) -> tuple[Group, Mapping[str, Ends]]:
-    """Return the dyad of a body and a link, and the ends of its pairs.
+    """Return the dyad of a body and a link, and the ends of pairs.
 
     The link stands, with two lower pairs, for the body's higher pair. It is the group itself where that is no single
     body, or nothing stands for its pair.
