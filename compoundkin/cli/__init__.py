@@ -34,6 +34,9 @@ VERBS = {
     "completion": "The script that completes commands in your shell.",
 }
 
+# Verbs whose file has another name, for what they ask for has a file of that name in its own room.
+_FILES = {"forces": "mechanism_forces"}
+
 EPILOG = """\b
 Examples:
   compoundkin report six-bar
@@ -62,7 +65,7 @@ class Verbs(click.Group):
         """Return the command of a verb."""
         if cmd_name not in VERBS:
             return None
-        command: click.Command = import_module(f"compoundkin.cli.{cmd_name}").command
+        command: click.Command = import_module(f"compoundkin.cli.{_FILES.get(cmd_name, cmd_name)}").command
         return command
 
     def resolve_command(

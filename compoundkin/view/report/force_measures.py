@@ -22,7 +22,7 @@ Asked = Callable[[Forces], Number]
 
 @dataclass(frozen=True)
 class ForceFigure:
-    """A real figure of forces: what it is called, its unit, and how it is asked of any forces."""
+    """A real figure of forces. What it is called, its unit, how it is asked."""
 
     name: str
     unit: str
@@ -31,13 +31,13 @@ class ForceFigure:
 
 
 class LastForces:
-    """The forces of the last motion that was asked for: of one motion many figures are asked."""
+    """The forces of the last motion asked for. Of one motion many figures are asked."""
 
     def __init__(self, last: Forces) -> None:
         self.last = last
 
     def of(self, asked: Asked, motion: Motion) -> Number:
-        """Return a figure of the forces of a motion; what is infinite is left out."""
+        """Return a figure of a motion's forces. What is infinite is left out."""
         if self.last.motion is not motion:
             self.last = force_analysis(motion, inertia=self.last.inertia)
         values = np.asarray(asked(self.last))
@@ -53,13 +53,16 @@ def force_extremes(forces: Forces, figures: tuple[ForceFigure, ...]) -> tuple[Ex
 
 
 def largest_of(forces: Forces) -> float:
-    """Return the largest force or moment in any pair, for what is rounding beside it."""
+    """Return the largest force in any pair, beside which others are rounding."""
     found = [np.abs(np.asarray(value)) for wrench in forces.wrenches.values() for value in (wrench.force,)]
     return max((float(np.max(one, initial=0.0, where=np.isfinite(one))) for one in found), default=0.0)
 
 
 def is_known_between(forces: Forces) -> bool:
-    """Tell whether the loads are known between poses: single numbers are, arrays over the motion are not."""
+    """Tell whether the loads are known between poses.
+
+    Single numbers are, arrays over the motion are not.
+    """
     mechanism = forces.motion.mechanism
     values = [vars(one).values() for one in (*mechanism.masses.values(), *mechanism.loads.values())]
     return (
@@ -70,7 +73,10 @@ def is_known_between(forces: Forces) -> bool:
 
 
 def mean(forces: Forces, values: Any, design: int) -> float:
-    """Return the mean of an array over the motion: over the time, or over the way of the only driver that moves."""
+    """Return the mean of an array over the motion.
+
+    It is that over the time, or over the way of the only driver that moves.
+    """
     motion = forces.motion
     row = np.asarray(np.broadcast_to(values, motion.shape)).reshape(motion.inputs.designs, -1)[design]
     along = _along(motion, design)

@@ -49,7 +49,7 @@ def masses_table(forces: Forces) -> TableBlock:
 
 
 def loads_table(forces: Forces) -> TableBlock:
-    """Return the loads as they are written: what each is, on which links, with which numbers."""
+    """Return the loads as written. What each is, on which links, with which numbers."""
     rows = [(one.name, one.title, ", ".join(one.links), _told(one)) for one in forces.motion.mechanism.loads.values()]
     return TableBlock((Column("load"), Column("kind"), Column("on"), Column("as written")), tuple(rows))
 
@@ -90,7 +90,7 @@ def _first(value: Any) -> Any:
 
 
 def reaction_figures(forces: Forces) -> tuple[ForceFigure, ...]:
-    """Return what is listed of the pairs: the force, and its moment where there is one."""
+    """Return what is listed of pairs. The force, and its moment where there is one."""
     units = units_of(forces)
     efforts = {driven.pair.name for driven in forces.motion.structure.driven.values()}
     found = []
@@ -135,7 +135,7 @@ def reactions_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
 
 
 def extremes_rows(sample: Sample, forces: Forces, figures: Sequence[ForceFigure]) -> list[tuple[Cell, ...]]:
-    """Return the least and the greatest value of figures, with their places; at a single pose its value."""
+    """Return the extremes of figures with their places; at a single pose its value."""
     floor = ROUNDING * largest_of(forces)
     if is_known_between(forces):
         found: tuple[Extremes, ...] = force_extremes(forces, tuple(figures))
@@ -188,7 +188,7 @@ def _power(name: str, forces: Forces) -> Number:
 
 
 def shaking_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
-    """Yield by what the frame is shaken: the force, and its moment about a point of the frame."""
+    """Yield the shaking force, and its moment about a point of the frame."""
     letter, place = frame_point(forces)
     units = units_of(forces)
     figures = (ForceFigure("force", units.force, _shaking, True),
@@ -200,7 +200,10 @@ def shaking_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
 
 
 def frame_point(forces: Forces) -> tuple[str, Number]:
-    """Return the point of the frame about which moments are told: that of the first driver, else the first one."""
+    """Return the point of the frame about which moments are told.
+
+    It is that of the first driver, else the first one.
+    """
     points = forces.motion.mechanism.geometry.points["frame"]
     letters = [driven.pair.letters[0] for driven in forces.motion.structure.driven.values()]
     letter = next((one for one in (*letters, *points) if one in points), "")

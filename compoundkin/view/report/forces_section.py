@@ -34,7 +34,7 @@ def has_forces(mechanism: Mechanism) -> bool:
 
 
 def forces_sections(motion: Motion, design: int = 0) -> tuple[Section, ...]:
-    """Return the section of the forces of a motion; none for a mechanism without masses and loads."""
+    """Return the section on the forces of a motion. None without masses and loads."""
     if not has_forces(motion.mechanism) or not motion.assembled.any():
         return ()
     # without accelerations there is no inertia to tell: statics, and the section says so

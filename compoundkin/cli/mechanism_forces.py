@@ -30,7 +30,7 @@ Examples:
 @click.option("--statics", is_flag=True, help="Leave inertia out: masses have weight only.")
 @report_options
 def command(file: str, design: int, statics: bool, form: str | None, path: str | None, **asked: Any) -> int:
-    """Print the forces in all pairs, the efforts of the drivers and the force on the frame.
+    """Print forces in all pairs, efforts of drivers, the force on the frame.
 
     The mechanism states its units of length, mass and force, and has masses or loads. What is assumed comes first.
     Exit code 3: some poses cannot be assembled.
