@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from compoundkin import equivalents as equivalents
     from compoundkin import errors as errors
     from compoundkin import laws as laws
+    from compoundkin import machine as machine
     from compoundkin import performance as performance
     from compoundkin import plots as plots
     from compoundkin import profiles as profiles
@@ -142,7 +143,7 @@ _LATE = {
 # The modules that hold all other public names: no rooms, each a list of what rooms have.
 _MODULES = (
     *("advantage", "cams", "catalog", "chains", "composing", "coupler", "dyads"),
-    *("equations", "equivalents", "errors", "laws", "performance", "plots", "profiles", "results"),
+    *("equations", "equivalents", "errors", "laws", "machine", "performance", "plots", "profiles", "results"),
 )
 
 # Names of version 0.1 and what is written for them now.

@@ -26,8 +26,10 @@ def at_hand() -> dict[str, Any]:
     rocker = ck.solve(bar, {"crank": ck.deg([10, 20, 30])}, order=3)
     upper, fore = ck.link("upper", A=0, B=2), ck.link("fore", B=0, P=1)
     arm = ck.Mechanism("arm", ck.link("frame", A=0), upper, fore, ck.drive("upper"), ck.drive("fore", on="upper"))
+    heavy = arm.replace(ck.mass("fore", 2.0, at=(0.5, 0)), units={"length": "m", "mass": "kg", "force": "N"})
     return {
         "arm": arm,
+        "moved": ck.solve(heavy, {"upper": [0.1, 0.2], "fore": [1.0, 1.1]}),
         "region": ck.performance.workspace(arm, "P", cells=8),
         "bar": bar,
         "structure": ck.decompose(bar),
@@ -205,6 +207,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                       "jerk": None},
         "laws.synchronised": {},
         "laws.time_table": {"times": range(9), "values": range(9), "degree": 5, "repeat": False},
+        "machine.equivalent_inertia": {"motion": h["moved"]},
         "plots.centrodes": {**on, "pose": 0, "design": 0, "every": None, "title": None, "size": None, "on": "frame"},
         "plots.circuits": {"what": m, "driver": "crank", "values": None, "between": None, "design": 0, "title": None,
                            "size": None},

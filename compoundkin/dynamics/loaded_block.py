@@ -11,6 +11,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block, blocks
+from compoundkin.kinematics.extremes import given_over
 from compoundkin.kinematics.inputs import fit, rectangle
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import FRAME, Load, Mass
@@ -38,7 +39,7 @@ class LoadedBlock:
     @property
     def time(self) -> Number | None:
         """The times in seconds, None for a motion that is not in time."""
-        return None if self.motion.time is None else self.fitted(self.motion.time)
+        return None if self.motion.time is None else self._cut(fit(self.motion.shape)(self.motion.time))
 
     def pose(self, link: str) -> Pose:
         """Return the pose of a link with its derivatives."""
@@ -58,11 +59,14 @@ class LoadedBlock:
         kind, ends = self.pair(pair)
         found = kind.coordinate(ends, tuple(self.block.world[name] for name in kind.members))
         value = fit(self.motion.shape)(self.motion.pairs[pair].value)
-        return Series((rectangle(value, self.designs, self.poses), *found.c[1:]))
+        return Series((self._cut(value), *found.c[1:]))
 
     def fitted(self, value: Any) -> Number:
         """Return what of a number or an array belongs to these poses."""
-        return rectangle(fit(self.motion.shape)(value), self.designs, self.poses)
+        return self._cut(given_over(self.motion, value))
+
+    def _cut(self, value: Number) -> Number:
+        return rectangle(value, self.designs, self.poses)
 
     def known(self, inertia: bool) -> dict[str, Wrench]:
         """Return what is known to act on every link. Loads, weights, and inertia where it is asked for."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -30,8 +30,8 @@ from compoundkin.structure.kinematic_structure import Structure
 class Motion(CopiesFields, ShowsPicture):
     """A mechanism solved: every link's pose with all derivatives, over designs and poses.
 
-    `shape` is the broadcast shape of dimensions and driver values, the last axis the motion. Poses that
-    cannot be assembled are NaN, False in `assembled`, and explained by `compoundkin.kinematics.gaps`.
+    `shape` is the broadcast shape of dimensions and driver values, the last axis the motion. Poses that cannot be
+    assembled are NaN, False in `assembled`, and explained by `compoundkin.kinematics.gaps`.
     """
 
     structure: Structure
@@ -41,6 +41,7 @@ class Motion(CopiesFields, ShowsPicture):
     failed: Number  # shape (designs, poses): index of the first group that does not close plus one, or 0
     tracker: Tracker
     time: Number | None = None  # the times (seconds) of a motion in time; broadcasts with its shape
+    is_whole: ClassVar[bool] = True  # whether its poses are those that its tracker has noted, not places between them
 
     @property
     def mechanism(self) -> Mechanism:
@@ -74,8 +75,8 @@ class Motion(CopiesFields, ShowsPicture):
     def error(self, order: int = 0) -> Number:
         """Return about how much error rounding leaves in a derivative, at every pose.
 
-        It is of any link: of its origin, or of its orientation times the size, whichever is larger. NaN where a pose is
-        not assembled, infinite where rates have no digit. It takes nine times the solution, when first asked for.
+        Of any link's origin, or its orientation times the size. NaN where a pose is not assembled, infinite where rates
+        have no digit. It takes nine times the solution, when first asked for.
 
         >>> from compoundkin.model.elements import drive, link
         >>> from compoundkin.kinematics import solve
@@ -182,8 +183,7 @@ class Motion(CopiesFields, ShowsPicture):
 
     def sign(self, k: int, design: int) -> int:
         """Return the sign of a group's mode at the first pose of a design."""
-        sign = self.tracker.sign(k, np.array([[design]]), np.array([[0.0]]))
-        return int(np.ravel(sign)[0])
+        return int(np.ravel(self.tracker.sign(k, np.array([[design]]), np.array([[0.0]])))[0])
 
     def block(self, part: Inputs, order: int, s: Number, designs: Number) -> Block:
         """Solve a block of other inputs in the configuration of the motion.

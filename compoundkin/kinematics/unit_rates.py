@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -21,6 +22,8 @@ from compoundkin.structure.kinematic_structure import Structure
 
 class Solved(AtPoses, Protocol):
     """A solved motion, which can be solved again with other inputs."""
+
+    is_whole: ClassVar[bool]
 
     @property
     def inputs(self) -> Inputs:
@@ -114,9 +117,14 @@ def units_of(motion: Solved, rows: tuple[Row, ...]) -> tuple[tuple[str, ...], ..
 
 def moved_alone(motion: Solved, driver: str) -> Any:
     """Return the motion with one driver at unit speed, the others at rest."""
+    return moved_together(motion, {driver: 1.0})
+
+
+def moved_together(motion: Solved, speeds: Mapping[str, Number], order: int = 1) -> Any:
+    """Return the motion with its drivers at other speeds, which do not change. Those not named are at rest."""
     given = motion.inputs
-    drives = {name: (v[0], float(name == driver)) for name, v in given.drives.items()}
-    return _solved(motion, given.driven(drives), None)
+    drives = {name: (v[0], speeds.get(name, 0.0)) for name, v in given.drives.items()}
+    return _solved(motion, given.driven(drives), None, order)
 
 
 def matrix_at(motion: Solved, rows: tuple[Row, ...], given: Inputs, s: Number | None = None) -> Number:
@@ -129,19 +137,19 @@ def matrix_at(motion: Solved, rows: tuple[Row, ...], given: Inputs, s: Number | 
     return np.stack(columns, axis=-1)
 
 
-def _solved(motion: Solved, given: Inputs, s: Number | None) -> Any:
-    """Return the motion with one driver moving, to order 1."""
+def _solved(motion: Solved, given: Inputs, s: Number | None, order: int = 1) -> Any:
+    """Return the motion with drivers moving at other speeds."""
     designs, poses = given.designs, given.poses
     store = JoinedBlocks(designs, poses)
     with np.errstate(all="ignore"):
         for d, m in blocks(designs, poses):
             at, index = places(d, m)
-            store.take(motion.block(given.cut(d, m), 1, at if s is None else s[None, m], index), d, m)
+            store.take(motion.block(given.cut(d, m), order, at if s is None else s[None, m], index), d, m)
     again: Any = motion
-    found = replace(again, order=1, inputs=given, poses=store.poses(), failed=store.failed, time=None)
-    if s is None and len(given.drives) == 1 and motion.tracker.expanded is not None:
+    found = replace(again, order=order, inputs=given, poses=store.poses(), failed=store.failed, time=None)
+    if s is None and motion.is_whole and len(given.drives) == 1 and motion.tracker.expanded is not None:
         with np.errstate(all="ignore"):
-            return found.mended(*rates_at(given, motion.tracker, 1))
+            return found.mended(*rates_at(given, motion.tracker, order))
     return found
 
 

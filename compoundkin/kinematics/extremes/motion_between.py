@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -35,6 +35,7 @@ class MotionBetween(Motion):
     whole: Motion = None  # type: ignore[assignment]
     designs: Number = 0
     places: Number = 0.0
+    is_whole: ClassVar[bool] = False
 
     def block(self, part: Inputs, order: int, s: Number, designs: Number) -> Block:
         """Solve a block of other inputs in the configuration of the motion.
@@ -49,7 +50,7 @@ class MotionBetween(Motion):
 
     def _point(self, name: str) -> PointMotion:
         link = self.mechanism.carriers[name][0]
-        p = self._picked(fit(self.whole.shape)(self.mechanism.geometry.points[link][name]))
+        p = self.picked(fit(self.whole.shape)(self.mechanism.geometry.points[link][name]))
         return PointMotion(self.grid, lambda k: self.poses[link].derivative(p, k), name)
 
     def _pair(self, name: str) -> PairMotion:
@@ -63,7 +64,8 @@ class MotionBetween(Motion):
         before, after = np.where(np.isnan(before), after, before), np.where(np.isnan(after), before, after)
         return np.nan_to_num(before + weight * (after - before))
 
-    def _picked(self, value: Number) -> Number:
+    def picked(self, value: Number) -> Number:
+        """Return what of a value (designs, poses) belongs to the places, (n,)."""
         if np.ndim(value) == 0:
             return value
         rows = self.designs if value.shape[0] > 1 else np.zeros_like(self.designs)
@@ -132,6 +134,17 @@ def between(
     own = {f.name: getattr(motion, f.name) for f in fields(Motion)}
     own |= {"order": order, "inputs": _laid(part, len(places)), "poses": poses, "failed": failed, "time": time}
     return MotionBetween(**own, whole=motion, designs=designs, places=places)
+
+
+def given_over(motion: Motion, value: Any) -> Number:
+    """Return what is given over a motion, as (1 or designs, 1 or poses).
+
+    Between poses it is linear from one to the next.
+    """
+    if not isinstance(motion, MotionBetween):
+        return fit(motion.shape)(value)
+    found = motion.picked(fit(motion.whole.shape)(value))
+    return found[None] if np.ndim(found) else found
 
 
 def _of_no_place(one: MotionBetween) -> MotionBetween:

@@ -1,0 +1,72 @@
+"""Motions of mass centres and of the links that turn about them: what momenta and inertia are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from compoundkin.base.arrays import cross, dot
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.poses import Pose
+from compoundkin.base.series import Number
+from compoundkin.kinematics.extremes import given_over
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.elements import Mass
+from compoundkin.model.units import Units
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MassMotion(PrintsShort):
+    """A mass with the derivatives of its centre and of its link's angle. Arrays are (designs, poses)."""
+
+    link: str
+    mass: Number
+    inertia: Number
+    centre: tuple[Number, ...]
+    turning: tuple[Number, ...]  # angular velocity, angular acceleration
+
+    def product(self, own: int, other: MassMotion, k: int) -> Number:
+        """Return the product of a derivative of each of two motions."""
+        turning = self.turning[own - 1] * other.turning[k - 1]
+        return dot(self.centre[own], other.centre[k]) * self.mass + turning * self.inertia
+
+    @property
+    def force(self) -> Number:
+        """Mass times acceleration."""
+        return self.centre[2] * self.mass
+
+    @property
+    def moment(self) -> Number:
+        """The moment about the world's origin that the acceleration takes."""
+        return cross(self.centre[0], self.force) + self.turning[1] * self.inertia
+
+
+def mass_motions(motion: Motion) -> Iterator[MassMotion]:
+    """Yield the masses with their motions, to the order of the motion."""
+    for mass in motion.mechanism.masses.values():
+        pose, place = motion.poses[mass.link], place_of(motion, mass)
+        centre = tuple(pose.derivative(place, k) for k in range(motion.order + 1))
+        own = given_over(motion, mass.mass), given_over(motion, mass.inertia)
+        yield MassMotion(mass.link, *own, centre, _turning(motion, pose))
+
+
+def place_of(motion: Motion, mass: Mass) -> Number:
+    """Return the place of a mass centre in its link's frame."""
+    own = motion.mechanism.geometry.points[mass.link][mass.at] if isinstance(mass.at, str) else mass.at
+    return given_over(motion, own)
+
+
+def _turning(motion: Motion, pose: Pose) -> tuple[Number, ...]:
+    turning = pose.u.turning()
+    return tuple(turning.derivative(k) for k in range(motion.order))
+
+
+def units_of_masses(motion: Motion) -> Units:
+    """Return the units of a mechanism with masses. Raises InvalidInput where it has no units, or no masses."""
+    if motion.mechanism.units is None:
+        remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
+        raise InvalidInput(Problem("units", "masses need units of length, mass and force", remedy))
+    if not motion.mechanism.masses:
+        raise InvalidInput(Problem("masses", "no link has a mass", 'write mass("bar", 0.2, at=(50, 0), inertia=40)'))
+    return motion.mechanism.units

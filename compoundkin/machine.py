@@ -1,0 +1,14 @@
+"""Figures of machines: equivalent inertia, balancing, flywheels, efforts over a cycle, equilibrium positions.
+
+>>> import compoundkin as ck
+>>> items = ck.link("frame", A=0), ck.link("arm", A=0, B=4), ck.drive("arm"), ck.mass("arm", 3.0, at=(2, 0))
+>>> arm = ck.Mechanism("Arm", *items, units={"length": "m", "mass": "kg", "force": "N"})
+>>> ck.machine.equivalent_inertia(ck.solve(arm, [0.0])).inertia
+array([12.])
+"""
+
+from __future__ import annotations
+
+from compoundkin.dynamics.equivalent_inertia import EquivalentInertia, equivalent_inertia
+
+__all__ = ["EquivalentInertia", "equivalent_inertia"]
