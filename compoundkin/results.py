@@ -13,6 +13,13 @@ from compoundkin.analysis.checks import Check, Finding
 from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.reached_region import Workspace
+from compoundkin.dynamics.driver_efforts import DriverEffort
+from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.frame_forces import ShakingForce
+from compoundkin.dynamics.link_forces import LinkForces
+from compoundkin.dynamics.link_wrench import LinkWrench
+from compoundkin.dynamics.pair_forces import PairForce
+from compoundkin.dynamics.pin_forces import PinForces
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.kinematics.chosen_modes import GroupMode
 from compoundkin.kinematics.configuration import Configuration
@@ -37,22 +44,29 @@ __all__ = [
     "Circuits",
     "Configuration",
     "Configurations",
+    "DriverEffort",
     "Finding",
+    "Forces",
     "Gap",
     "Group",
     "GroupMode",
     "Jacobian",
+    "LinkForces",
     "LinkMotion",
+    "LinkWrench",
     "LoopEquations",
     "MobilityAnalysis",
     "Motion",
     "Page",
+    "PairForce",
     "PairMotion",
     "Picture",
+    "PinForces",
     "Plot",
     "PointMotion",
     "Quantity",
     "Report",
+    "ShakingForce",
     "Structure",
     "Table",
     "Workspace",

@@ -27,6 +27,10 @@ def answers(name: str) -> Iterator[tuple[str, Any]]:
     for word in ("gaps", "verify", "instant_centres", "draw", "animate", "page", "characteristics"):
         yield word, getattr(ck, word)(motion)
     yield "plot", ck.plot(motion, f"{link}.angle")
+    units = {"length": "mm", "mass": "kg", "force": "N"}
+    weighed = mechanism.replace(ck.mass(link, 0.1), ck.gravity(0, -9.81), unit="", units=units)
+    forces = ck.force_analysis(ck.solve(weighed))
+    yield from {"force_analysis": forces, "on": forces.on(link), "shaking": forces.shaking, "pins": forces.pins}.items()
     yield "quantity", ck.quantity(motion, f"{link}.angle")
     yield "table", motion.table()
     for word in ("pole", "centrodes", "canonical_frame", "inflection_circle", "stationary_curvature", "relative_link"):

@@ -36,6 +36,9 @@ def at_hand() -> dict[str, Any]:
         "motion": rocker,
         "timed": ck.solve(loaded("five-bar-led"), time=[0.0, 0.1, 0.2]),
         "cam": ck.solve(cam),
+        "loaded": ck.solve(
+            arm.replace(units={"length": "m", "mass": "kg", "force": "N"}), {"upper": [1.0], "fore": 1.0}
+        ),
         "chain": ck.chains.chains(6)[0],
         "group": ck.chains.assur_groups(2)[0],
         "place": ck.coupler.LinkPosition((0, 0), 1.0),
@@ -90,6 +93,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                   "jerk": 0.0, "law": None, "name": "n"},
         "expect": {"quantity": "a.angle", "value": 0.5, "tolerance": 1e-3, "crank": 1.0},
         "face": {"link": "a", "on": "b", "at": "A", "profile": ck.profiles.disc(1), "angle": 0.0, "side": 1},
+        "force_analysis": {"motion": h["loaded"], "inertia": True},
         "gaps": {"motion": motion},
         "gear": {"first": "a", "second": "b", "radii": (1.0, 2.0), "name": "n", "carrier": "frame", "teeth": None,
                  "phase": None, "first_at": "A", "second_at": "B", "internal": False, "module": None},

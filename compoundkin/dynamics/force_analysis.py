@@ -6,7 +6,8 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.dynamics.forces import Forces, JoinedWrenches
+from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.reverse_pass import reverse_pass
 from compoundkin.kinematics.motion import Motion
@@ -23,14 +24,15 @@ def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
     a motion without accelerations where masses move.
     """
     _hold(motion, inertia)
-    store = JoinedWrenches(motion.failed.shape)
+    store: JoinedWrenches[str] = JoinedWrenches(motion.failed.shape)
     with np.errstate(all="ignore"):
         for loaded in loaded_blocks(motion):
             reactions = reverse_pass(motion.solving_order, loaded.block, loaded.known(inertia))
             for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():
                 store.take(name, wrench, loaded.designs, loaded.poses)
-    wrenches = store.wrenches()
-    return Forces(motion, inertia, wrenches, wrenches.pop(ON_FRAME))
+    found = store.wrenches()
+    wrenches = {name: found[name] for name in motion.solving_order.pairs if name in found}
+    return Forces(motion, inertia, wrenches, found[ON_FRAME])
 
 
 def _hold(motion: Motion, inertia: bool) -> None:

@@ -22,6 +22,8 @@ FORCES = {
     **{"lbf": _POUND * STANDARD_GRAVITY, "ozf": _POUND * STANDARD_GRAVITY / 16.0},
     **{"kip": 1e3 * _POUND * STANDARD_GRAVITY},
 }
+# In watts; products of powers of ten that differ by rounding alone are one unit.
+_POWERS, _SAME = {"W": 1.0, "uW": 1e-6, "mW": 1e-3, "kW": 1e3, "MW": 1e6}, 1e-12
 _KNOWN: Mapping[str, Mapping[str, float]] = {"length": LENGTHS, "mass": MASSES, "force": FORCES}
 
 
@@ -51,6 +53,17 @@ class Units:
     def moment(self) -> str:
         """The unit of moments."""
         return f"{self.force} {self.length}"
+
+    @property
+    def power(self) -> str:
+        """The unit of power: a moment per second, or its own name.
+
+        >>> Units("mm", "kg", "N").power, Units("in", "blob", "lbf").power
+        ('mW', 'lbf in/s')
+        """
+        watts = LENGTHS[self.length] * FORCES[self.force]
+        own = (name for name, size in _POWERS.items() if abs(watts / size - 1.0) < _SAME)
+        return next(own, f"{self.moment}/s")
 
 
 def as_units(given: Any) -> Units | None:

@@ -78,6 +78,10 @@ class Load(ABC):
     def links(self) -> tuple[str, ...]:
         """The links it acts on."""
 
+    def attack(self, link: str) -> str | Number | None:
+        """Return the point of a link at which it acts. It is a letter or a place in the link, None for a couple."""
+        return None
+
     def problems(
         self, links: Mapping[str, tuple[str, ...]], pairs: Mapping[str, Pair], where: str
     ) -> Iterator[Problem]:

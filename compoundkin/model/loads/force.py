@@ -31,6 +31,10 @@ class Force(Load):
         """The link it acts on."""
         return (self.link,)
 
+    def attack(self, link: str) -> str:
+        """Return its point."""
+        return self.at
+
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
         """Yield the force."""
         turned = at.fitted(self.force)

@@ -144,6 +144,15 @@ class Pair(ABC):
             Wrench.at(origin, joined(rows[..., k, 3], rows[..., k, 4]), rows[..., k, 5]) for k in range(self.held + 1)
         )
 
+    @property
+    def acts_at(self) -> str:
+        """What the point is called about which the moment of its force is told."""
+        return self.letters[0]
+
+    def acting_place(self, ends: Ends, poses: Poses) -> Number:
+        """Return that point in the world."""
+        return poses[1].at(ends[1].point).c[0]
+
     def centre(self, ends: Ends, poses: Poses) -> Point | Line:
         """Return the relative instant centre of the first two members. It is a point, or a line it must lie on.
 

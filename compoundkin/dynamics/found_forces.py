@@ -1,0 +1,107 @@
+"""What was found by an analysis of forces, and what is read of its motion unchanged: poses, links, points, time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.copies import CopiesFields
+from compoundkin.base.poses import Pose
+from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.link_wrench import LinkWrench
+from compoundkin.kinematics.inputs import Inputs, PoseGrid
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.results import LinkMotion, PointMotion
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.units import Units
+
+
+@dataclass(frozen=True, repr=False)
+class FoundForces(CopiesFields):
+    """What an analysis of forces found, with its motion.
+
+    `wrenches` are those on the second member of each pair from the first, (designs, poses), about the world's origin;
+    `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction.
+    """
+
+    motion: Motion
+    inertia: bool
+    wrenches: Mapping[str, Wrench]
+    on_frame: Wrench
+    more: tuple[LinkWrench, ...] = ()
+
+    @property
+    def units(self) -> Units:
+        """The mechanism's units of length, mass and force.
+
+        Moments are in `units.moment`, powers in `units.power`.
+        """
+        units = self.mechanism.units
+        assert units is not None
+        return units
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism."""
+        return self.motion.mechanism
+
+    @property
+    def solving_order(self) -> SolvingOrder:
+        """What solved the motion."""
+        return self.motion.solving_order
+
+    @property
+    def inputs(self) -> Inputs:
+        """All numbers that the motion was solved with."""
+        return self.motion.inputs
+
+    @property
+    def grid(self) -> PoseGrid:
+        """How numbers are shown."""
+        return self.motion.grid
+
+    @property
+    def poses(self) -> Mapping[str, Pose]:
+        """The poses of the links."""
+        return self.motion.poses
+
+    @property
+    def points(self) -> Mapping[str, PointMotion]:
+        """The motion of every point by its letter."""
+        return self.motion.points
+
+    @property
+    def links(self) -> Mapping[str, LinkMotion]:
+        """The motion of every link by its name."""
+        return self.motion.links
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of every array."""
+        return self.motion.shape
+
+    @property
+    def order(self) -> int:
+        """The highest derivative that is known."""
+        return self.motion.order
+
+    @property
+    def time(self) -> Number | None:
+        """The times of the poses, of a motion in time."""
+        return self.motion.time
+
+    @property
+    def assembled(self) -> Number:
+        """Which poses are assembled."""
+        return self.motion.assembled
+
+    @property
+    def regular(self) -> Number:
+        """Which poses have finite rates, (designs, poses)."""
+        return self.motion.regular
+
+    def shaped(self, value: Number) -> Number:
+        """Return a value in the motion's shape, NaN where not assembled."""
+        return self.motion.grid.known(value)
