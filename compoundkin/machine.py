@@ -9,6 +9,8 @@ array([12.])
 
 from __future__ import annotations
 
+from compoundkin.dynamics.drive_figures import DriveFigures, drive_figures
 from compoundkin.dynamics.equivalent_inertia import EquivalentInertia, equivalent_inertia
+from compoundkin.dynamics.flywheel import Flywheel, flywheel
 
-__all__ = ["EquivalentInertia", "equivalent_inertia"]
+__all__ = ["DriveFigures", "EquivalentInertia", "Flywheel", "drive_figures", "equivalent_inertia", "flywheel"]

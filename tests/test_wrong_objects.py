@@ -27,7 +27,9 @@ def at_hand() -> dict[str, Any]:
     upper, fore = ck.link("upper", A=0, B=2), ck.link("fore", B=0, P=1)
     arm = ck.Mechanism("arm", ck.link("frame", A=0), upper, fore, ck.drive("upper"), ck.drive("fore", on="upper"))
     heavy = arm.replace(ck.mass("fore", 2.0, at=(0.5, 0)), units={"length": "m", "mass": "kg", "force": "N"})
+    turned = bar.replace(ck.mass("crank", 2.0, at="B"), ck.gravity(0, -9.81), unit="", units=heavy.units)
     return {
+        "forces": ck.force_analysis(ck.solve(turned, ck.deg(range(0, 361, 30)), speed=2)),
         "arm": arm,
         "moved": ck.solve(heavy, {"upper": [0.1, 0.2], "fore": [1.0, 1.1]}),
         "region": ck.performance.workspace(arm, "P", cells=8),
@@ -211,7 +213,9 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                       "jerk": None},
         "laws.synchronised": {},
         "laws.time_table": {"times": range(9), "values": range(9), "degree": 5, "repeat": False},
+        "machine.drive_figures": {"forces": h["forces"], "driver": "crank"},
         "machine.equivalent_inertia": {"motion": h["moved"]},
+        "machine.flywheel": {"forces": h["forces"], "fluctuation": 0.02, "driver": "crank"},
         "plots.centrodes": {**on, "pose": 0, "design": 0, "every": None, "title": None, "size": None, "on": "frame"},
         "plots.circuits": {"what": m, "driver": "crank", "values": None, "between": None, "design": 0, "title": None,
                            "size": None},

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ UNITS = {"length": "m", "mass": "kg", "force": "N"}
 ANGLES = np.deg2rad(np.arange(0.0, 360.0, 15.0))
 
 
-def slider_crank(*items: object, units: dict[str, str] = UNITS) -> ck.Mechanism:
+def slider_crank(*items: Any, units: dict[str, str] = UNITS) -> ck.Mechanism:
     """Return an in-line slider-crank of radius 0.05 and rod 0.2, with what else is given."""
     frame, crank = ck.link("frame", O=(0, 0)), ck.link("crank", O=(0, 0), A=(0.05, 0))
     rod, piston = ck.link("rod", A=(0, 0), B=(0.2, 0)), ck.link("piston", B=(0, 0))

@@ -1,0 +1,95 @@
+"""Flywheels and figures of drives: an engine by its quadratures, and what comes out in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.base.wrenches import Wrench
+from compoundkin.model.loads import Force
+from compoundkin.model.loads.contract import LoadedPoses
+from tests.dynamics.test_equivalent_inertia import UNITS, slider_crank
+
+TURN = np.deg2rad(np.arange(0.0, 361.0, 10.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Gas(Force):
+    """The gas force of the reference engine, by the crank's angle."""
+
+    def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
+        u = at.pose("crank").u.c[0]
+        yield self.link, Wrench.at(at.place(self.link, self.at).c[0], -2000 - 1500 * u.real - 1800 * u.imag + 0j)
+
+
+def engine_forces() -> Any:
+    masses = (ck.mass("crank", 2.0, at=(-0.01, 0), inertia=0.003), ck.mass("rod", 0.8, at=(0.06, 0), inertia=0.004))
+    mechanism = slider_crank(*masses, ck.mass("piston", 0.5), Gas("piston", 0j, "B"))
+    return ck.force_analysis(ck.solve(mechanism, TURN, speed=150))
+
+
+def test_an_engine_has_the_flywheel_of_its_quadrature() -> None:
+    """Case slider_crank_engine of the reference, from poses of ten degrees."""
+    found = ck.machine.flywheel(engine_forces(), 0.02)
+    np.testing.assert_allclose(found.mean, -45.0, rtol=1e-13)
+    np.testing.assert_allclose(
+        np.rad2deg(found.crossings.drives["crank"]), [14.660183075249252, 149.94825755803578], rtol=1e-12
+    )
+    np.testing.assert_allclose(found.energies, [-6.018787859193128, 226.3686421585977], rtol=1e-11)
+    np.testing.assert_allclose(found.fluctuation, 232.38743001779082, rtol=1e-12)
+    np.testing.assert_allclose(found.inertia, 0.5164165111506462, rtol=1e-12)
+
+
+def test_parts_that_move_lend_energy_too() -> None:
+    """Without gas and gravity the work is zero, and what is lent is half the range of J(q) w^2."""
+    mechanism = slider_crank(ck.mass("piston", 0.5))
+    motion = ck.solve(mechanism, np.deg2rad(np.arange(0.0, 361.0, 1.0)), speed=150)
+    found = ck.machine.flywheel(ck.force_analysis(motion), 0.1)
+    inertia = ck.machine.equivalent_inertia(motion).inertia
+    np.testing.assert_allclose(found.mean, 0.0, atol=1e-11)
+    np.testing.assert_allclose(found.fluctuation, np.ptp(inertia) * 150**2 / 2, rtol=1e-4)
+    statics = ck.machine.drive_figures(ck.force_analysis(motion, inertia=False))
+    np.testing.assert_allclose(statics.peak_effort, 0.0, atol=1e-12)
+
+
+def test_units_are_converted_not_reinterpreted() -> None:
+    """The arm of 2 kg at 1 m of the example, in mm: 2 m g r / (Cs w^2) = 8 kg m^2."""
+    parts = ck.link("frame", A=0), ck.link("arm", A=0, B=1000), ck.drive("arm")
+    loads = ck.mass("arm", 2.0, at="B"), ck.gravity(0, -10)
+    arm = ck.Mechanism("Arm", *parts, *loads, units={"length": "mm", "mass": "kg", "force": "N"})
+    found = ck.machine.flywheel(ck.force_analysis(ck.solve(arm, TURN, speed=10)), 0.05)
+    np.testing.assert_allclose(found.inertia, 8e6, rtol=1e-12)
+    np.testing.assert_allclose(found.fluctuation, 40e3, rtol=1e-12)
+
+
+def test_figures_of_a_drive_in_time_are_means_over_the_time() -> None:
+    """An arm swings as sin t: effort -m r^2 sin t, power -m r^2 sin t cos t."""
+    arm = ck.Mechanism("Arm", ck.link("frame", A=0), ck.link("arm", A=0, B=2), ck.mass("arm", 3.0, at="B"),
+                       ck.drive("arm", law=ck.laws.FunctionLaw(np.sin)), units=UNITS)  # fmt: skip
+    motion = ck.solve(arm, time=np.linspace(0.0, 2.0 * np.pi, 41))
+    found = ck.machine.drive_figures(ck.force_analysis(motion), "arm")
+    np.testing.assert_allclose(found.peak_effort, 12.0, rtol=1e-6)
+    np.testing.assert_allclose(found.rms_effort, 12.0 / np.sqrt(2.0), rtol=1e-6)
+    np.testing.assert_allclose(found.peak_power, 6.0, rtol=1e-6)
+    np.testing.assert_allclose(found.rms_power, 6.0 / np.sqrt(2.0), rtol=1e-6)
+    np.testing.assert_allclose([found.work, found.mean_effort], 0.0, atol=1e-5)
+
+
+def test_what_has_no_flywheel_says_why() -> None:
+    forces = engine_forces()
+    for bad, told in ((0.0, "coefficient of fluctuation"), (np.nan, "coefficient of fluctuation")):
+        with pytest.raises(ck.errors.InvalidInput, match=told):
+            ck.machine.flywheel(forces, bad)
+    with pytest.raises(ck.errors.UnknownName, match="there is no driver"):
+        ck.machine.flywheel(forces, 0.1, driver="rod")
+    half = ck.force_analysis(ck.solve(slider_crank(ck.mass("piston", 1.0)), TURN[:9], speed=1))
+    with pytest.raises(ck.errors.InvalidInput, match="closed cycle"):
+        ck.machine.flywheel(half, 0.1)
+    still = ck.force_analysis(ck.solve(slider_crank(ck.mass("piston", 1.0)), TURN, speed=0))
+    with pytest.raises(ck.errors.InvalidInput, match="speed is not constant"):
+        ck.machine.flywheel(still, 0.1)
