@@ -20,6 +20,7 @@ from compoundkin.dynamics.link_forces import LinkForces
 from compoundkin.dynamics.link_wrench import LinkWrench
 from compoundkin.dynamics.pair_forces import PairForce
 from compoundkin.dynamics.pin_forces import PinForces
+from compoundkin.dynamics.power import Powers
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.kinematics.chosen_modes import GroupMode
 from compoundkin.kinematics.configuration import Configuration
@@ -64,6 +65,7 @@ __all__ = [
     "PinForces",
     "Plot",
     "PointMotion",
+    "Powers",
     "Quantity",
     "Report",
     "ShakingForce",

@@ -31,6 +31,7 @@ def answers(name: str) -> Iterator[tuple[str, Any]]:
     weighed = mechanism.replace(ck.mass(link, 0.1), ck.gravity(0, -9.81), unit="", units=units)
     forces = ck.force_analysis(ck.solve(weighed))
     yield from {"force_analysis": forces, "on": forces.on(link), "shaking": forces.shaking, "pins": forces.pins}.items()
+    yield "power", forces.power
     yield "quantity", ck.quantity(motion, f"{link}.angle")
     yield "table", motion.table()
     for word in ("pole", "centrodes", "canonical_frame", "inflection_circle", "stationary_curvature", "relative_link"):

@@ -200,5 +200,5 @@ def _are_each(tests: list[Test], value: object) -> bool:
 def _either(one: Form | None, other: Form | None) -> Form | None:
     if one is None or other is None:
         return None
-    called = [form.called for form in (one, other) if form.called]
+    called = dict.fromkeys(form.called for form in (one, other) if form.called)
     return Form(lambda v: one.fits(v) or other.fits(v), " or ".join(called), one.remedy or other.remedy)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.dynamics.driver_efforts import DriverEffort
@@ -13,7 +14,11 @@ from compoundkin.dynamics.frame_forces import ShakingForce
 from compoundkin.dynamics.link_forces import LinkForces, link_forces
 from compoundkin.dynamics.pair_forces import PairForce
 from compoundkin.dynamics.pin_forces import PinForces
+from compoundkin.dynamics.power import Powers, powers_of
 from compoundkin.kinematics.results import Named
+
+if TYPE_CHECKING:
+    from compoundkin.analysis.checks import Check
 
 
 @dataclass(frozen=True, repr=False)
@@ -38,6 +43,17 @@ class Forces(FoundForces):
         """The effort of every driver by its name."""
         driven = self.motion.structure.driven
         return Named("driver", tuple(driven), lambda name: DriverEffort(self, driven[name]))
+
+    @cached_property
+    def power(self) -> Powers:
+        """The power of all that acts, and the energies. Raises InvalidInput for a motion without velocities."""
+        return powers_of(self)
+
+    def check(self) -> Check:
+        """Return the findings of an independent verification, which is `verify(forces)`."""
+        from compoundkin.dynamics.force_check import check_of
+
+        return check_of(self)
 
     @cached_property
     def shaking(self) -> ShakingForce:

@@ -8,21 +8,22 @@ Source: the principle of virtual work, e.g. R. L. Norton, Design of Machinery, s
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.link_wrench import LinkWrench
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.unit_rates import moved_alone
 
 
-def virtual_efforts(motion: Motion, inertia: bool) -> dict[str, Number]:
+def virtual_efforts(motion: Motion, inertia: bool, more: Iterable[LinkWrench] = ()) -> dict[str, Number]:
     """Return the effort of every driver by virtual work, (designs, poses).
 
-    NaN where the motion at unit rate is not determined.
+    `more` acts on links too, such as friction. NaN where the motion at unit rate is not determined.
     """
     found = {name: np.zeros(motion.failed.shape) for name in motion.inputs.drives}
     alone = {name: moved_alone(motion, name) for name in motion.inputs.drives}
@@ -32,6 +33,8 @@ def virtual_efforts(motion: Motion, inertia: bool) -> dict[str, Number]:
             known = free_wrenches(at, inertia)
             for name, unit in zip(alone, units, strict=True):
                 found[name][at.designs, at.poses] = -work(known, unit)
+                for one in more:
+                    found[name][at.designs, at.poses] -= cut(one.whole, at).power(unit.pose(one.on))
     return found
 
 
@@ -44,10 +47,18 @@ def work(wrenches: Mapping[str, Wrench], moving: LoadedBlock) -> Number:
 
 
 def free_wrenches(at: LoadedBlock, inertia: bool) -> dict[str, Wrench]:
-    """Return what is known to act on every link. A link that may turn freely, such as a roller, is not turned."""
-    known = at.known(inertia)
-    for step in (step for body in at.motion.structure.bodies for step in body.driven if step.is_passive):
-        if step.link in known:
-            side = at.block.ends[step.pair.name][step.pair.members.index(step.link)]
-            known[step.link] = Wrench.at(at.pose(step.link).at(side.point).c[0], known[step.link].force)
-    return known
+    """Return what is known to act on every link."""
+    return {link: free_link(at, link, wrench) for link, wrench in at.known(inertia).items()}
+
+
+def free_link(at: LoadedBlock, link: str, wrench: Wrench) -> Wrench:
+    """Return a wrench on a link. What would turn a link that turns freely, such as a roller, is left aside."""
+    for spin in at.motion.structure.passive:
+        if spin.link == link:
+            return Wrench.at(at.place(link, spin.at).c[0], wrench.force)
+    return wrench
+
+
+def cut(wrench: Wrench, at: LoadedBlock) -> Wrench:
+    """Return what of a wrench over the whole motion belongs to a block."""
+    return Wrench(wrench.force[at.designs, at.poses], wrench.moment[at.designs, at.poses])

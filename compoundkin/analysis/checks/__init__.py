@@ -7,7 +7,7 @@ import numpy as np
 from compoundkin.analysis.checks.choice_check import choice_findings
 from compoundkin.analysis.checks.continuation_check import continuation_findings
 from compoundkin.analysis.checks.difference_check import difference_findings
-from compoundkin.analysis.checks.finding import Check, Finding
+from compoundkin.analysis.checks.finding import Check, Checkable, Finding
 from compoundkin.analysis.checks.residuals import centre_findings, residuals
 from compoundkin.base.arguments import checked
 from compoundkin.kinematics import Motion
@@ -16,8 +16,8 @@ __all__ = ["Check", "Finding", "verify"]
 
 
 @checked
-def verify(motion: Motion) -> Check:
-    """Check a motion in ways that do not use the formulas that solved it.
+def verify(motion: Motion | Checkable) -> Check:
+    """Check a motion or its forces, without the formulas that found them.
 
     Closure, velocities, accelerations and jerks in the pairs' own equations; velocities from centres, and the
     collinearity of every three; derivatives against differences of positions; each pose as the continuation of the one
@@ -26,6 +26,9 @@ def verify(motion: Motion) -> Check:
     next to limit positions, `Motion.error` tells how many are held to. At limit positions themselves, which have no
     rates, only the position is checked.
 
+    Of forces: the balance of every link by Newton and Euler, of every pin and of the frame; what each kind of pair can
+    carry; the efforts of drivers by virtual work; the balance of power.
+
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, link
     >>> from compoundkin.kinematics import solve
@@ -33,6 +36,8 @@ def verify(motion: Motion) -> Check:
     >>> verify(solve(crank)).passed
     True
     """
+    if not isinstance(motion, Motion):
+        return motion.check()
     closed = int(np.count_nonzero(motion.failed == 0))
     if not closed:
         return Check((), 0, 0)

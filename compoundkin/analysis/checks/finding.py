@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -65,6 +66,13 @@ class Check(Shows):
     def __repr__(self) -> str:
         outcome = "passed" if self.passed else f"failed: {', '.join(self.failed) or 'nothing to check'}"
         return f"Check({len(self.findings)} findings at {self.poses} poses, {outcome})"
+
+
+class Checkable(Protocol):
+    """What has findings of its own, such as the forces of a motion."""
+
+    def check(self) -> Check:
+        """Return its findings."""
 
 
 def rounded_by(

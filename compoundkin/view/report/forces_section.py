@@ -13,10 +13,12 @@ from compoundkin.kinematics import Motion
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.view.report.force_tables import (
     drives_blocks,
+    loads_table,
+    masses_table,
     reactions_blocks,
     shaking_blocks,
+    units_of,
 )
-from compoundkin.view.report.load_tables import loads_table, masses_table
 from compoundkin.view.report.report_data import Block, Outcome, Paragraph, Section
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
@@ -67,7 +69,7 @@ def _blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
 
 def assumptions(sample: Sample, forces: Forces) -> Iterator[str]:
     """Yield what the numbers stand on, one clause each."""
-    units, mechanism = forces.units, forces.motion.mechanism
+    units, mechanism = units_of(forces), forces.motion.mechanism
     yield f"lengths in {units.length}, masses in {units.mass}, forces in {units.force}, moments in {units.moment}"
     free_fall = complex(first_entry(mechanism.gravity)) if np.ndim(mechanism.gravity) else complex(mechanism.gravity)
     told = f"({number(free_fall.real)}, {number(free_fall.imag)}) m/s^2"

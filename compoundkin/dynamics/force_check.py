@@ -1,0 +1,107 @@
+"""The independent verification of forces: one table of findings that do not use the equations that gave them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from compoundkin.analysis.checks.finding import Check, Finding, worst
+from compoundkin.base.arrays import Number
+from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.driver_efforts import DriverEffort
+from compoundkin.dynamics.found_forces import FoundForces
+from compoundkin.dynamics.newton_euler import (
+    applied_wrenches,
+    frame_balance,
+    link_balances,
+    of_frame,
+    pin_balances,
+    resistance,
+)
+from compoundkin.dynamics.pair_check import strays
+from compoundkin.dynamics.power import powers_of
+from compoundkin.dynamics.virtual_work import virtual_efforts
+from compoundkin.kinematics.motion import Motion
+
+# What is left of forces is relative to the greatest one at the same pose, moments to it times the mechanism's size.
+# Rounding (1e-16) grows over the groups in both directions.
+TOLERANCE = 1e-9
+# Poses at which the greatest force is less than so much of that of the whole motion are held against this.
+LEAST = 1e-6
+
+
+def check_of(forces: FoundForces) -> Check:
+    """Check forces in ways that do not use the equations that gave them.
+
+    The balance of every link by Newton and Euler, of every pin, of the frame; the efforts of drivers by virtual work;
+    the balance of power; what each kind of pair can carry.
+    """
+    motion = forces.motion
+    regular = motion.regular if motion.order else motion.failed == 0
+    closed = int(np.count_nonzero(motion.failed == 0))
+    if not closed:
+        return Check((), 0, 0)
+    with np.errstate(all="ignore"):
+        found = tuple(_findings(forces, regular))
+    return Check(found, closed, closed - int(np.count_nonzero(regular)))
+
+
+def _findings(forces: FoundForces, regular: Number) -> Iterator[Finding]:
+    motion = forces.motion
+    greatest = _greatest(forces, regular)
+    for name, balances in (("links", link_balances(forces)), ("pins", pin_balances(forces))):
+        yield _finding(motion, f"balance of {name}", _of(motion, balances), greatest, regular)
+    sums = ("frame", frame_balance(forces)), ("what is told of it", forces.on_frame - of_frame(forces))
+    yield _finding(motion, "balance of the frame", _of(motion, sums), greatest, regular)
+    yield _finding(motion, "what pairs can carry", dict(strays(forces)), greatest, regular)
+    if motion.structure.driven and motion.order:
+        yield _finding(motion, "efforts by virtual work", _by_work(forces), greatest, regular)
+        power = powers_of(forces)
+        parts = (*power.drives.values(), *power.loads.values(), power.gravity, power.friction, power.kinetic_rate)
+        most = _held_up([np.reshape(part, motion.failed.shape) for part in parts], regular)
+        yield _finding(motion, "balance of power", {"": np.reshape(power.sum, motion.failed.shape)}, most, regular)
+
+
+def _finding(motion: Motion, name: str, parts: Mapping[str, Number], scale: Number, regular: Number) -> Finding:
+    relative = {label: np.abs(part) / scale for label, part in parts.items()}
+    return worst(motion, name, TOLERANCE, relative, regular)
+
+
+def _of(motion: Motion, balances: Iterable[tuple[str, Wrench]]) -> dict[str, Number]:
+    """Return forces, and moments as forces at the mechanism's size."""
+    parts: dict[str, Number] = {}
+    for name, left in balances:
+        parts.update({name: left.force, f"moment on {name}": left.moment / motion.size})
+    return parts
+
+
+def _by_work(forces: FoundForces) -> dict[str, Number]:
+    """Return how far efforts are from those by virtual work. Torques are as forces at the mechanism's size."""
+    motion, found = forces.motion, {}
+    for name, effort in virtual_efforts(motion, forces.inertia, forces.more).items():
+        drive = DriverEffort(forces, motion.structure.driven[name])
+        gap = np.reshape(drive.effort, motion.failed.shape) - effort
+        found[name] = gap / (motion.size if drive.is_angle else 1.0)
+    return found
+
+
+def _greatest(forces: FoundForces, regular: Number) -> Number:
+    """Return the greatest force at each pose. Moments count as forces at the mechanism's size."""
+    motion, parts = forces.motion, list[Number]()
+    for name, wrench in forces.wrenches.items():
+        middle = motion.poses[motion.solving_order.pairs[name].members[1]].z.c[0]
+        parts += [wrench.force, wrench.about(middle) / motion.size]
+    for link, wrench in applied_wrenches(forces).items():
+        parts += [wrench.force, wrench.about(motion.poses[link].z.c[0]) / motion.size]
+    parts += [resistance(forces, mass).force for mass in motion.mechanism.masses.values()]
+    return _held_up(parts, regular)
+
+
+def _held_up(parts: Sequence[Number], regular: Number) -> Number:
+    """Return the greatest of some values at each pose, at least a small part of the greatest of all poses; or 1."""
+    largest: Number = np.zeros(regular.shape)
+    for part in parts:
+        largest = np.maximum(largest, np.abs(part))
+    most = float(np.max(largest, where=regular & np.isfinite(largest), initial=0.0))
+    return np.maximum(largest, LEAST * most) if most > 0.0 else np.ones(regular.shape)
