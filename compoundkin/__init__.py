@@ -13,6 +13,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+import compoundkin.dynamics
 import compoundkin.view  # noqa: F401  (says how objects show themselves)
 from compoundkin.base.version import VERSION
 from compoundkin.model.elements import drawn, drive, expect, link, mode

@@ -63,9 +63,14 @@ ALLOWED_KINDS = {("structure/composites.py", "Revolute"), ("structure/__init__.p
 OF_KINDS = ("model/pairs/", "kinematics/groups/")
 # Words of attributes that are keys of files, words of drives, façades or single letters as well.
 COMMON = {"advantage", "angle", "displacement", "x", "y", "speed", "rate", "value", "second", "acceleration", "jerk"}
+COMMON |= {"force", "moment", "effort", "power"}
 # Problems name places in files and calls, and remedies parts, that are called like attributes.
 KEYS_OF_PROBLEMS = {
     "analysis/mechanical_advantage.py: .angle",
+    "dynamics/driver_course.py: .effort",
+    "dynamics/driver_course.py: .power",
+    "dynamics/power.py: .power",
+    "model/loads/force.py: .force",
     "model/pairs/cylinder.py: .stroke",
     "model/validation.py: .value",
     "view/plot/curve_plots.py: .x",
