@@ -53,7 +53,7 @@ class LoadedBlock:
         return as_series(self.block.world[link].at(self.fitted(own)))
 
     def coordinate(self, name: str) -> Series:
-        """Return the free coordinate of a pair or a driver, angles counted along the motion."""
+        """Return the free coordinate of a pair or a driver. Angles are counted along the motion."""
         pair, sign = self._meant(name)
         found = pair.coordinate(self._ends(pair), self._poses(pair))
         is_known = pair.name in self.motion.solving_order.pairs
@@ -61,7 +61,7 @@ class LoadedBlock:
         return Series((value * sign, *(one * sign for one in found.c[1:])))
 
     def unit_effort(self, name: str) -> Iterator[tuple[str, Wrench]]:
-        """Yield the two links of a pair or a driver, each with the wrench of a unit effort along the coordinate."""
+        """Yield the links of a pair with the wrenches of a unit effort."""
         pair, sign = self._meant(name)
         unit = pair.wrenches(self._ends(pair), self._poses(pair))[-1].times(float(sign))
         yield pair.members[1], unit
@@ -83,7 +83,7 @@ class LoadedBlock:
         return tuple(self.block.world[name] for name in pair.members)
 
     def fitted(self, value: Any, where: str = "load") -> Number:
-        """Return what of a number or an array belongs to these poses; `where` names it in errors."""
+        """Return what of a value belongs to these poses. `where` names it in errors."""
         return self._cut(given_over(self.motion, value, where))
 
     def _cut(self, value: Number) -> Number:

@@ -92,7 +92,7 @@ def point_key(link: str, doc: str) -> dict[str, Any]:
 
 
 def spot_key(link: str, doc: str) -> dict[str, Any]:
-    """Return the metadata of a field that is a point of a link, or a place in its frame."""
+    """Return the metadata of a field for a point or place."""
     return {"kind": "spot", "doc": doc, "link": link}
 
 

@@ -35,7 +35,7 @@ class Pins:
         return Revolute(f"{letter}({first}{self._separators[letter]}{second})", letter, first, second)
 
     def named(self, name: str) -> Revolute | None:
-        """Return the pin of a letter between its two links, or of two links of a multiple one by its full name."""
+        """Return the pin between two links by its letter or its full name."""
         links = self.mechanism.pins.get(name, ())
         if len(links) == 2:
             return self.pair(name, *links)
@@ -54,6 +54,11 @@ class Pins:
             for letter, names in self.mechanism.pins.items()
             if len(names) > 2 or letter in self._written
         }
+
+
+def pin_at(letter: str) -> Pair:
+    """Return the revolute pair at a letter, its links not yet known."""
+    return Revolute(letter, letter, "", "")
 
 
 def driven_pair(pins: Pins, drive: Drive) -> Drivable:
@@ -92,7 +97,34 @@ def meant_pair(mechanism: Written, name: str) -> tuple[Pair, int] | None:
     return pair, pair.driven_by(drive.link)
 
 
-def pair_names(mechanism: Written) -> list[str]:
-    """Return the names by which pairs may be meant, without those of two links of a multiple pin."""
-    pins = [letter for letter, links in mechanism.pins.items() if len(links) == 2]
-    return [*pins, *(pair.name for pair in mechanism.written_pairs), *(drive.name for drive in mechanism.drives)]
+@dataclass(frozen=True)
+class NamesOfPairs:
+    """What a mechanism has of links, points and pairs, for loads that name them."""
+
+    mechanism: Written
+
+    @cached_property
+    def letters(self) -> dict[str, tuple[str, ...]]:
+        """The points of each link, without links that are only thought."""
+        thought = self.mechanism.led_links
+        return {name: item.letters for name, item in self.mechanism.links.items() if name not in thought}
+
+    @property
+    def carriers(self) -> dict[str, tuple[str, ...]]:
+        """The links that carry each letter."""
+        return self.mechanism.carriers
+
+    @property
+    def pairs(self) -> list[str]:
+        """The names by which pairs may be meant.
+
+        They are without those of two links of a multiple pin.
+        """
+        pins = [letter for letter, links in self.mechanism.real_pins.items() if len(links) == 2]
+        written = [pair.name for pair in self.mechanism.real_pairs]
+        return [*pins, *written, *(drive.name for drive in self.mechanism.drives)]
+
+    def pair(self, name: str) -> Pair | None:
+        """Return the pair that a name means, or None."""
+        found = meant_pair(self.mechanism, name)
+        return None if found is None else found[0]

@@ -6,8 +6,9 @@ from abc import abstractmethod
 from functools import cached_property
 
 from compoundkin.base.series import Number
-from compoundkin.model.elements import Friction, Gravity, Item, Link, Load, Mass, Pretension
+from compoundkin.model.elements import Friction, Gravity, Item, Load, Mass, Pretension
 from compoundkin.model.geometry import Geometry
+from compoundkin.model.loads.contract import WrittenNames
 
 
 class WrittenLoads:
@@ -22,13 +23,8 @@ class WrittenLoads:
 
     @property
     @abstractmethod
-    def links(self) -> dict[str, Link]:
-        """The links by name."""
-
-    @property
-    @abstractmethod
-    def carriers(self) -> dict[str, tuple[str, ...]]:
-        """The links that carry each letter."""
+    def names(self) -> WrittenNames:
+        """The links, points and pairs that loads may name."""
 
     @cached_property
     def masses(self) -> dict[str, Mass]:
@@ -44,9 +40,8 @@ class WrittenLoads:
 
     @cached_property
     def loads(self) -> dict[str, Load]:
-        """The loads by name; those on pins are on a link of them."""
-        points = {name: item.letters for name, item in self.links.items()}
-        return {item.name: item.completed(self.carriers, points) for item in self.items if isinstance(item, Load)}
+        """The loads by name. Those on pins are on a link, those along pairs know their links."""
+        return {item.name: item.completed(self.names) for item in self.items if isinstance(item, Load)}
 
     @cached_property
     def frictions(self) -> dict[str, Friction]:

@@ -8,18 +8,12 @@ from dataclasses import dataclass
 
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import Pair, Revolute
 from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.model.pin_pairs import Pins, driven_pair
 from compoundkin.structure.cycles import find
 from compoundkin.structure.parts import Body, DrivenPair, Passive
 
 GROUND = -1
-
-
-def pin_at(letter: str) -> Pair:
-    """Return the revolute pair at a letter, its links not yet known."""
-    return Revolute(letter, letter, "", "")
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -29,14 +29,28 @@ def rate_of(series: Series) -> Number:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AlongPair(Load):
-    """A load along the free coordinate of a pair: on its second link, the opposite on its first."""
+    """A load along the free coordinate of a pair.
+
+    It acts on the pair's second link, its opposite on the first.
+    """
 
     pair: str = field(metadata=value_key("name", "The pair, by its name, a pin's letter or a driver of it."))
+    members: tuple[str, ...] = field(default=(), kw_only=True)
 
     @property
     def called(self) -> str:
         """Its name where none is given."""
         return f"{self.title} along {self.pair}"
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The two links of its pair, which the mechanism tells it."""
+        return self.members
+
+    def completed(self, written: WrittenNames) -> Load:
+        """Return the load with the links of its pair."""
+        pair = written.pair(self.pair)
+        return self if pair is None else replace(self, members=pair.members[:2])
 
     @abstractmethod
     def effort(self, at: LoadedPoses) -> Number:
@@ -48,7 +62,7 @@ class AlongPair(Load):
         if pair is None:
             what = f"there is no pair, pin or driver {self.pair!r}"
             yield Problem(f"{where}.pair", what, nearest(self.pair, written.pairs))
-        elif not pair.takes_effort:
+        elif Effort.title not in pair.takes:
             what = f"{self.pair!r} is a {pair.title}: nothing acts along its coordinate"
             yield Problem(f"{where}.pair", what, "name a pin, a slide or a slot")
 
@@ -61,10 +75,10 @@ class AlongPair(Load):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Effort(AlongPair):
-    """An effort along the free coordinate of a pair: a thrust on a slide or along a slot, a torque at a pin.
+    """An effort along the free coordinate of a pair.
 
-    It acts on the pair's second link, the opposite on the first; ``"forward"`` and ``"back"`` are while the
-    coordinate grows and while it shrinks.
+    It is a thrust on a slide or along a slot, a torque at a pin. It acts on the pair's second link, the opposite on the
+    first; ``"forward"`` and ``"back"`` are while the coordinate grows and while it shrinks.
     """
 
     amount: Amount = field(
@@ -102,7 +116,9 @@ class Effort(AlongPair):
 
 @checked
 def effort(pair: str, amount: Any, *, only: str | None = None, name: str = "") -> Effort:
-    """Return an effort along the free coordinate of a pair: the thrust of gas on a slide, the torque at a pin.
+    """Return an effort along the free coordinate of a pair.
+
+    It is a thrust on a slide or along a slot, such as that of gas, or a torque at a pin.
 
     The pair is meant by its name, by a pin's letter (``J(crank-rod)`` for two links of a multiple pin), or by a driver.
     It acts on the pair's second link, its opposite on the first, and is positive where it drives the coordinate up:

@@ -25,7 +25,9 @@ Variables: TypeAlias = Mapping[str, Callable[[], Number]]
 
 @dataclass(frozen=True, eq=False)
 class LoadFunction(HoldsFunction):
-    """A Python function of so many arrays, such as the coordinate, its rate, the time. It returns the amounts.
+    """A Python function that returns amounts.
+
+    It takes so many arrays, such as the coordinate, its rate, the time.
 
     >>> LoadFunction(lambda t: 2.0 * t, 1).value("forces.press", (np.array([[0.0, 3.0]]),)).tolist()
     [[0.0, 6.0]]
@@ -43,7 +45,7 @@ class LoadFunction(HoldsFunction):
         return hash(self.f)
 
     def value(self, where: str, arguments: tuple[Number, ...]) -> Number:
-        """Return what it returns for arrays that broadcast; it is called with lists of finite numbers alone."""
+        """Return its amounts for arrays that broadcast. It is called with finite numbers alone."""
         given = np.broadcast_arrays(*(np.asarray(one, dtype=float) for one in arguments))
         known = np.logical_and.reduce([np.isfinite(one) for one in given])
         places = [one[known] for one in given]
@@ -89,14 +91,15 @@ def as_amount(where: str, given: Any, *variables: str) -> Amount:
 
 
 def as_planar_amount(where: str, given: Any) -> Amount | tuple[Amount, Amount]:
-    """Return a vector as it is held: complex, a function that returns such, or two amounts, x and y.
+    """Return a vector as it is held.
+
+    It is complex, a function that returns such, or two amounts, x and y.
 
     >>> as_planar_amount("forces.press", (0, lambda t: -5 * t))[0]
     0.0
     """
     if isinstance(given, Mapping):
-        x, y = LoadTable.parts(where, given)
-        return x, y
+        return LoadTable.parts(where, given)
     if callable(given):
         return as_amount(where, given, TIME)
     if isinstance(given, tuple | list) and len(given) == 2 and any(_moves(one) for one in given):
@@ -149,8 +152,8 @@ def value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables =
     if isinstance(amount, LoadTable):
         if amount.over == TIME:
             return amount.value(where, time_of(where, at))
-        own = next(iter(variables.values()), None)
-        return amount.value(where, at.coordinate(amount.over).c[0] if amount.over or own is None else own())
+        own: Callable[[], Number] = next(iter(variables.values()))
+        return amount.value(where, at.coordinate(amount.over).c[0] if amount.over else own())
     return at.fitted(amount, where)
 
 

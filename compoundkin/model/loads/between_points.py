@@ -18,8 +18,11 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.contract import Load, LoadedPoses
 
 
-class Gap(NamedTuple):
-    """The way from the point of the first link to that of the second, its length, and the rate of that."""
+class EndGap(NamedTuple):
+    """The way from the first end to the second.
+
+    It has its length, and the velocity of the second end relative to the first.
+    """
 
     vector: Number
     length: Number
@@ -27,7 +30,7 @@ class Gap(NamedTuple):
 
     @property
     def rate(self) -> Number:
-        """How fast it grows; ends that meet move apart or toward each other with their whole speed."""
+        """How fast it grows. Ends that meet move apart with their whole speed."""
         with np.errstate(all="ignore"):
             along = dot(self.vector, self.velocity) / self.length
         return np.where(np.asarray(self.length) == 0.0, np.abs(self.velocity), along)
@@ -44,7 +47,10 @@ class Gap(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BetweenPoints(Load):
-    """A load between the point `point` of `link` and the point `at` of the link `to`, along the line between them."""
+    """A load along the line between points of two links.
+
+    Its ends are the point `point` of `link` and the point `at` of the link `to`.
+    """
 
     link: str = field(metadata=link_key("The link that one end is fixed to."))
     point: Any = field(metadata=spot_key("link", "Its end there: a point, or a place in the link's frame."))
@@ -56,20 +62,19 @@ class BetweenPoints(Load):
     @property
     def called(self) -> str:
         """Its name where none is given."""
-        at = f" at {self.point}" if isinstance(self.point, str) and self.point else ""
-        return f"{self.title} on {self.link}{at}"
+        return f"{self.title} on {self.link}"
 
-    def gap(self, at: LoadedPoses) -> Gap:
+    def gap(self, at: LoadedPoses) -> EndGap:
         """Return the line between its ends."""
         between = at.place(self.to, self.at) - at.place(self.link, self.point)
-        return Gap(between.c[0], abs(between.c[0]), velocity_of(between))
+        return EndGap(between.c[0], abs(between.c[0]), velocity_of(between))
 
     def attack(self, link: str) -> str | Number:
         """Return its end on a link."""
         return self.point if link == self.link else self.at
 
     @abstractmethod
-    def pull(self, gap: Gap, at: LoadedPoses) -> Number:
+    def pull(self, gap: EndGap, at: LoadedPoses) -> Number:
         """Return the force on its first end, a vector."""
 
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:

@@ -35,13 +35,16 @@ class LoadedPoses(Protocol):
         """Return where a point of a link is. By its letter or its place in the link."""
 
     def coordinate(self, name: str) -> Series:
-        """Return the free coordinate of a pair or a driver, angles counted along the motion."""
+        """Return the free coordinate of a pair or a driver. Angles are counted along the motion."""
 
     def unit_effort(self, name: str) -> Iterator[tuple[str, Wrench]]:
-        """Yield the two links of a pair or a driver, each with the wrench of a unit effort along the coordinate."""
+        """Yield the links of a pair with the wrenches of a unit effort.
+
+        It is along the coordinate, on the second link; its opposite is on the first.
+        """
 
     def fitted(self, value: Any, where: str = ...) -> Number:
-        """Return what of a number or an array belongs to these poses; `where` names it in errors."""
+        """Return what of a value belongs to these poses. `where` names it in errors."""
 
 
 class WrittenNames(Protocol):
@@ -50,6 +53,10 @@ class WrittenNames(Protocol):
     @property
     def letters(self) -> Mapping[str, tuple[str, ...]]:
         """The points of each link."""
+
+    @property
+    def carriers(self) -> Mapping[str, tuple[str, ...]]:
+        """The links that carry each point."""
 
     @property
     def pairs(self) -> list[str]:
@@ -96,6 +103,11 @@ class Load(PrintsShort, ABC):
         return link_fields(type(self))
 
     @property
+    def links(self) -> tuple[str, ...]:
+        """The links it acts on."""
+        return tuple(getattr(self, key) for key in self.link_keys)
+
+    @property
     def needs_rates(self) -> bool:
         """Whether it asks for velocities."""
         return False
@@ -104,12 +116,9 @@ class Load(PrintsShort, ABC):
         """Return the point of a link at which it acts. It is a letter or a place in the link, None for a couple."""
         return None
 
-    def completed(self, carriers: Mapping[str, tuple[str, ...]], links: Mapping[str, tuple[str, ...]]) -> Load:
-        """Return the load with what its words leave open. `carriers` has the links of each point, `links` the points.
-
-        It is itself without any.
-        """
-        found = only_points(self, links)
+    def completed(self, written: WrittenNames) -> Load:
+        """Return the load with what its words leave open; itself without any."""
+        found = only_points(self, written.letters)
         return replace(self, **found) if found else self
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:

@@ -15,7 +15,7 @@ from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.along_pair import AlongPair, rate_of
 from compoundkin.model.loads.amounts import Amount, as_amount, value_of
-from compoundkin.model.loads.between_points import BetweenPoints, Gap
+from compoundkin.model.loads.between_points import BetweenPoints, EndGap
 from compoundkin.model.loads.contract import LoadedPoses, WrittenNames
 from compoundkin.model.loads.load_ends import as_spot, hold_ends
 from compoundkin.model.loads.spring import is_law
@@ -25,10 +25,12 @@ _RATE = "Force or torque for a unit of speed, or the force itself as a table ove
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Damper(BetweenPoints):
-    """A damper between points of two links: it pulls with its rate times the speed at which it is drawn.
+    """A damper between points of two links.
+
+    It pulls with its rate times the speed at which it is drawn.
 
     >>> damper("arm", "A", at="S", rate=40).name
-    'damper on arm at A'
+    'damper on arm'
     """
 
     rate: Amount = field(kw_only=True, metadata=value_key("amount", _RATE))
@@ -48,14 +50,14 @@ class Damper(BetweenPoints):
         yield from super().problems(written, where)
         yield from rate_problems(self.rate, where)
 
-    def pull(self, gap: Gap, at: LoadedPoses) -> Number:
+    def pull(self, gap: EndGap, at: LoadedPoses) -> Number:
         """Return its force; where its ends meet, along their relative velocity."""
         own = {"rate": lambda: gap.rate, "length": lambda: gap.length}
         amount = value_of(self.where, self.rate, at, own)
         # ends that meet move along the line they are on before and after
         line = np.where(np.asarray(gap.length) == 0.0, gap.velocity, gap.vector)
         pull = amount if is_law(self.rate) else amount * gap.rate
-        return Gap(line, np.abs(line), gap.velocity).along(pull, self.where)
+        return EndGap(line, np.abs(line), gap.velocity).along(pull, self.where)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,14 +91,14 @@ class PairDamper(AlongPair):
 def rate_problems(rate: Amount, where: str) -> Iterator[Problem]:
     """Find a damper that drives."""
     if not is_law(rate) and np.any(np.asarray(rate) < 0.0):
-        yield Problem(f"{where}.rate", "a damper of negative rate drives", "give a rate above zero")
+        yield Problem(f"{where}.{Damper.amounts[0]}", "a damper of negative rate drives", "give a rate above zero")
 
 
 @checked
 def damper(
     link: str = "", point: Any = "", *, to: str = FRAME, at: Any = "", pair: str = "", rate: Any, name: str = ""
 ) -> Damper | PairDamper:
-    """Return a damper between points of two links, or along the free coordinate of a pair.
+    """Return a damper between points of two links, or along a pair.
 
     It is written as a `spring`, and pulls with `rate` times the speed at which it is drawn. Of a `rate` that is a
     function of as many of (speed, length or coordinate, time) as it takes, or a table over the speed, it is the force
@@ -108,7 +110,7 @@ def damper(
     'damper along C'
     """
     where = f"dampers.{name or pair or link}"
-    amount = as_amount(f"{where}.rate", rate, "rate", "length" if link else "coordinate", "time")
+    amount = as_amount(f"{where}.{Damper.amounts[0]}", rate, "rate", "length" if link else "coordinate", "time")
     hold_ends(where, pair, link, {"link": link, "point": point, "at": at} if pair else {})
     if pair:
         return PairDamper(pair, rate=amount, name=name)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -22,10 +22,11 @@ from compoundkin.model.loads.contract import Load, LoadedPoses, WrittenNames
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Force(Load):
-    """A force on a link at a point, its direction fixed in the frame or in a link; or on a pin itself.
+    """A force on a link at a point, or on a pin itself.
 
-    A load on a pin is carried by the first of its links, and `on_pin` is its letter. With `while_moving` it acts only
-    while its point moves in that direction, which is told in the same axes as the force.
+    Its direction is fixed in the frame or in a link. A load on a pin is carried by the first of its links, and `on_pin`
+    is its letter. With `while_moving` it acts only while its point moves in that direction, which is told in the same
+    axes as the force.
     """
 
     link: str = field(metadata=link_key("The link it acts on, or the letter of a point that carries it."))
@@ -47,18 +48,18 @@ class Force(Load):
     @property
     def called(self) -> str:
         """Its name where none is given."""
-        return f"force on {self.link}" + (f" at {self.at}" if isinstance(self.at, str) and self.at else "")
+        return f"force on {self.link}"
 
     @property
     def needs_rates(self) -> bool:
         """Whether it acts only while its point moves one way."""
         return self.while_moving is not None
 
-    def completed(self, carriers: Mapping[str, tuple[str, ...]], links: Mapping[str, tuple[str, ...]]) -> Load:
+    def completed(self, written: WrittenNames) -> Load:
         """Return the force on a link, where a point is named."""
-        own = carriers.get(self.link, ())
-        if self.link in links or not own or not isinstance(self.at, str) or self.at:
-            return super().completed(carriers, links)
+        own = written.carriers.get(self.link, ())
+        if self.link in written.letters or not own or not isinstance(self.at, str) or self.at:
+            return super().completed(written)
         return replace(self, link=own[0], at=self.link, on_pin=self.link if len(own) > 1 else "")
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
@@ -109,7 +110,9 @@ class Torque(Load):
 def force(
     link: str, force: Any, *, at: Any = "", fixed_in: str = FRAME, while_moving: Any = None, name: str = ""
 ) -> Force:
-    """Return a force on a link at a point, or on a pin itself by its letter alone.
+    """Return a force on a link at a point, or on a pin itself.
+
+    A pin is named by its letter, in place of the link.
 
     `force` is ``(fx, fy)`` or complex: numbers, or arrays whose last axis is the motion; a function of time (an array
     of times) that returns such; or two amounts, each a number, an array, a function of time or a table ``{"over":

@@ -19,7 +19,7 @@ from compoundkin.model.loads.contract import WrittenNames
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Friction(PrintsShort):
-    """Coulomb friction in a pair, or in every pair of a multiple pin that is meant by its letter."""
+    """Coulomb friction in a pair, or in all pairs of a multiple pin."""
 
     pair: str = field(metadata=value_key("name", "The pair by its name, or the letter of a pin."))
     coefficient: Number = field(metadata=value_key("length", "The coefficient of friction."))
@@ -39,11 +39,11 @@ class Friction(PrintsShort):
         return self.pair
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
-        """Find an unknown pair, one that does not rub so, a pin without a radius, and what is negative."""
+        """Find an unknown pair, a pin without a radius, and what is negative."""
         pair = written.pair(self.pair)
         if pair is None:
             yield Problem(f"{where}.pair", f"there is no pair {self.pair!r}", nearest(self.pair, written.pairs))
-        elif not pair.rubs:
+        elif self.title not in pair.takes:
             what = f"{self.pair!r} is a {pair.title}, whose friction is not known here"
             yield Problem(f"{where}.pair", what, "name a pin, a slide, a slot or a cam")
         elif pair.is_simple and pair.free_is_angle:

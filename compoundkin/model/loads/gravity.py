@@ -31,9 +31,10 @@ class Gravity(PrintsShort):
 
 @checked
 def gravity(x: Any, y: Any, *, unit: str = "") -> Gravity:
-    """Return gravity as a vector, m/s^2 whatever the unit of length; another `unit` such as "in/s^2" may be said.
+    """Return gravity as a vector, m/s^2 whatever the unit of length.
 
-    Warns of a size that hardly can be meant in m/s^2 where no unit is said. Raises InvalidMechanism for an unknown one.
+    Another `unit` such as "in/s^2" may be said. Warns of a size that hardly can be meant in m/s^2 where no unit is
+    said. Raises InvalidMechanism for an unknown one.
 
     >>> gravity(0, -9.81).vector
     -9.81j

@@ -20,7 +20,9 @@ def as_spot(where: str, given: Any) -> Number | str:
 
 
 def hold_ends(where: str, pair: str, link: str, beside: Mapping[str, Any]) -> None:
-    """Raise InvalidMechanism for ends that are none, or are those of a pair and of points. `beside` has what is said.
+    """Raise InvalidMechanism for ends that are none, or of both sorts.
+
+    `beside` has what is said and should not be.
 
     >>> hold_ends("springs.arm", "C", "", {"point": "A"})
     Traceback (most recent call last):

@@ -19,10 +19,10 @@ from compoundkin.model.loads.uniform_bodies import UniformBody, uniform_body
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Mass(PrintsShort):
-    """The mass of a link, its mass centre `at` (a letter, or a place in the link's frame), its inertia about that.
+    """The mass of a link, its mass centre `at`, its inertia about that.
 
-    What is left out is that of a uniform bar or plate through the link's points, and `assumed` says so; the masses of
-    a mechanism hold them all.
+    The mass centre is a letter, or a place in the link's frame. What is left out is that of a uniform bar or plate
+    through the link's points, and `assumed` says so; the masses of a mechanism hold them all.
     """
 
     link: str = field(metadata=link_key("The link whose mass it is."))
@@ -61,7 +61,7 @@ class Mass(PrintsShort):
         return self.mass is not None and self.at is not None and self.inertia is not None
 
     def completed(self, points: Mapping[str, Number]) -> Mass:
-        """Return it with what is left out, as of a uniform body through the link's points."""
+        """Return it with what is left out, as of a uniform body."""
         if self.is_complete:
             return self
         body = uniform_body(list(points.values()))
@@ -82,7 +82,7 @@ class Mass(PrintsShort):
         return uniform_body(list(points.values()))
 
     def problems(self, letters: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
-        """Find unknown links and points, a mass on the frame, and numbers that no mass has."""
+        """Find unknown links and points, and numbers that no mass has."""
         if self.link == FRAME:
             yield Problem(f"{where}.link", "the frame does not move: its mass does nothing", "name a link that moves")
             return
@@ -105,13 +105,13 @@ def _least(value: Number) -> float:
 
 @checked
 def mass(link: str, mass: Any = None, *, at: Any = None, inertia: Any = None, density: Any = None) -> Mass:
-    """Return the mass of a link in the mechanism's unit of mass, with its mass centre and its inertia about that.
+    """Return the mass of a link with its mass centre and inertia.
 
-    `at` is a letter of the link, or a place in its frame; the inertia is in units of mass times length squared. Left
-    out, they are those of a uniform bar through the link's points, if these are in line, else of the uniform plate in
-    their convex hull; a link of one point is a point mass. ``density=`` in place of a mass is for each unit of length
-    of the bar, or of area of the plate. Numbers, or arrays for designs, (designs, 1). What was assumed is told by
-    `assumed` of ``mechanism.masses[link]``.
+    The mass is in the mechanism's unit. `at` is a letter of the link, or a place in its frame; the inertia is in
+    units of mass times length squared. Left out, they are those of a uniform bar through the link's points, if these
+    are in line, else of the uniform plate in their convex hull; a link of one point is a point mass. ``density=`` in
+    place of a mass is for each unit of length of the bar, or of area of the plate. Numbers, or arrays for designs,
+    (designs, 1). What was assumed is told by `assumed` of ``mechanism.masses[link]``.
 
     Raises InvalidMechanism for what is no number.
 

@@ -19,7 +19,7 @@ from compoundkin.model.loads.contract import WrittenNames
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Pretension(PrintsShort):
-    """The pretension of a belt: half the sum of the forces in its two strands."""
+    """The pretension of a belt. It is half the sum of the forces in its strands."""
 
     pair: str = field(metadata=value_key("name", "The belt, by the name of its pair."))
     force: Number = field(metadata=value_key("length", "Half the sum of the forces in its two strands."))
@@ -38,7 +38,7 @@ class Pretension(PrintsShort):
         pair = written.pair(self.pair)
         if pair is None:
             yield Problem(f"{where}.pair", f"there is no pair {self.pair!r}", nearest(self.pair, written.pairs))
-        elif not pair.has_strands:
+        elif self.title not in pair.takes:
             yield Problem(f"{where}.pair", f"{self.pair!r} is a {pair.title}, which has no strands", "name a belt")
         if np.any(np.asarray(self.force) < 0.0):
             yield Problem(f"{where}.force", "a belt does not push", "give a force above zero")
@@ -46,7 +46,7 @@ class Pretension(PrintsShort):
 
 @checked
 def pretension(pair: str, force: Any) -> Pretension:
-    """Return the pretension of a belt: half the sum of the forces in its two strands.
+    """Return the pretension of a belt. It is half the sum of the forces in its strands.
 
     >>> pretension("belt", 150).force
     150.0

@@ -15,7 +15,7 @@ from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME, real
 from compoundkin.model.loads.along_pair import VARIABLES, AlongPair, rate_of
 from compoundkin.model.loads.amounts import Amount, LoadFunction, as_amount, needs_rates, value_of
-from compoundkin.model.loads.between_points import BetweenPoints, Gap
+from compoundkin.model.loads.between_points import BetweenPoints, EndGap
 from compoundkin.model.loads.contract import LoadedPoses, WrittenNames
 from compoundkin.model.loads.load_ends import as_spot, hold_ends
 from compoundkin.model.loads.load_table import LoadTable
@@ -28,10 +28,12 @@ _ONLY = 'Whether it acts in "tension" or in "compression" only.'
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Spring(BetweenPoints):
-    """A spring between points of two links: it pulls with stiffness times extension, plus a preload.
+    """A spring between points of two links.
+
+    It pulls with stiffness times extension, plus a preload.
 
     >>> spring("arm", "A", at="S", stiffness=900, free_length=0.2).name
-    'spring on arm at A'
+    'spring on arm'
     """
 
     stiffness: Amount = field(kw_only=True, metadata=value_key("amount", _STIFFNESS))
@@ -56,7 +58,7 @@ class Spring(BetweenPoints):
         if np.any(np.asarray(self.free_length) < 0.0):
             yield Problem(f"{where}.free_length", "a length is not negative", "give a preload instead")
 
-    def pull(self, gap: Gap, at: LoadedPoses) -> Number:
+    def pull(self, gap: EndGap, at: LoadedPoses) -> Number:
         """Return its force. Without a free length it is exact where its ends meet."""
         preload, free = (at.fitted(value, self.where) for value in (self.preload, self.free_length))
         extension = gap.length - free
@@ -70,7 +72,10 @@ class Spring(BetweenPoints):
         return force if self.only is None else np.where(acts(stiffness * extension + preload, self.only), force, 0.0)
 
     def energy(self, at: LoadedPoses) -> Number | None:
-        """Return its energy, zero at its free length; None where its force is a function or a table."""
+        """Return its energy, zero at its free length.
+
+        None where its force is a function or a table.
+        """
         if is_law(self.stiffness):
             return None
         extension = self.gap(at).length - at.fitted(self.free_length)
@@ -79,9 +84,10 @@ class Spring(BetweenPoints):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PairSpring(AlongPair):
-    """A spring along the free coordinate of a pair: a torsion spring at a pin, a spring along a slide.
+    """A spring along the free coordinate of a pair.
 
-    It drives the coordinate down with stiffness times what it is beyond `free`, plus a preload.
+    It is a torsion spring at a pin, or a spring along a slide. It drives the coordinate down with stiffness times what
+    it is beyond `free`, plus a preload.
     """
 
     stiffness: Amount = field(kw_only=True, metadata=value_key("amount", _STIFFNESS))
@@ -101,7 +107,7 @@ class PairSpring(AlongPair):
         return needs_rates(self.stiffness)
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
-        """Find an unknown pair, or one without a coordinate that a spring could act along."""
+        """Find an unknown pair, or one that no spring could act along."""
         yield from super().problems(written, where)
         yield from side_problems(self.only, where)
 
@@ -115,7 +121,10 @@ class PairSpring(AlongPair):
         return 0.0 - sided(at.fitted(self.stiffness, self.where) * extension + preload, self.only)
 
     def energy(self, at: LoadedPoses) -> Number | None:
-        """Return its energy, zero at its free coordinate; None where its effort is a function or a table."""
+        """Return its energy, zero at its free coordinate.
+
+        None where its effort is a function or a table.
+        """
         if is_law(self.stiffness):
             return None
         extension = at.coordinate(self.pair).c[0] - at.fitted(self.free)
@@ -128,7 +137,7 @@ def is_law(stiffness: Amount) -> bool:
 
 
 def acts(pull: Number, only: str | None) -> Number:
-    """Tell where a spring that acts one way only does act; true where its pull is not a number."""
+    """Tell where a one-sided spring acts. That is true where its pull is not a number."""
     return ~(np.asarray(pull) <= 0.0) if only == TENSION else ~(np.asarray(pull) >= 0.0)
 
 
@@ -138,7 +147,10 @@ def sided(pull: Number, only: str | None) -> Number:
 
 
 def stored(stiffness: Number, preload: Number, extension: Number, only: str | None) -> Number:
-    """Return the energy that a spring holds beyond its free length; one that acts one way only, while it acts."""
+    """Return the energy that a spring holds beyond its free length.
+
+    That of a one-sided spring stays where it acts no more.
+    """
     whole = (stiffness * extension / 2.0 + preload) * extension
     if only is None:
         return whole
@@ -159,7 +171,7 @@ def spring(
     stiffness: Any, free_length: Any = 0.0, free: Any = 0.0, preload: Any = 0.0, only: str | None = None,
     name: str = "",
 ) -> Spring | PairSpring:  # fmt: skip
-    """Return a spring between points of two links, or along the free coordinate of a pair.
+    """Return a spring between points of two links, or along a pair.
 
     ``spring("arm", "A", to="frame", at="S", stiffness=900, free_length=0.2)`` pulls the point A of the arm and the
     point S of the frame together with stiffness times extension plus `preload`; points are letters, or places in their

@@ -14,7 +14,10 @@ IN_LINE = 1e-9
 
 
 class UniformBody(NamedTuple):
-    """A uniform body: its length or area, its mass centre, and its inertia about that for a unit of mass."""
+    """A uniform body.
+
+    It has its length or area, its mass centre, and its inertia about that for a unit of mass.
+    """
 
     kind: str  # "point mass", "uniform bar", "uniform plate"
     extent: Number
@@ -23,9 +26,10 @@ class UniformBody(NamedTuple):
 
 
 def uniform_body(points: list[Number]) -> UniformBody:
-    """Return the uniform body through points of a link: a bar through two or more in line, else a plate.
+    """Return the uniform body through points of a link.
 
-    The plate is the convex hull of its points, in whichever order they are written.
+    It is a bar through two points or more in line, else a plate. The plate is the convex hull of its points, in
+    whichever order they are written.
 
     >>> uniform_body([0j, 3 + 0j])
     UniformBody(kind='uniform bar', extent=3.0, centre=(1.5+0j), inertia=0.75)

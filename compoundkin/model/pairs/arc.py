@@ -49,8 +49,7 @@ class ArcSlot(Contact, Guided, EndedArc):
     free: ClassVar[tuple[str, ...]] = ("direction", "angle")
     free_is_angle: ClassVar[bool] = True
     table: ClassVar[str] = "arcs"
-    takes_effort: ClassVar[bool] = True
-    rubs: ClassVar[bool] = True
+    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
 
     @property
     def letters(self) -> tuple[str, ...]:

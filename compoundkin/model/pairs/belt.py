@@ -36,7 +36,7 @@ class Belt(Geared):
     code: ClassVar[str] = "B"
     title: ClassVar[str] = "belt pair"
     table: ClassVar[str] = "belts"
-    has_strands: ClassVar[bool] = True
+    takes: ClassVar[tuple[str, ...]] = ("pretension",)
 
     @property
     def turns_alike(self) -> bool:

@@ -100,7 +100,6 @@ class Profiled(Contact):
     """A contact with a profile of the link `on`, leading a member along it."""
 
     is_flat: ClassVar[bool]  # whether a flat face touches, which has no pitch curve
-    rubs: ClassVar[bool] = True
 
     at: str
     profile: Profile
