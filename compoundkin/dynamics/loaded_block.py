@@ -52,6 +52,10 @@ class LoadedBlock:
         own = self.motion.mechanism.geometry.points[link][point] if isinstance(point, str) else point
         return as_series(self.block.world[link].at(self.fitted(own)))
 
+    def pair(self, name: str) -> tuple[Pair, Ends]:
+        """Return a pair by its name, and its sides on its links."""
+        return self.motion.solving_order.pairs[name], self.block.ends[name]
+
     def coordinate(self, name: str) -> Series:
         """Return the free coordinate of a pair or a driver. Angles are counted along the motion."""
         pair, sign = self._meant(name)

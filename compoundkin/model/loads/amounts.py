@@ -152,8 +152,10 @@ def value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables =
     if isinstance(amount, LoadTable):
         if amount.over == TIME:
             return amount.value(where, time_of(where, at))
+        if amount.over:
+            return amount.value(where, at.coordinate(amount.over).c[0])
         own: Callable[[], Number] = next(iter(variables.values()))
-        return amount.value(where, at.coordinate(amount.over).c[0] if amount.over else own())
+        return amount.value(where, own())
     return at.fitted(amount, where)
 
 
