@@ -15,7 +15,7 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.cam_follower import direction_of, pressure_angle, velocity_at
-from compoundkin.model.pairs.contact import Profiled, as_profiled
+from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
 from compoundkin.model.profiles import Synthesised
 
 # Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and

@@ -95,12 +95,8 @@ def _key(key: Key) -> dict[str, Any]:
     out = {**FRAGMENTS[key.kind], "description": key.doc}
     if key.default in (None, "", ()):
         return out
-    if key.kind in ("turn", "place"):
-        return {
-            **out,
-            "default": exact_numbers.degrees(key.default) if key.kind == "turn" else exact_numbers.point(key.default),
-        }
-    return {**out, "default": key.default}
+    made = {"turn": exact_numbers.degrees, "angle": exact_numbers.degrees, "place": exact_numbers.point}
+    return {**out, "default": made[key.kind](key.default) if key.kind in made else key.default}
 
 
 def _ref(name: str) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from compoundkin.kinematics.block import places
 from compoundkin.kinematics.double_roots import rates_at
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.model.attributes import OF_POINTS
-from compoundkin.model.pairs.contact import as_profiled
+from compoundkin.model.pairs.profile_contact import as_profiled
 
 # Central differences on eight neighbours: their error is of eighth, eighth and sixth order in the step.
 OFFSETS = np.arange(-4, 5)

@@ -8,7 +8,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, as_series
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contact import Profiled, as_profiled
+from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
 
 # Slower than this part of the fastest, a velocity has no direction but that of rounding.
 RESTS = 1e-9

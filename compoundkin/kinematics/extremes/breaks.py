@@ -13,7 +13,7 @@ from compoundkin.kinematics.extremes.inputs_between import times_of
 from compoundkin.kinematics.extremes.motion_between import between
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.laws.law_corners import corners
-from compoundkin.model.pairs.contact import Profiled, as_profiled
+from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
 
 # A contact is at a corner within this part of the way round its profile; found in so many trials at most.
 FLAT, TRIALS = 1e-13, 40

@@ -19,9 +19,9 @@ from compoundkin.kinematics.groups.contract import GroupSolver, MountedBody
 from compoundkin.kinematics.groups.general import GeneralSolver
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
 from compoundkin.kinematics.groups.transmission import contact_transmission
-from compoundkin.model.pairs.contact import Profiled, as_profiled
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, lower_equivalent
+from compoundkin.model.pairs.profile_contact import Profiled, as_profiled
 from compoundkin.structure.parts import Group
 
 # The members' poses where the body's coordinate is the one given.

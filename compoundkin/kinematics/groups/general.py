@@ -19,8 +19,8 @@ from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.groups.transmission import PassedForce, forces_of, worst_transmission
-from compoundkin.model.pairs.contact import as_profiled
 from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.profile_contact import as_profiled
 from compoundkin.structure.parts import Body, Group
 
 # Where no theory counts a group's configurations, Newton searches them from so many random states.

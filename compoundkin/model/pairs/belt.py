@@ -9,20 +9,27 @@ from typing import ClassVar
 import numpy as np
 
 from compoundkin.base.arrays import first_entry
-from compoundkin.base.errors import Problem
+from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.geared import Geared
+from compoundkin.model.pairs.optional_answers import Accompanied
 from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, strap_line
+from compoundkin.model.pairs.wheel_lines import axes_of, line_of_action
 
 
 @dataclass(frozen=True, eq=False)
-class Belt(Geared):
+class Belt(Geared, Accompanied):
     """Two pulleys or sprockets with a belt, chain or cable that does not slip.
 
     An open belt turns them alike, a `crossed` one does not. See `Geared` for the rest.
+
+    Its first strand is the one to the left of the way from the first axis to the second, at the first pulley. What it
+    transmits is the first strand's pull less the second's. Without pretension the slack strand pulls nothing, as that
+    of a chain; with it both strands pull as much at rest, and their sum stays.
 
     >>> belt("motor", "drum", radii=(30, 90)).turns_alike
     True
@@ -36,7 +43,6 @@ class Belt(Geared):
     code: ClassVar[str] = "B"
     title: ClassVar[str] = "belt pair"
     table: ClassVar[str] = "belts"
-    takes: ClassVar[tuple[str, ...]] = ("pretension",)
 
     @property
     def turns_alike(self) -> bool:
@@ -45,7 +51,49 @@ class Belt(Geared):
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:
         """Return the radii as they are; by teeth alone, some that fit."""
-        return 1.0 if self.teeth is None else super().reach(one, two, distance)
+        if self.teeth is None or self.radii is None:
+            return 1.0 if self.teeth is None else super().reach(one, two, distance)
+        return self.radii[0] / self.teeth[0]
+
+    def strands(self, ends: Ends, poses: Poses) -> tuple[Wrench, Wrench]:
+        """Return what a unit pull in each strand does to the second pulley."""
+        axes, radii = axes_of(ends, poses), self.circles(ends, poses)
+        lines = (line_of_action(axes, radii, side) for side in (1.0, -1.0))
+        one, two = (Wrench.at(there, (here - there) / np.abs(here - there)) for here, there, _ in lines)
+        return one, two
+
+    def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
+        """Return a unit difference of the strands' pulls, half of it in each.
+
+        No effort is along the coordinate: it is not that of these two links. Raises InvalidMechanism where only teeth
+        are given, which do not tell the radii.
+        """
+        if self.radii is None and self.teeth is not None:
+            what = "the pull of its strands depends on the radii, which teeth alone do not tell"
+            raise InvalidMechanism(Problem(f"{self.table}.{self.name}.radii", what, "give radii = (..., ...) as well"))
+        one, two = self.strands(ends, poses)
+        return (one - two).times(0.5), Wrench()
+
+    def transmitted(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
+        """Return the first strand's pull less the second's. The moment about the second axis tells it."""
+        axis = axes_of(ends, poses)[1]
+        return wrench.about(axis) / self.wrenches(ends, poses)[0].about(axis)
+
+    def accompanying(self, ends: Ends, poses: Poses, transmitted: Number, pretension: Number | None = None) -> Wrench:
+        """Return half the sum of both pulls in each strand, on the second pulley."""
+        one, two = self.strands(ends, poses)
+        pulls = self.pulls(transmitted, pretension)
+        return (one + two).times((pulls[0] + pulls[1]) * 0.5)
+
+    def pulls(self, transmitted: Number, pretension: Number | None = None) -> tuple[Number, Number]:
+        """Return the pulls of both strands. A negative one says that the belt is slack.
+
+        >>> belt("motor", "drum", radii=(30, 90)).pulls(-10.0)
+        (0.0, 10.0)
+        """
+        if pretension is None:
+            return np.maximum(transmitted, 0.0)[()], np.maximum(0.0 - transmitted, 0.0)[()]
+        return pretension + transmitted * 0.5, pretension - transmitted * 0.5
 
     def misfits(self, geometry: Geometry, where: str) -> Iterator[Problem]:
         """Find axes that coincide, and pulleys that overlap."""

@@ -16,12 +16,13 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.arc import ArcSlot
-from compoundkin.model.pairs.contact import THINNED, Profiled, Touch, centre_of_curvature, row
+from compoundkin.model.pairs.contact import Touch, centre_of_curvature, row
 from compoundkin.model.pairs.contact_search import Freedom, crossings_on_way, path_of
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.loop_vectors import Curved, Sum, Unknown, angle_of
 from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
+from compoundkin.model.pairs.profile_contact import THINNED, Profiled
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
 
@@ -63,7 +64,6 @@ class Cam(Profiled, Guided):
     free: ClassVar[tuple[str, ...]] = ("parameter", "angle")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "cams"
-    takes: ClassVar[tuple[str, ...]] = ("friction",)
     is_flat: ClassVar[bool] = False
 
     @property

@@ -15,7 +15,7 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import THINNED, Profiled, Touch, centre_of_curvature, row
+from compoundkin.model.pairs.contact import Touch, centre_of_curvature, row
 from compoundkin.model.pairs.contact_search import Freedom, path_of, tangents_on_way
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.loop_terms import LoopTerms
@@ -31,6 +31,7 @@ from compoundkin.model.pairs.loop_vectors import (
 )
 from compoundkin.model.pairs.optional_answers import Equivalent, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
+from compoundkin.model.pairs.profile_contact import THINNED, Profiled
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Mark, Outline, Track, reach
 from compoundkin.model.profiles import Profile, side_of
@@ -77,7 +78,6 @@ class Face(Profiled):
     free: ClassVar[tuple[str, ...]] = ("displacement", "angle")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "faces"
-    takes: ClassVar[tuple[str, ...]] = ("friction",)
     is_flat: ClassVar[bool] = True
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:

@@ -8,28 +8,37 @@ from typing import ClassVar
 
 import numpy as np
 
+from compoundkin.base.arrays import dot
 from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.geared import Geared
+from compoundkin.model.pairs.optional_answers import Accompanied
 from compoundkin.model.pairs.symbols import Mark, Wheel
-from compoundkin.model.pairs.wheel_sizes import distance_problems
+from compoundkin.model.pairs.wheel_lines import axes_of
+from compoundkin.model.pairs.wheel_sizes import distance_problems, pressure_problems
 
-# The pressure angle of standard involute teeth; it shows in the equivalent linkage only, not in any motion.
-PRESSURE_ANGLE = np.deg2rad(20.0)
+# The pressure angle of standard involute teeth.
+STANDARD = float(np.deg2rad(20.0))
 
 # How many teeth the smaller gear shows where only radii are known.
 UNCOUNTED = 18
 
 
 @dataclass(frozen=True, eq=False)
-class Gear(Geared):
+class Gear(Geared, Accompanied):
     """Two gears in mesh. `internal` where the second is an internal gear (a ring) around the first.
 
     With a `module`, or with radii, the pitch circles must fit the distance of the axes; by teeth alone they take it.
-    See `Geared` for the rest.
+    The `pressure_angle` (radians) shows in forces and in the equivalent linkage, not in any motion. See `Geared` for
+    the rest.
+
+    The teeth press on each other at the pitch point, along the pressure line of the flank that the load asks for: a
+    tangential force, and one that parts the wheels. Where a train has several planets, these are forces of all of them
+    together: one planet of n carries the n-th part if all share alike, and the bearings of the sun carry nothing.
 
     >>> gear("sun", "planet", carrier="arm", teeth=(20, 40)).name
     'sun/planet'
@@ -41,6 +50,10 @@ class Gear(Geared):
     )
     module: Number | None = field(
         default=None, metadata=value_key("length", "Pitch diameter by number of teeth; checked against the axes.")
+    )
+
+    pressure_angle: Number = field(
+        default=STANDARD, metadata=value_key("angle", "Angle between the teeth's force and the common tangent.")
     )
 
     code: ClassVar[str] = "G"
@@ -55,6 +68,7 @@ class Gear(Geared):
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Find also a ring that is not larger than the gear in it. A module without teeth is one more problem."""
         yield from super().problems(links, where)
+        yield from pressure_problems(self.pressure_angle, where)
         for key, sizes in (("teeth", self.teeth), ("radii", self.radii)):
             if self.internal and sizes is not None and not np.all(np.asarray(sizes[1]) > np.asarray(sizes[0])):
                 what = "an internal gear is not larger than the pinion in it"
@@ -85,7 +99,31 @@ class Gear(Geared):
 
     def reach(self, one: Number, two: Number, distance: Number) -> Number:
         """Return the factors from teeth or radii to base circles."""
-        return distance / (one + two) * np.cos(PRESSURE_ANGLE)
+        return distance / (one + two) * np.cos(self.pressure_angle)
+
+    def mesh(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
+        """Return the pitch point, and the direction from the first axis to the second."""
+        (first, second), (one, two) = axes_of(ends, poses), (end.measure for end in ends[:2])
+        return (first * two + second * one) / (one + two), (second - first) / np.abs(second - first)
+
+    def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
+        """Return the tangential force at the pitch point.
+
+        It is to the left of the way from the first axis to the second. Nothing acts on the carrier, and no effort is
+        along the coordinate: it is not that of these two links.
+        """
+        place, across = self.mesh(ends, poses)
+        return Wrench.at(place, 1j * across), Wrench()
+
+    def transmitted(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
+        """Return the tangential force on the second wheel."""
+        return dot(1j * self.mesh(ends, poses)[1], wrench.force)
+
+    def accompanying(self, ends: Ends, poses: Poses, transmitted: Number, pretension: Number | None = None) -> Wrench:
+        """Return the separating force on the second wheel. It parts the axes, or brings them together inside a ring."""
+        place, across = self.mesh(ends, poses)
+        apart = -1.0 if self.internal else 1.0
+        return Wrench.at(place, across * (np.abs(transmitted) * (apart * np.tan(self.pressure_angle))))
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return the pitch circles."""

@@ -18,6 +18,7 @@ from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
 from compoundkin.model.pairs.loop_vectors import angle_of, difference
 from compoundkin.model.pairs.optional_answers import DrawnPair, Osculation, Replaceable, TurnCounting, as_drivable
+from compoundkin.model.pairs.wheel_lines import axes_of, line_of_action, ratio
 from compoundkin.model.pairs.wheel_sizes import Sizes, Two, size_problems, two_of, wheel_problems
 
 
@@ -158,7 +159,7 @@ class Geared(TurnCounting, Replaceable):
     def centre(self, ends: Ends, poses: Poses) -> Point:
         """Return the pitch point, which divides the line of axes. Equal wheels that turn alike have it at infinity."""
         one, two = ends[0].measure, ends[1].measure
-        first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
+        first, second = axes_of(ends, poses)
         place = first * two + second * one
         return Point(-place.real / two, -place.imag / two, -(one + two) / two)
 
@@ -176,16 +177,20 @@ class Geared(TurnCounting, Replaceable):
         """Return the factors from the sizes to radii of circles. The line of action touches these circles."""
         return distance / (2.0 * (np.abs(one) + np.abs(two)))
 
+    def circles(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
+        """Return the radii of the circles that a line of action touches.
+
+        The second is negative for outer tangents.
+        """
+        first, second = axes_of(ends, poses)
+        one, two = (end.measure for end in ends[:2])
+        reach = self.reach(one, two, np.abs(second - first))
+        return one * reach, two * reach
+
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
         """Return where the line of action touches the circles about the axes. It is of involutes or of a belt."""
-        first, second = (pose.at(end.point).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True))
-        distance = np.abs(second - first)
-        one, two = ends[0].measure, ends[1].measure
-        reach = self.reach(one, two, distance)
-        one, two = one * reach, two * reach
-        cosine = (one + two) / distance
-        across = (second - first) / distance * (cosine + 1j * np.sqrt(1.0 - cosine**2))
-        return Osculation(first + one * across, second - two * across, across * 1j)
+        line = line_of_action(axes_of(ends, poses), self.circles(ends, poses))
+        return Osculation(line.first, line.second, line.across * 1j)
 
     def is_affine(self, lower: Pair, own: int) -> bool:
         """Tell whether a pair is a pin: there any member turns in proportion."""
@@ -205,13 +210,8 @@ class Geared(TurnCounting, Replaceable):
 
     def apart(self, ends: Ends, poses: Poses) -> float:
         """Return the distance of the axes at the first pose."""
-        first, second = (first_entry(pose.at(end.point).c[0]) for pose, end in zip(poses[:2], ends[:2], strict=True))
-        return float(abs(second - first))
-
-
-def ratio(ends: Ends) -> Number:
-    """Return how far the second wheel turns back for one of the first. Both are seen from the carrier."""
-    return ends[0].measure / ends[1].measure
+        first, second = axes_of(ends, poses)
+        return float(abs(first_entry(second) - first_entry(first)))
 
 
 def as_geared(pair: Pair) -> Geared | None:

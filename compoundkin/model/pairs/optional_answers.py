@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
@@ -18,8 +18,6 @@ from compoundkin.model.pairs.contract import Ends, Pair, Poses
 
 class Drivable(Pair):
     """A pair that a driver may prescribe: nothing but its coordinate is free."""
-
-    takes: ClassVar[tuple[str, ...]] = ("effort",)
 
     @abstractmethod
     def placed(self, ends: Ends, free: Series) -> Pose:
@@ -174,6 +172,26 @@ def lower_equivalent(pair: Pair, ends: Ends) -> Equivalent | None:
 def osculation(pair: Pair, ends: Ends, poses: Poses) -> Osculation | None:
     """Return the centres of curvature of a higher pair, where they are known."""
     return pair.osculation(ends, poses) if isinstance(pair, Replaceable) else None
+
+
+class Accompanied(Pair):
+    """A pair whose force comes with others that do no work. Teeth part the wheels, strands pull pulleys together."""
+
+    @abstractmethod
+    def transmitted(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
+        """Return how much of its unit wrench a wrench on the second member has."""
+
+    @abstractmethod
+    def accompanying(self, ends: Ends, poses: Poses, transmitted: Number, pretension: Number | None = None) -> Wrench:
+        """Return what comes with a transmitted force, on the second member. The opposite is on the first.
+
+        `pretension` is the pull in each strand at rest, None for a chain that hangs loose.
+        """
+
+
+def as_accompanied(pair: Pair) -> Accompanied | None:
+    """Return a pair as one whose force comes with others, or None."""
+    return pair if isinstance(pair, Accompanied) else None
 
 
 def held_scales(pair: Pair, size: float) -> tuple[float, ...]:

@@ -165,10 +165,14 @@ class OnLine(TurnCounting):
         m = ends[1].measure
         return across, (*along[:2], along[2] - m, *along[3:5], along[5] + m), along
 
+    def pitch_point(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
+        """Return where the wheel touches the line, and the line's direction."""
+        e = poses[0].carry(ends[0]).along.c[0]
+        return poses[1].at(ends[1].point).c[0] - 1j * e * ends[1].measure, e
+
     def centre(self, ends: Ends, poses: Poses) -> Point:
         """Return the pitch point, where the wheel touches the line."""
-        m = ends[1].measure
-        place = poses[1].at(ends[1].point).c[0] - 1j * poses[0].carry(ends[0]).along.c[0] * m
+        m, (place, _) = ends[1].measure, self.pitch_point(ends, poses)
         return Point(-place.real / m, -place.imag / m, -1.0 / m)
 
     def generic(self, rng: np.random.Generator) -> Ends:

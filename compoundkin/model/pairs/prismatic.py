@@ -12,6 +12,7 @@ from compoundkin.base.arrays import TURN, cross, dot
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import NameWording, link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
@@ -70,7 +71,6 @@ class Prismatic(Drivable, Orienting, Guided, Ended):
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
     is_simple: ClassVar[bool] = True
-    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
     table: ClassVar[str] = "slides"
     wording: ClassVar[NameWording] = NameWording("slide", "name the link that carries the guide", "the one that slides")
 
@@ -161,6 +161,14 @@ class Prismatic(Drivable, Orienting, Guided, Ended):
             (0.0, 0.0, -aligned, 0.0, 0.0, aligned),
             (-e.real, -e.imag, along, e.real, e.imag, dot(e, 1j * arm1)),
         )
+
+    def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
+        """Return a force across the guide, a couple, and a force along it.
+
+        Forces are at the block's point, the first to the left of the guide.
+        """
+        place, e = poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0]
+        return Wrench.at(place, 1j * e), Wrench(0j, 1.0), Wrench.at(place, e)
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
         """Return the point at infinity, at right angles to the guide."""

@@ -8,21 +8,23 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
+from compoundkin.base.arrays import dot, first_entry
 from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number, Series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Pair, Poses, table
-from compoundkin.model.pairs.gear import UNCOUNTED
+from compoundkin.model.pairs.gear import STANDARD, UNCOUNTED
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
 from compoundkin.model.pairs.loop_vectors import angle_of, difference, direction
+from compoundkin.model.pairs.optional_answers import Accompanied
 from compoundkin.model.pairs.pitch_line import OnLine
 from compoundkin.model.pairs.revolute import Revolute
-from compoundkin.model.pairs.wheel_sizes import FITS, radius_problems
+from compoundkin.model.pairs.wheel_sizes import FITS, pressure_problems, radius_problems
 
 
 @dataclass(frozen=True, eq=False)
-class Rack(OnLine):
+class Rack(OnLine, Accompanied):
     """The link `pinion` rolls without slip along the pitch line of the link `rack`.
 
     The pitch line runs through the point `through` of the rack, in the direction `angle` (radians, from the rack's x
@@ -32,9 +34,11 @@ class Rack(OnLine):
     drawing that shows both, or zero.
 
     Held: ``displacement + side * radius * (pinion - rack) - phase``. Free: the displacement. Nothing holds the axis at
-    its distance but other pairs: a pin and a slide on the frame, a carrier, a yoke; `verify` tells where it is not. A
-    cable that a drum winds up and that pulls a block is the same pair. Source: e.g. J. J. Uicker, G. R. Pennock and
-    J. E. Shigley, Theory of Machines and Mechanisms, chapter 7 (a rack is a gear of infinite radius).
+    its distance but other pairs: a pin and a slide on the frame, a carrier, a yoke; `verify` tells where it is not. The
+    teeth press on each other at the pitch point, along the line, and apart by the tangent of the `pressure_angle`
+    (radians). A cable that a drum winds up and that pulls a block is the same pair, of pressure angle 0. Source: e.g.
+    J. J. Uicker, G. R. Pennock and J. E. Shigley, Theory of Machines and Mechanisms, chapter 7 (a rack is a gear of
+    infinite radius).
 
     >>> rack("bar", "wheel", through="Q", at="C", radius=12).size
     12
@@ -61,6 +65,9 @@ class Rack(OnLine):
     side: int = field(
         default=1, metadata=value_key("sign", "1 where the pinion is to the left of the pitch line, -1 to the right.")
     )
+    pressure_angle: Number = field(
+        default=STANDARD, metadata=value_key("angle", "Angle between the teeth's force and the pitch line.")
+    )
     phase: Number | None = field(
         default=None, metadata=value_key("length", "Displacement of the axis where the pinion's angle is zero.")
     )
@@ -85,6 +92,7 @@ class Rack(OnLine):
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Find unknown links and points, a pinion without a size or with two."""
         yield from super().problems(links, where)
+        yield from pressure_problems(self.pressure_angle, where)
         for key in ("radius", "teeth", "module"):
             yield from radius_problems(where, key, getattr(self, key))
         if self.teeth is not None and not np.all(np.asarray(self.teeth) == np.round(self.teeth)):
@@ -105,6 +113,21 @@ class Rack(OnLine):
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Return the rows of slip and displacement."""
         return table(*self.rows(ends, poses)[1:])
+
+    def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
+        """Return forces along the pitch line. At the pitch point, and at the axis."""
+        place, e = self.pitch_point(ends, poses)
+        return Wrench.at(place, e), Wrench.at(poses[1].at(ends[1].point).c[0], e)
+
+    def transmitted(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
+        """Return the force along the pitch line on the pinion."""
+        return dot(self.pitch_point(ends, poses)[1], wrench.force)
+
+    def accompanying(self, ends: Ends, poses: Poses, transmitted: Number, pretension: Number | None = None) -> Wrench:
+        """Return the separating force on the pinion, away from the pitch line."""
+        place, e = self.pitch_point(ends, poses)
+        apart = np.sign(ends[1].measure) * np.tan(self.pressure_angle)
+        return Wrench.at(place, 1j * e * (np.abs(transmitted) * apart))
 
     def distance_error(self, ends: Ends, poses: Poses) -> Series:
         """Return the distance of the axis from the pitch line less the radius."""

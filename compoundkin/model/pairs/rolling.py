@@ -12,6 +12,7 @@ from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Poses, table
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
@@ -88,6 +89,15 @@ class Rolling(OnLine, Drivable):
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Return the rows of distance, slip and displacement."""
         return table(*self.rows(ends, poses))
+
+    def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
+        """Return a force that presses at the contact, and two along the line.
+
+        One of these is at the contact, that of an effort at the axis.
+        """
+        place, e = self.pitch_point(ends, poses)
+        axis = poses[1].at(ends[1].point).c[0]
+        return Wrench.at(place, 1j * e * np.sign(ends[1].measure)), Wrench.at(place, e), Wrench.at(axis, e)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
         """Return the way along the line and out to the wheel's middle."""

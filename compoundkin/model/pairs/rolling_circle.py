@@ -12,6 +12,7 @@ from compoundkin.base.arrays import TURN, whole_turns
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
+from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
@@ -104,8 +105,7 @@ class RollingOnCircle(TurnCounting, Drivable):
             return 0.0 if self.phase is None else self.phase
         on, wheel = (geometry.drawn[name] for name in self.members)
         line = wheel.at(geometry.points[self.link][self.at]) - on.at(geometry.points[self.on][self.centre_at])
-        turned = (wheel.angle - on.angle).c[0]
-        drawn = turned - self._turns * np.angle((line * on.u.conj()).c[0])
+        drawn = (wheel.angle - on.angle).c[0] - self._turns * np.angle((line * on.u.conj()).c[0])
         return drawn if self.phase is None else self.phase + whole_turns(drawn - self.phase)
 
     def shown_coordinate(self, ends: Ends, poses: Poses) -> Number:
@@ -167,11 +167,20 @@ class RollingOnCircle(TurnCounting, Drivable):
 
     def centre(self, ends: Ends, poses: Poses) -> Point:
         """Return the point where the wheel touches the circle."""
-        k = ends[1].measure
+        k, (place, _) = ends[1].measure, self.contact(ends, poses)
+        return Point(place.real * k, place.imag * k, k)
+
+    def contact(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
+        """Return where the wheel touches the circle, and the normal there. It is a unit vector into the wheel."""
         # between the middles where they are, so that it does not take turns counted
         middle, axis = (pose.at(end.point).c[0] for pose, end in zip(poses, ends, strict=True))
-        place = middle / k + axis * (1.0 - 1.0 / k)
-        return Point(place.real * k, place.imag * k, k)
+        slow = 1.0 / ends[1].measure
+        return axis + (middle - axis) * slow, (axis - middle) / np.abs(axis - middle) * np.sign(slow)
+
+    def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
+        """Return a force that presses at the contact, one along it, and a couple."""
+        place, normal = self.contact(ends, poses)
+        return Wrench.at(place, normal), Wrench.at(place, 1j * normal), Wrench(0j, 1.0 / ends[1].measure)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
         """Return the way from the circle's middle to the wheel's."""
@@ -205,8 +214,7 @@ class RollingOnCircle(TurnCounting, Drivable):
         distance, turns = float(abs(ends[0].along.c[0])), float(ends[1].measure)
         # turns = 1 + circle / radius, negative radius inside; the distance is their sum
         radius = distance / turns
-        circle = Wheel(0, ends[0].point, distance - radius, 0, self.inside)
-        return circle, Wheel(1, ends[1].point, abs(radius))
+        return Wheel(0, ends[0].point, distance - radius, 0, self.inside), Wheel(1, ends[1].point, abs(radius))
 
 
 roll_around = word("roll_around", RollingOnCircle)

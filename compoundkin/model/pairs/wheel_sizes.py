@@ -99,6 +99,14 @@ def _shown(sizes: Sequence[Number]) -> str:
     return " and ".join(f"{size:g}" if np.ndim(size) == 0 else str(np.asarray(size).tolist()) for size in sizes)
 
 
+def pressure_problems(angle: Number, where: str) -> Iterator[Problem]:
+    """Find a pressure angle that is none."""
+    if np.ndim(angle) or not 0.0 <= angle < np.pi / 2.0:
+        shown = f"{np.rad2deg(angle):g} degrees" if np.ndim(angle) == 0 else "an array"
+        remedy = "give one angle from 0 up to 90 degrees, such as pressure_angle=ck.deg(20)"
+        yield Problem(f"{where}.pressure_angle", f"{shown} is no pressure angle", remedy)
+
+
 def radius_problems(where: str, key: str, radius: Number | None) -> Iterator[Problem]:
     """Find a radius, or another length or number, that is not positive."""
     if radius is not None and not np.all(np.asarray(radius) > 0):

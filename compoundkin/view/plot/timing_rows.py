@@ -20,7 +20,7 @@ from compoundkin.model.laws.law_corners import corners
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.laws.program_segments import turn_problems
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs.contact import as_profiled
+from compoundkin.model.pairs.profile_contact import as_profiled
 from compoundkin.model.profiles import Synthesised
 from compoundkin.view.plot.marked_places import CONSTANT
 
