@@ -13,11 +13,12 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+import compoundkin.dynamics
 import compoundkin.view  # noqa: F401  (says how objects show themselves)
 from compoundkin.base.version import VERSION
 from compoundkin.model.elements import drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
-from compoundkin.model.loads import force, gravity, mass, torque
+from compoundkin.model.loads import damper, effort, force, friction, gravity, mass, pretension, spring, torque
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
 from compoundkin.model.pairs.cylinder import cylinder
@@ -72,15 +73,18 @@ __all__ = [
     "circuits",
     "configurations",
     "cylinder",
+    "damper",
     "decompose",
     "deg",
     "draw",
     "drawn",
     "drive",
+    "effort",
     "expect",
     "face",
     "force",
     "force_analysis",
+    "friction",
     "gaps",
     "gear",
     "gravity",
@@ -94,6 +98,7 @@ __all__ = [
     "page",
     "plot",
     "polar",
+    "pretension",
     "quantity",
     "rack",
     "report",
@@ -103,6 +108,7 @@ __all__ = [
     "slide",
     "slot",
     "solve",
+    "spring",
     "torque",
     "verify",
     "with_driver",

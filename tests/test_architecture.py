@@ -58,14 +58,19 @@ ALLOWED_BETWEEN_SISTERS: set[tuple[str, str]] = {
 FACE = sorted(path for path in FILES if path.parent == PACKAGE)
 # Files that play the same part in sister folders.
 SAME_PART = {"__init__.py", "contract.py"}
-# Pins follow from shared letters, so the structure makes revolute pairs itself; __init__ gives users the words.
-ALLOWED_KINDS = {("structure/composites.py", "Revolute"), ("structure/__init__.py", "Revolute")}
+# Pins follow from shared letters, so revolute pairs are made of them; __init__ gives users the words.
+ALLOWED_KINDS = {("model/pin_pairs.py", "Revolute"), ("structure/__init__.py", "Revolute")}
 OF_KINDS = ("model/pairs/", "kinematics/groups/")
 # Words of attributes that are keys of files, words of drives, façades or single letters as well.
 COMMON = {"advantage", "angle", "displacement", "x", "y", "speed", "rate", "value", "second", "acceleration", "jerk"}
+COMMON |= {"force", "moment", "effort", "power"}
 # Problems name places in files and calls, and remedies parts, that are called like attributes.
 KEYS_OF_PROBLEMS = {
     "analysis/mechanical_advantage.py: .angle",
+    "dynamics/driver_course.py: .effort",
+    "dynamics/driver_course.py: .power",
+    "dynamics/power.py: .power",
+    "model/loads/force.py: .force",
     "model/pairs/cylinder.py: .stroke",
     "model/pairs/wheel_sizes.py: .pressure_angle",
     "model/validation.py: .value",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from compoundkin.base.arguments import checked
@@ -32,7 +34,11 @@ def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
                 store.take(name, wrench, loaded.designs, loaded.poses)
     found = store.wrenches()
     wrenches = {name: found[name] for name in motion.solving_order.pairs if name in found}
-    return Forces(motion, inertia, wrenches, found[ON_FRAME])
+    told = replace(motion, loading={"inertia": inertia})
+    forces = Forces(told, inertia, wrenches, found[ON_FRAME])
+    # quantities of forces are read from their motion, which need not find them again
+    vars(told)["forces"] = forces
+    return forces
 
 
 def _hold(motion: Motion, inertia: bool) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.dynamics.driver_efforts import DriverEffort
@@ -15,7 +15,10 @@ from compoundkin.dynamics.link_forces import LinkForces, link_forces
 from compoundkin.dynamics.pair_forces import PairForce
 from compoundkin.dynamics.pin_forces import PinForces
 from compoundkin.dynamics.power import Powers, powers_of
+from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import Named
+from compoundkin.kinematics.table import Table, table_of
+from compoundkin.model.attributes import FORCE, FORCES, MOMENT
 
 if TYPE_CHECKING:
     from compoundkin.analysis.checks import Check
@@ -43,6 +46,24 @@ class Forces(FoundForces):
         """The effort of every driver by its name."""
         driven = self.motion.structure.driven
         return Named("driver", tuple(driven), lambda name: DriverEffort(self, driven[name]))
+
+    def table(self, *names: str) -> Table:
+        """Return quantities of forces and of their motion as columns.
+
+        Designs, time and drivers stand beside them. Without names those are the efforts and powers of drivers, the
+        forces and moments in pairs. Raises UnknownName.
+        """
+        return table_of(self.motion, *(names or self._names))
+
+    def to_pandas(self, *names: str) -> Any:
+        """Return the table of these quantities as a pandas DataFrame."""
+        return self.table(*names).to_pandas()
+
+    @property
+    def _names(self) -> list[str]:
+        """What a whole table has."""
+        words = dict.fromkeys(self.drives, FORCES["drives"]) | dict.fromkeys(self.pairs, (FORCE, MOMENT))
+        return [f"{name}.{word}" for name, own in words.items() for word in own]
 
     @cached_property
     def power(self) -> Powers:
@@ -90,3 +111,8 @@ class Forces(FoundForces):
         missing = f", {count} not assembled" if (count := int((self.motion.failed != 0).sum())) else ""
         told = f"{kind} inertia: {len(self.wrenches)} pairs at {self.shape} poses{missing}"
         return f"Forces({self.mechanism.title!r} {told})"
+
+
+def moved(what: Motion | Forces) -> Motion:
+    """Return the motion of forces, a motion itself. Both have quantities of forces by name."""
+    return what.motion if isinstance(what, Forces) else what

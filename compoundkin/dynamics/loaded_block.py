@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+from compoundkin.base.errors import Problem, UnknownName
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.base.wrenches import Wrench
@@ -17,6 +18,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import FRAME, Load, Mass
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pin_pairs import meant_pair
 from compoundkin.model.units import Units
 
 
@@ -54,16 +56,39 @@ class LoadedBlock:
         """Return a pair by its name, and its sides on its links."""
         return self.motion.solving_order.pairs[name], self.block.ends[name]
 
-    def coordinate(self, pair: str) -> Series:
-        """Return the free coordinate of a pair, angles counted along the motion."""
-        kind, ends = self.pair(pair)
-        found = kind.coordinate(ends, tuple(self.block.world[name] for name in kind.members))
-        value = fit(self.motion.shape)(self.motion.pairs[pair].value)
-        return Series((self._cut(value), *found.c[1:]))
+    def coordinate(self, name: str) -> Series:
+        """Return the free coordinate of a pair or a driver. Angles are counted along the motion."""
+        pair, sign = self._meant(name)
+        found = pair.coordinate(self._ends(pair), self._poses(pair))
+        is_known = pair.name in self.motion.solving_order.pairs
+        value = self._cut(fit(self.motion.shape)(self.motion.pairs[pair.name].value)) if is_known else found.c[0]
+        return Series((value * sign, *(one * sign for one in found.c[1:])))
 
-    def fitted(self, value: Any) -> Number:
-        """Return what of a number or an array belongs to these poses."""
-        return self._cut(given_over(self.motion, value))
+    def unit_effort(self, name: str) -> Iterator[tuple[str, Wrench]]:
+        """Yield the links of a pair with the wrenches of a unit effort."""
+        pair, sign = self._meant(name)
+        unit = pair.wrenches(self._ends(pair), self._poses(pair))[-1].times(float(sign))
+        yield pair.members[1], unit
+        yield pair.members[0], -unit
+
+    def _meant(self, name: str) -> tuple[Pair, int]:
+        """Return the pair of a name, as the motion has it where it does, and the sign of the coordinate."""
+        meant = meant_pair(self.motion.mechanism, name)
+        if meant is None:
+            raise UnknownName(Problem(name, "there is no such pair, pin or driver"))
+        return self.motion.solving_order.pairs.get(meant[0].name, meant[0]), meant[1]
+
+    def _ends(self, pair: Pair) -> Ends:
+        """Return the sides of a pair; two links of a multiple pin may have one that no group uses."""
+        known = self.block.ends.get(pair.name)
+        return pair.ends(self.motion.mechanism.geometry) if known is None else known
+
+    def _poses(self, pair: Pair) -> tuple[Pose, ...]:
+        return tuple(self.block.world[name] for name in pair.members)
+
+    def fitted(self, value: Any, where: str = "load") -> Number:
+        """Return what of a value belongs to these poses. `where` names it in errors."""
+        return self._cut(given_over(self.motion, value, where))
 
     def _cut(self, value: Number) -> Number:
         return rectangle(value, self.designs, self.poses)

@@ -12,7 +12,7 @@ import os
 from collections.abc import Callable, Mapping
 from math import isfinite
 from types import MappingProxyType
-from typing import Any, BinaryIO, ClassVar, TypeAlias
+from typing import Any, BinaryIO, ClassVar, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
@@ -21,7 +21,6 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import Kind, everything, form_of
 from compoundkin.files.atomic import write_atomically
 from compoundkin.files.mechanism_files import encoded
-from compoundkin.kinematics import Motion
 from compoundkin.kinematics.table import ANGLES, Table
 from compoundkin.model.mechanism import Mechanism
 
@@ -101,6 +100,14 @@ WRITERS: Mapping[str, Callable[[Table], Write]] = MappingProxyType(
 )
 
 
+@runtime_checkable
+class Tabulated(Protocol):
+    """What has a table of its quantities: a motion, its forces."""
+
+    def table(self, *names: str) -> Table:
+        """Return the quantities of these names; everything without names."""
+
+
 class Savable:
     """What saves itself in forms of its own: pictures, plots, animations, pages, reports."""
 
@@ -123,10 +130,10 @@ class Savable:
 def save(what: Any, path: str | os.PathLike[str]) -> None:
     """Save anything to a file in the form that its suffix tells.
 
-    A mechanism is a .toml or .json file; a motion or a table .csv or .json (angles in degrees), .npz or .parquet
-    (radians); a picture .svg, .png, .pdf; a plot the same; an animation .gif, .mp4, .svg; a page .html; a report .txt,
-    .md, .json, .html. Raises InvalidInput for another suffix, for what cannot be saved, where the file cannot be
-    written, or where a library is missing.
+    A mechanism is a .toml or .json file; a motion, its forces or a table .csv or .json (angles in degrees), .npz or
+    .parquet (radians); a picture .svg, .png, .pdf; a plot the same; an animation .gif, .mp4, .svg; a page .html; a
+    report .txt, .md, .json, .html. Raises InvalidInput for another suffix, for what cannot be saved, where the file
+    cannot be written, or where a library is missing.
 
     >>> import tempfile
     >>> from pathlib import Path
@@ -143,7 +150,7 @@ def save(what: Any, path: str | os.PathLike[str]) -> None:
     elif isinstance(what, Mechanism):
         content = encoded(what, form_of("mechanism", path), path)
         write_atomically(path, lambda file: file.write(content))
-    elif isinstance(what, Motion | Table):
+    elif isinstance(what, Table | Tabulated):
         write = WRITERS[form_of("table", path)]
         write_atomically(path, write(what if isinstance(what, Table) else what.table()))
     else:

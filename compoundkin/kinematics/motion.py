@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial, reduce
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,6 +15,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block, with_poses
 from compoundkin.kinematics.chosen_modes import GroupMode, modes_of
+from compoundkin.kinematics.derived.figures_of_forces import AsksForces
 from compoundkin.kinematics.error_estimate import errors_of
 from compoundkin.kinematics.inputs import Inputs, PoseGrid, fit
 from compoundkin.kinematics.jacobian import Jacobian, jacobian_of
@@ -27,7 +28,7 @@ from compoundkin.structure.kinematic_structure import Structure
 
 
 @dataclass(frozen=True)
-class Motion(CopiesFields, ShowsPicture):
+class Motion(CopiesFields, ShowsPicture, AsksForces):
     """A mechanism solved: every link's pose with all derivatives, over designs and poses.
 
     `shape` is the broadcast shape of dimensions and driver values, the last axis the motion. Poses that cannot be
@@ -41,6 +42,7 @@ class Motion(CopiesFields, ShowsPicture):
     failed: Number  # shape (designs, poses): index of the first group that does not close plus one, or 0
     tracker: Tracker
     time: Number | None = None  # the times (seconds) of a motion in time; broadcasts with its shape
+    loading: Mapping[str, Any] = field(default_factory=dict)  # how its forces are asked for: of `force_analysis`
     is_whole: ClassVar[bool] = True  # whether its poses are those that its tracker has noted, not places between them
 
     @property
@@ -67,10 +69,8 @@ class Motion(CopiesFields, ShowsPicture):
     def regular(self) -> Number:
         """Which poses have finite rates, (designs, poses): the assembled ones but for limit positions."""
         good = np.array(self.failed == 0)
-        for pose in self.poses.values():
-            for c in (*pose.z.c[1:], *pose.u.c[1:]):
-                good = good & np.isfinite(c)
-        return good
+        rates = [c for pose in self.poses.values() for c in (*pose.z.c[1:], *pose.u.c[1:])]
+        return np.asarray(reduce(lambda found, rate: found & np.isfinite(rate), rates, good))
 
     def error(self, order: int = 0) -> Number:
         """Return about how much error rounding leaves in a derivative, at every pose.
@@ -186,16 +186,13 @@ class Motion(CopiesFields, ShowsPicture):
         return int(np.ravel(self.tracker.sign(k, np.array([[design]]), np.array([[0.0]])))[0])
 
     def block(self, part: Inputs, order: int, s: Number, designs: Number) -> Block:
-        """Solve a block of other inputs in the configuration of the motion.
-
-        `s` are the places along the motion whose configuration is kept, `designs` the indices of the designs.
-        """
+        """Solve other inputs in the configuration at places `s` of `designs` (indices)."""
         return self.tracker.run(part, order, s, designs)
 
     def mended(self, designs: Number, index: Number, poses: Mapping[str, Pose]) -> Motion:
         """Return the motion with some poses in the place of what was solved."""
-        put = partial(with_poses, self.poses, self.failed.shape, self.order)
-        return replace(self, poses=put((designs, index), poses)) if len(index) else self
+        known = self.poses, self.failed.shape, self.order, (designs, index)
+        return replace(self, poses=with_poses(*known, poses)) if len(index) else self
 
     def __repr__(self) -> str:
         told = f", {missing} of them not assembled" if (missing := int(np.count_nonzero(self.failed))) else ""

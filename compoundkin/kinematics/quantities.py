@@ -13,7 +13,7 @@ from compoundkin.base.arrays import degrees
 from compoundkin.base.display import way
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.kinematics.derived import FIGURES
-from compoundkin.kinematics.derived.contract import HasQuantities, Lack
+from compoundkin.kinematics.derived.contract import HasQuantities, Lack, OfMotion, motion_of
 from compoundkin.model.attributes import (
     ALSO,
     CATALOGUE,
@@ -37,7 +37,7 @@ from compoundkin.model.attributes import (
 class Quantity:
     """One quantity: complex values for a planar vector, real ones otherwise. `unit` is that of `values`.
 
-    `order` is how many time derivatives it takes of a length, an angle or another `dimension`.
+    `order` counts time derivatives of a length, an angle or another `dimension`; rounding is relative to `scale`.
     """
 
     name: str
@@ -46,6 +46,7 @@ class Quantity:
     order: int = 0
     dimension: Dimension = "number"
     symbol: str = ""
+    scale: float = 0.0
 
     @property
     def is_vector(self) -> bool:
@@ -98,15 +99,15 @@ def known_owners(motion: HasQuantities) -> list[str]:
 
 
 @checked
-def quantity(motion: HasQuantities, name: str) -> Quantity:
+def quantity(motion: HasQuantities | OfMotion, name: str) -> Quantity:
     """Return the quantity of a name such as "G.velocity".
 
     "G" alone is G.position, "bar" bar.angle, "slot" slot.value. Points have position, velocity, acceleration, jerk, x,
     y, speed; links angle, angular_velocity, angular_acceleration, angular_jerk; pairs and drivers value, rate, second,
-    third (and angle or displacement for value). Links of dyads have transmission_angle, those of any group
-    transmission_index; guides that turn coriolis, cams pressure_angle; what moves by one driver velocity_ratio and
-    advantage. A vector has parts: "G.velocity.x", ".y", ".length". Over a whole motion numbers have .least, .greatest,
-    .stroke, .time_ratio, .imbalance_angle: one value for each design. Raises UnknownName with the nearest known name.
+    third (or angle, displacement). Links of dyads have transmission_angle, those of any group transmission_index;
+    guides that turn coriolis, cams pressure_angle; what moves by one driver velocity_ratio and advantage. With loads
+    pairs have force and moment, drivers effort and power, the frame shaking_force. A vector has .x, .y, .length. Over a
+    motion numbers have .least, .greatest, .stroke, .time_ratio, .imbalance_angle. Raises UnknownName with the nearest.
 
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.model.elements import drive, link
@@ -116,7 +117,7 @@ def quantity(motion: HasQuantities, name: str) -> Quantity:
     >>> found, found.values.tolist()
     (Quantity('B.velocity', v(B), 1 vectors in mm/s), [6j])
     """
-    whole, part = whole_and_part(motion, name)
+    whole, part = whole_and_part(motion_of(motion), name)
     return whole.part(part) if part else whole
 
 
@@ -198,8 +199,7 @@ class Owner(NamedTuple):
     def _derived(self, word: str) -> Quantity:
         figure = FIGURES[self.kind][word]
         found = self._quantity(DERIVED[self.kind][word], figure.values(self.whole, self.name))
-        # a ratio of rates takes velocities, and is no rate itself
-        return replace(found, unit=figure.unit(self.whole, self.name), order=0) if figure.unit else found
+        return replace(found, **figure.own(self.whole, self.name))
 
     def _quantity(self, found: Attribute, values: Any) -> Quantity:
         dimension, symbol = found.dimension or self.dimension, f"{found.symbol}({self.name})"

@@ -12,7 +12,9 @@ import numpy as np
 from compoundkin.base.series import Number
 
 Kind: TypeAlias = Literal["points", "links", "pairs", "drives"]
-Dimension: TypeAlias = Literal["length", "angle", "time", "number"]
+Dimension: TypeAlias = Literal["length", "angle", "time", "number", "force", "moment", "power"]
+# Their units follow from those that a mechanism states.
+OF_FORCES: tuple[Dimension, ...] = ("force", "moment", "power")
 
 PER_SECOND = ("", "/s", "/s^2", "/s^3")
 HIGHEST_ORDER = len(PER_SECOND) - 1
@@ -60,9 +62,22 @@ ALSO: Mapping[Dimension, Mapping[str, Attribute]] = MappingProxyType(
 _RATIOS = _catalogue(("velocity_ratio", "m_V", 1, "number"), ("advantage", "m_A", 1, "number"))
 _TRANSMISSION = _catalogue(("transmission_angle", "μ", 0, "angle"), ("transmission_index", "TI", 0, "number"))
 _GUIDES = _catalogue(("pressure_angle", "φ", 0, "angle"), ("coriolis", "a_cor", 2, "length"))
-DERIVED: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
-    {"points": {}, "links": {**_TRANSMISSION, **_RATIOS}, "pairs": {**_GUIDES, **_RATIOS}, "drives": _RATIOS}
+# What forces have beside motions. It takes accelerations, those of the masses.
+_ON_FRAME = _catalogue(("shaking_force", "F_s", 2, "force"), ("shaking_moment", "M_s", 2, "moment"))
+_IN_PAIRS = _catalogue(("force", "F", 2, "force"), ("moment", "M", 2, "moment"))
+_OF_DRIVERS = _catalogue(("effort", "T", 2, "force"), ("power", "P", 2, "power"))
+FORCES: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
+    {"points": {}, "links": _ON_FRAME, "pairs": _IN_PAIRS, "drives": _OF_DRIVERS}
 )
+DERIVED: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
+    {
+        **{"points": {}, "links": {**_TRANSMISSION, **_RATIOS, **_ON_FRAME}},
+        **{"pairs": {**_GUIDES, **_RATIOS, **_IN_PAIRS}, "drives": {**_RATIOS, **_OF_DRIVERS}},
+    }
+)
+FORCE, MOMENT = _IN_PAIRS
+EFFORT, POWER = _OF_DRIVERS
+SHAKING_FORCE, SHAKING_MOMENT = _ON_FRAME
 VELOCITY_RATIO, ADVANTAGE = _RATIOS
 TRANSMISSION_ANGLE, TRANSMISSION_INDEX = _TRANSMISSION
 PRESSURE_ANGLE, CORIOLIS = _GUIDES
@@ -106,7 +121,7 @@ def unit_of(length: str, dimension: Dimension, order: int = 0) -> str:
     ('mm/s^2', 'length', 'rad/s')
     """
     units = {"length": length or LENGTH, "angle": RADIANS, TIME: "s", "number": ""}
-    return units[dimension] + PER_SECOND[order]
+    return units.get(dimension, "") + PER_SECOND[order]
 
 
 def ratio_unit(length: str, over: Dimension, under: Dimension) -> str:

@@ -17,9 +17,12 @@ from compoundkin.model.drives import drive as drive
 from compoundkin.model.geometry import FRAME as FRAME
 from compoundkin.model.geometry import real, vector
 from compoundkin.model.leads import Lead as Lead
+from compoundkin.model.loads import Friction as Friction
 from compoundkin.model.loads import Gravity as Gravity
 from compoundkin.model.loads import Load as Load
+from compoundkin.model.loads import LoadWord
 from compoundkin.model.loads import Mass as Mass
+from compoundkin.model.loads import Pretension as Pretension
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder
 
@@ -75,7 +78,7 @@ class Expectation:
     at: tuple[tuple[str, float], ...] = ()
 
 
-Item: TypeAlias = Link | Pair | Cylinder | Drive | Lead | Mode | Drawn | Expectation | Mass | Gravity | Load
+Item: TypeAlias = Link | Pair | Cylinder | Drive | Lead | Mode | Drawn | Expectation | LoadWord
 
 
 @checked

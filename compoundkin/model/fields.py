@@ -31,6 +31,9 @@ from compoundkin.base.errors import Problem, nearest
 #   times    list of seconds or {from, to, step}          array
 #   segments list of tables, as ProgramSegment has keys          tuple of ProgramSegment
 #   law      table with a kind, and the keys of that law  law
+#   spot     name of a point, or a point in the link's frame   str, complex or array
+#   amount   number or nested list, {over, at, values}    float, array or LoadTable
+#   planar   the same of a vector: a point, or a list of two amounts   complex, array or tuple of two
 #   number   a single number                              float
 #   turn     a single angle in degrees, or {rad = ...}    float, radians
 #   place    [x, y], {polar = [radius, degrees]}, single  complex
@@ -54,6 +57,7 @@ Kind = Literal[
     "name", "text", "names", "length", "angle", "point", "sign", "flag", "two", "points", "drawing",
     "values", "rate", "at", "published", "margin",
     "whole", "span", "times", "coordinate", "segments", "law",
+    "spot", "amount", "planar",
     "number", "turn", "place", "places", "route", "path", "turned", "program", "profile", "reach", "sweep",
 ]  # fmt: skip
 
@@ -85,6 +89,11 @@ def point_key(link: str, doc: str) -> dict[str, Any]:
     Where the field may be empty, the only point of the link is meant.
     """
     return {"kind": "name", "doc": doc, "link": link}
+
+
+def spot_key(link: str, doc: str) -> dict[str, Any]:
+    """Return the metadata of a field for a point or place."""
+    return {"kind": "spot", "doc": doc, "link": link}
 
 
 def keys_of(kind: type[Any]) -> tuple[Key, ...]:
@@ -151,10 +160,12 @@ def name_problems(
         yield Problem(f"{where}.{field}", f"{name!r} cannot {wording.verb} on itself", wording.two_links)
     for field, link in point_fields(type(item)).items():
         letter, name = getattr(item, field), members[link]
+        if not isinstance(letter, str):
+            continue
         if letter == "":
             choice = f"name {wording.point}: {', '.join(links[name])}"
             yield Problem(f"{where}.{field}", f"link {name!r} has several points", choice)
-        elif letter is not None and letter not in links[name]:
+        elif letter not in links[name]:
             remedy = nearest(letter, list(links[name]))
             yield Problem(f"{where}.{field}", f"link {name!r} has no point {letter!r}", remedy)
 
@@ -164,7 +175,8 @@ def only_points(item: Any, links: Mapping[str, tuple[str, ...]]) -> dict[str, st
     found = {}
     for field, link in point_fields(type(item)).items():
         points = links.get(getattr(item, link), ())
-        if getattr(item, field) == "" and len(points) == 1:
+        given = getattr(item, field)
+        if isinstance(given, str) and given == "" and len(points) == 1:
             found[field] = points[0]
     return found
 

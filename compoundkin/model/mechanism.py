@@ -17,6 +17,7 @@ from compoundkin.model.drawn_poses import told_poses
 from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Lead, Link, Mode
 from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
 from compoundkin.model.pairs.profile_contact import as_profiled
+from compoundkin.model.pin_pairs import NamesOfPairs
 from compoundkin.model.units import as_units
 from compoundkin.model.validation import problems_of
 from compoundkin.model.written import Written
@@ -125,6 +126,11 @@ class Mechanism(Written, ShowsPicture):
     def _profiles(self) -> float:
         """The size of the largest profile."""
         return max((own.extent for pair in self.written_pairs if (own := as_profiled(pair))), default=0.0)
+
+    @cached_property
+    def names(self) -> NamesOfPairs:
+        """The links, points and pairs that loads may name."""
+        return NamesOfPairs(self)
 
     def replace(self, *items: Item, **changes: Any) -> Mechanism:
         """Return a copy with items in the place of those of their names.

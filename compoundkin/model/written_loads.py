@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from functools import cached_property
 
 from compoundkin.base.series import Number
-from compoundkin.model.elements import Gravity, Item, Load, Mass
+from compoundkin.model.elements import Friction, Gravity, Item, Load, Mass, Pretension
+from compoundkin.model.geometry import Geometry
+from compoundkin.model.loads.contract import WrittenNames
 
 
 class WrittenLoads:
@@ -13,10 +16,22 @@ class WrittenLoads:
 
     items: tuple[Item, ...]
 
+    @property
+    @abstractmethod
+    def geometry(self) -> Geometry:
+        """The dimensions as numbers."""
+
+    @property
+    @abstractmethod
+    def names(self) -> WrittenNames:
+        """The links, points and pairs that loads may name."""
+
     @cached_property
     def masses(self) -> dict[str, Mass]:
-        """The masses by their links."""
-        return {item.link: item for item in self.items if isinstance(item, Mass)}
+        """The masses by their links, what they leave out taken from their links' points."""
+        given = [item for item in self.items if isinstance(item, Mass)]
+        return {item.link: item if item.is_complete else item.completed(self.geometry.points[item.link])
+                for item in given}  # fmt: skip
 
     @cached_property
     def gravity(self) -> Number:
@@ -25,5 +40,15 @@ class WrittenLoads:
 
     @cached_property
     def loads(self) -> dict[str, Load]:
-        """The loads by name."""
-        return {item.name: item for item in self.items if isinstance(item, Load)}
+        """The loads by name. Those on pins are on a link, those along pairs know their links."""
+        return {item.name: item.completed(self.names) for item in self.items if isinstance(item, Load)}
+
+    @cached_property
+    def frictions(self) -> dict[str, Friction]:
+        """The frictions by their pairs. The letter of a multiple pin stands for all its pairs."""
+        return {item.pair: item for item in self.items if isinstance(item, Friction)}
+
+    @cached_property
+    def pretensions(self) -> dict[str, Pretension]:
+        """The pretensions by their belts."""
+        return {item.pair: item for item in self.items if isinstance(item, Pretension)}

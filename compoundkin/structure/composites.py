@@ -5,54 +5,15 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 from compoundkin.model.elements import FRAME, Drive
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import Pair, Revolute
-from compoundkin.model.pairs.optional_answers import Drivable, as_drivable
+from compoundkin.model.pairs.optional_answers import Drivable
+from compoundkin.model.pin_pairs import Pins, driven_pair
 from compoundkin.structure.cycles import find
 from compoundkin.structure.parts import Body, DrivenPair, Passive
 
 GROUND = -1
-# The first that occurs in no name of the pin's links joins two of them, so that pair names are unique.
-_SEPARATORS = ("-", "/", ":", " to ", " - ")
-
-
-@dataclass(frozen=True)
-class Pins:
-    """Makes the pairs at the pins of a mechanism."""
-
-    mechanism: Mechanism
-
-    def pair(self, letter: str, first: str, second: str) -> Revolute:
-        """Return the revolute pair of two links at a letter, named by it. Of a multiple pin, as ``J(crank-rod)``.
-
-        >>> from compoundkin.model.elements import link
-        >>> links = [link(name, J=0) for name in ("frame", "crank", "rod")]
-        >>> Pins(Mechanism("m", *links)).pair("J", "crank", "rod").name
-        'J(crank-rod)'
-        """
-        if len(self.mechanism.pins[letter]) == 2 and letter not in self._written:
-            return Revolute(letter, letter, first, second)
-        return Revolute(f"{letter}({first}{self._separators[letter]}{second})", letter, first, second)
-
-    @cached_property
-    def _written(self) -> frozenset[str]:
-        return frozenset(pair.name for pair in self.mechanism.written_pairs)
-
-    @cached_property
-    def _separators(self) -> dict[str, str]:
-        return {
-            letter: next((s for s in _SEPARATORS if not any(s in name for name in names)), "-")
-            for letter, names in self.mechanism.pins.items()
-            if len(names) > 2 or letter in self._written
-        }
-
-
-def pin_at(letter: str) -> Pair:
-    """Return the revolute pair at a letter, its links not yet known."""
-    return Revolute(letter, letter, "", "")
 
 
 @dataclass(frozen=True)
@@ -125,16 +86,6 @@ def passive_freedoms(mechanism: Mechanism) -> Iterator[Passive]:
         if name not in driven and name != FRAME and len(pins) == 1 and set(places) == set(pins):
             on = next(other for other in mechanism.pins[pins[0]] if other != name)
             yield Passive(name, on, pins[0])
-
-
-def driven_pair(pins: Pins, drive: Drive) -> Drivable:
-    """Return the pair that a drive prescribes. A written one, or the pin between precisely its two links."""
-    mechanism = pins.mechanism
-    (name,) = mechanism.drivable(drive)
-    if name in mechanism.pins_between(drive.link, drive.on):
-        return pins.pair(name, drive.on, drive.link)
-    between = mechanism.pairs_between[frozenset((drive.link, drive.on))]
-    return next(own for pair in between if pair.name == name and (own := as_drivable(pair)))
 
 
 def spanned(body: Body, links: Iterable[str]) -> tuple[DrivenPair, ...]:

@@ -19,7 +19,8 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.profile_contact import as_profiled
-from compoundkin.structure.composites import GROUND, Composites, pin_at
+from compoundkin.model.pin_pairs import pin_at
+from compoundkin.structure.composites import GROUND, Composites
 from compoundkin.structure.parts import LINK_FREEDOMS, Dropped
 
 POINT_FREEDOMS = 2

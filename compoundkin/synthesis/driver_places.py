@@ -15,6 +15,7 @@ from compoundkin.model.elements import (
     Drawn,
     Drive,
     Expectation,
+    Friction,
     Gravity,
     Item,
     Lead,
@@ -22,6 +23,7 @@ from compoundkin.model.elements import (
     Load,
     Mass,
     Mode,
+    Pretension,
 )
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
@@ -136,7 +138,11 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
     if isinstance(item, Mass | Load):
         links = {key: names.get(getattr(item, key), getattr(item, key)) for key in item.link_keys}
         return replace(item, **links)
-    return item if isinstance(item, Mode | Drawn | Expectation | Gravity) else renamed_pair(item, names)
+    return (
+        item
+        if isinstance(item, Mode | Drawn | Expectation | Gravity | Friction | Pretension)
+        else renamed_pair(item, names)
+    )
 
 
 def renamed_pair(pair: Joint, names: Mapping[str, str]) -> Joint:

@@ -16,7 +16,7 @@ from compoundkin.kinematics.results import PairMotion
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Lead, Mode, drawn
 from compoundkin.model.laws import MotionTable
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.structure.composites import Pins, driven_pair
+from compoundkin.model.pin_pairs import Pins, driven_pair
 from compoundkin.synthesis.inversion import WITHIN
 
 # What a law holds at each time: value, speed, acceleration.

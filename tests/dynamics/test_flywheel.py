@@ -69,7 +69,7 @@ def test_units_are_converted_not_reinterpreted() -> None:
 
 def test_figures_of_a_drive_in_time_are_means_over_the_time() -> None:
     """An arm swings as sin t: effort -m r^2 sin t, power -m r^2 sin t cos t."""
-    arm = ck.Mechanism("Arm", ck.link("frame", A=0), ck.link("arm", A=0, B=2), ck.mass("arm", 3.0, at="B"),
+    arm = ck.Mechanism("Arm", ck.link("frame", A=0), ck.link("arm", A=0, B=2), ck.mass("arm", 3.0, at="B", inertia=0),
                        ck.drive("arm", law=ck.laws.FunctionLaw(np.sin)), units=UNITS)  # fmt: skip
     motion = ck.solve(arm, time=np.linspace(0.0, 2.0 * np.pi, 41))
     found = ck.machine.drive_figures(ck.force_analysis(motion), "arm")

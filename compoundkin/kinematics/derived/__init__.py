@@ -8,6 +8,7 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.derived.cam_follower import no_pressure_angle, pressure_angle
 from compoundkin.kinematics.derived.contract import Figure, HasQuantities, Lack
 from compoundkin.kinematics.derived.coriolis import coriolis, no_coriolis
+from compoundkin.kinematics.derived.figures_of_forces import force_figures
 from compoundkin.kinematics.derived.transmission_angle import (
     no_angle,
     no_index,
@@ -53,11 +54,13 @@ FIGURES: Mapping[Kind, Mapping[str, Figure]] = {
         TRANSMISSION_ANGLE: Figure(transmission_angle, no_angle),
         TRANSMISSION_INDEX: Figure(transmission_index, no_index),
         **_ratios("links"),
+        **force_figures("links"),
     },
     "pairs": {
         PRESSURE_ANGLE: Figure(pressure_angle, no_pressure_angle),
         CORIOLIS: Figure(coriolis, no_coriolis),
         **_ratios("pairs"),
+        **force_figures("pairs"),
     },
-    "drives": _ratios("drives"),
+    "drives": {**_ratios("drives"), **force_figures("drives")},
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
@@ -57,6 +57,20 @@ class HasQuantities(Protocol):
         """How its numbers are shown."""
 
 
+@runtime_checkable
+class OfMotion(Protocol):
+    """What belongs to a motion, whose quantities are its own: forces."""
+
+    @property
+    def motion(self) -> HasQuantities:
+        """The motion."""
+
+
+def motion_of(whole: HasQuantities | OfMotion) -> HasQuantities:
+    """Return the motion of something, a motion itself."""
+    return whole.motion if isinstance(whole, OfMotion) else whole
+
+
 @dataclass(frozen=True)
 class Lack:
     """Why there is no such figure, and what to do about it."""
@@ -73,3 +87,11 @@ class Figure:
     lack: Callable[[HasQuantities, str], Lack | None]
     # where it is not that of its attribute
     unit: Callable[[HasQuantities, str], str] | None = None
+    # what its rounding is relative to, where that does not follow from the unit
+    scale: Callable[[HasQuantities, str], float] | None = None
+
+    def own(self, motion: HasQuantities, name: str) -> dict[str, Any]:
+        """Return in what a quantity differs from what follows from its attribute."""
+        # a ratio of rates takes velocities, and is no rate itself; nor is a force
+        found: dict[str, Any] = {"unit": self.unit(motion, name), "order": 0} if self.unit else {}
+        return {**found, "scale": self.scale(motion, name)} if self.scale else found

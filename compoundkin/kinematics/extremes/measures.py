@@ -54,7 +54,7 @@ def measure_of(motion: Motion, name: str) -> Measure:
     owner, _, word = whole.name.rpartition(".")
     is_length = part == LENGTH or (word == SPEED and owner in motion.points)
     size = motion.size if whole.dimension == "length" else 1.0
-    scale = size * driver_pace(motion) ** whole.order
+    scale = whole.scale or size * driver_pace(motion) ** whole.order
 
     def of(at: Motion) -> Number:
         values = quantity(at, whole.name).values

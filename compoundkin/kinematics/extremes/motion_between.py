@@ -136,15 +136,29 @@ def between(
     return MotionBetween(**own, whole=motion, designs=designs, places=places)
 
 
-def given_over(motion: Motion, value: Any) -> Number:
+def given_over(motion: Motion, value: Any, where: str = "load") -> Number:
     """Return what is given over a motion, as (1 or designs, 1 or poses).
 
-    Between poses it is linear from one to the next.
+    Between poses it is linear from one to the next. Raises InvalidInput naming `where` for another shape.
     """
+    if not np.ndim(value):
+        return value
     if not isinstance(motion, MotionBetween):
-        return fit(motion.shape)(value)
-    found = motion.picked(fit(motion.whole.shape)(value))
+        return _fitting(motion, value, where)
+    found = motion.picked(_fitting(motion.whole, value, where))
     return found[None] if np.ndim(found) else found
+
+
+def _fitting(motion: Motion, value: Any, where: str) -> Number:
+    """Return what is given over a motion in its shape."""
+    try:
+        fits = np.broadcast_shapes(np.shape(value), motion.shape) == motion.shape
+    except ValueError:
+        fits = False
+    if not fits:
+        what = f"shape {np.shape(value)} does not broadcast with {motion.shape}, that of the motion"
+        raise InvalidInput(Problem(where, what, "the last axis is the motion, designs are before it"))
+    return fit(motion.shape)(value)
 
 
 def _of_no_place(one: MotionBetween) -> MotionBetween:

@@ -2,11 +2,46 @@
 
 from __future__ import annotations
 
-from compoundkin.model.loads.contract import Load
-from compoundkin.model.loads.force import Force, Torque, force, torque
-from compoundkin.model.loads.mass import Gravity, Mass, gravity, mass
+from typing import TypeAlias
 
-__all__ = ["KINDS", "Force", "Gravity", "Load", "Mass", "Torque", "force", "gravity", "mass", "torque"]
+from compoundkin.model.loads.along_pair import AlongPair, Effort, effort
+from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.damper import Damper, PairDamper, damper
+from compoundkin.model.loads.force import Force, Torque, force, torque
+from compoundkin.model.loads.friction import Friction, friction
+from compoundkin.model.loads.gravity import Gravity, gravity
+from compoundkin.model.loads.mass import Mass, mass
+from compoundkin.model.loads.pretension import Pretension, pretension
+from compoundkin.model.loads.spring import PairSpring, Spring, spring
+
+__all__ = [
+    "KINDS",
+    "AlongPair",
+    "Damper",
+    "Effort",
+    "Force",
+    "Friction",
+    "Gravity",
+    "Load",
+    "LoadWord",
+    "Mass",
+    "PairDamper",
+    "PairSpring",
+    "Pretension",
+    "Spring",
+    "Torque",
+    "damper",
+    "effort",
+    "force",
+    "friction",
+    "gravity",
+    "mass",
+    "pretension",
+    "spring",
+    "torque",
+]
 
 # Every kind of load.
-KINDS: tuple[type[Load], ...] = (Force, Torque)
+KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper)
+# What is written of masses and forces.
+LoadWord: TypeAlias = Mass | Gravity | Load | Friction | Pretension

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Protocol
 
+from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.base.wrenches import Wrench
-from compoundkin.model.fields import DeclaredKeys, NameWording, link_fields, name_problems, value_key
-from compoundkin.model.pairs.contract import Ends, Pair
+from compoundkin.model.fields import DeclaredKeys, NameWording, link_fields, name_problems, only_points, value_key
+from compoundkin.model.pairs.contract import Pair
 from compoundkin.model.units import Units
 
 
@@ -33,40 +34,68 @@ class LoadedPoses(Protocol):
     def place(self, link: str, point: str | complex) -> Series:
         """Return where a point of a link is. By its letter or its place in the link."""
 
-    def pair(self, name: str) -> tuple[Pair, Ends]:
-        """Return a pair by its name, and its sides on its links."""
+    def coordinate(self, name: str) -> Series:
+        """Return the free coordinate of a pair or a driver. Angles are counted along the motion."""
 
-    def coordinate(self, pair: str) -> Series:
-        """Return the free coordinate of a pair, angles counted along the motion."""
+    def unit_effort(self, name: str) -> Iterator[tuple[str, Wrench]]:
+        """Yield the links of a pair with the wrenches of a unit effort.
 
-    def fitted(self, value: Any) -> Number:
-        """Return what of a number or an array belongs to these poses."""
+        It is along the coordinate, on the second link; its opposite is on the first.
+        """
+
+    def fitted(self, value: Any, where: str = ...) -> Number:
+        """Return what of a value belongs to these poses. `where` names it in errors."""
 
 
-@dataclass(frozen=True, eq=False)
-class Load(ABC):
+class WrittenNames(Protocol):
+    """What is written of links and pairs, for loads that name them."""
+
+    @property
+    def letters(self) -> Mapping[str, tuple[str, ...]]:
+        """The points of each link."""
+
+    @property
+    def carriers(self) -> Mapping[str, tuple[str, ...]]:
+        """The links that carry each point."""
+
+    @property
+    def pairs(self) -> list[str]:
+        """The names by which pairs may be meant."""
+
+    def pair(self, name: str) -> Pair | None:
+        """Return the pair that a name means, or None."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Load(PrintsShort, ABC):
     """What acts on links from outside: forces, torques, efforts, springs, dampers. Kinds are frozen dataclasses."""
 
     name: str = field(
         default="",
         kw_only=True,
-        metadata=value_key("name", "What the load is called in reports; the kind and its link where it is left out."),
+        metadata=value_key("name", "What the load is called in reports; its kind and what it acts on if left out."),
     )
 
     title: ClassVar[str]  # "spring"
     table: ClassVar[str]  # its table in a mechanism file
     wording: ClassVar[NameWording] = NameWording(verb="act")
     keys = DeclaredKeys()  # the keys of its table in a mechanism file, by its fields
+    amounts: ClassVar[tuple[str, ...]] = ()  # the fields that hold amounts
 
     def __post_init__(self) -> None:
-        """A load that is given no name has that of its kind and its first link."""
+        """A load that is given no name is called after what it acts on."""
         if not self.name:
             object.__setattr__(self, "name", self.called)
 
     @property
+    @abstractmethod
     def called(self) -> str:
         """Its name where none is given."""
-        return f"{self.title} on {next(getattr(self, name) for name in link_fields(type(self)))}"
+
+    @property
+    def where(self) -> str:
+        """Its place in errors."""
+        return f"{self.table}.{self.name}"
 
     @property
     def link_keys(self) -> tuple[str, ...]:
@@ -74,20 +103,32 @@ class Load(ABC):
         return link_fields(type(self))
 
     @property
-    @abstractmethod
     def links(self) -> tuple[str, ...]:
         """The links it acts on."""
+        return tuple(getattr(self, key) for key in self.link_keys)
+
+    @property
+    def needs_rates(self) -> bool:
+        """Whether it asks for velocities."""
+        return False
 
     def attack(self, link: str) -> str | Number | None:
         """Return the point of a link at which it acts. It is a letter or a place in the link, None for a couple."""
         return None
 
-    def problems(
-        self, links: Mapping[str, tuple[str, ...]], pairs: Mapping[str, Pair], where: str
-    ) -> Iterator[Problem]:
-        """Find what is wrong with it as written. `links` maps each link to its points, `pairs` are by name."""
-        yield from name_problems(self, links, where, self.wording)
+    def completed(self, written: WrittenNames) -> Load:
+        """Return the load with what its words leave open; itself without any."""
+        found = only_points(self, written.letters)
+        return replace(self, **found) if found else self
+
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+        """Find what is wrong with it as written."""
+        yield from name_problems(self, written.letters, where, self.wording)
 
     @abstractmethod
     def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
         """Yield the links it acts on with their wrenches, in the mechanism's units."""
+
+    def energy(self, at: LoadedPoses) -> Number | None:
+        """Return its potential energy, None for a load that has none."""
+        return None

@@ -49,6 +49,7 @@ class ArcSlot(Contact, Guided, EndedArc):
     free: ClassVar[tuple[str, ...]] = ("direction", "angle")
     free_is_angle: ClassVar[bool] = True
     table: ClassVar[str] = "arcs"
+    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
 
     @property
     def letters(self) -> tuple[str, ...]:

@@ -43,6 +43,7 @@ class Belt(Geared, Accompanied):
     code: ClassVar[str] = "B"
     title: ClassVar[str] = "belt pair"
     table: ClassVar[str] = "belts"
+    takes: ClassVar[tuple[str, ...]] = ("pretension",)
 
     @property
     def turns_alike(self) -> bool:

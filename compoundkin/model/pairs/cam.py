@@ -64,6 +64,7 @@ class Cam(Profiled, Guided):
     free: ClassVar[tuple[str, ...]] = ("parameter", "angle")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "cams"
+    takes: ClassVar[tuple[str, ...]] = ("friction",)
     is_flat: ClassVar[bool] = False
 
     @property

@@ -78,6 +78,7 @@ class Face(Profiled):
     free: ClassVar[tuple[str, ...]] = ("displacement", "angle")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "faces"
+    takes: ClassVar[tuple[str, ...]] = ("friction",)
     is_flat: ClassVar[bool] = True
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:

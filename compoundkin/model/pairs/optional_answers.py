@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
@@ -18,6 +18,8 @@ from compoundkin.model.pairs.contract import Ends, Pair, Poses
 
 class Drivable(Pair):
     """A pair that a driver may prescribe: nothing but its coordinate is free."""
+
+    takes: ClassVar[tuple[str, ...]] = ("effort",)
 
     @abstractmethod
     def placed(self, ends: Ends, free: Series) -> Pose:

@@ -71,6 +71,7 @@ class Prismatic(Drivable, Orienting, Guided, Ended):
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
     is_simple: ClassVar[bool] = True
+    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
     table: ClassVar[str] = "slides"
     wording: ClassVar[NameWording] = NameWording("slide", "name the link that carries the guide", "the one that slides")
 

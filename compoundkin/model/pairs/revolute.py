@@ -37,6 +37,7 @@ class Revolute(Drivable):
     free: ClassVar[tuple[str, ...]] = ("angle",)
     free_is_angle: ClassVar[bool] = True
     is_simple: ClassVar[bool] = True
+    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
 
     @property
     def members(self) -> tuple[str, ...]:

@@ -63,6 +63,7 @@ class Slot(Contact, Guided, Ended):
     free: ClassVar[tuple[str, ...]] = ("displacement", "angle")
     free_is_angle: ClassVar[bool] = False
     table: ClassVar[str] = "slots"
+    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
 
     @property
     def letters(self) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import Drivable
-from compoundkin.structure.composites import Pins, driven_pair
+from compoundkin.model.pin_pairs import Pins, driven_pair
 from compoundkin.structure.parts import LINK_FREEDOMS
 from compoundkin.structure.system import generic_jacobian
 

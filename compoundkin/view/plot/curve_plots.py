@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.dynamics.forces import Forces, moved
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import LENGTH, PARTS, readable
 from compoundkin.view.plot import canvas, planar, plot_style
@@ -28,7 +29,7 @@ MARGIN = 0.08
 
 @checked
 def phase(
-    motion: Motion,
+    motion: Motion | Forces,
     name: str,
     rate: str | None = None,
     *,
@@ -50,6 +51,7 @@ def phase(
     >>> picture.figure.axes[0].get_ylabel()
     'rocker.angular_velocity [rad/s]'
     """
+    motion = moved(motion)
     x, y = shown(motion, name), shown(motion, rate or rate_name(motion, name))
     for one in (x, y):
         if one.is_vector:
@@ -70,7 +72,7 @@ def phase(
 
 @checked
 def hodograph(
-    motion: Motion,
+    motion: Motion | Forces,
     *names: str,
     every: int | None = None,
     designs: Sequence[str] = (),
@@ -88,6 +90,7 @@ def hodograph(
     >>> hodograph(solve(load_named("six-bar")), "G.velocity").figure.axes[0].get_xlabel()
     'G.velocity, x [mm/s]'
     """
+    motion = moved(motion)
     vectors = all_of(motion, names)
     for one in vectors:
         if not one.is_vector:
@@ -108,7 +111,7 @@ def hodograph(
 
 @checked
 def polar(
-    motion: Motion,
+    motion: Motion | Forces,
     *names: str,
     around: str | None = None,
     designs: Sequence[str] = (),
@@ -126,6 +129,7 @@ def polar(
     >>> polar(solve(load_named("crank-shaper")), "E.velocity").figure.axes[0].name
     'polar'
     """
+    motion = moved(motion)
     radii = tuple(one.part(LENGTH) if one.is_vector else one for one in all_of(motion, names))
     angle = driver(motion) if around is None else shown(motion, around)
     _check(radii, angle)

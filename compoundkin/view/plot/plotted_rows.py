@@ -15,6 +15,7 @@ from compoundkin.kinematics.quantities import Quantity, known_owners, whole_and_
 from compoundkin.model.attributes import (
     ADVANTAGE,
     LENGTH,
+    OF_FORCES,
     PARTS,
     RATE_OF,
     SPEED,
@@ -46,9 +47,9 @@ class Plotted(Quantity):
     def is_unbounded(self) -> bool:
         """Whether it may grow without limit.
 
-        Rates do at limit positions, an advantage at toggle positions.
+        Rates and forces do at limit positions, an advantage at toggle positions.
         """
-        return self.has_poles or self.order > 0
+        return self.has_poles or self.order > 0 or self.dimension in OF_FORCES
 
     @property
     def poles(self) -> Number:
@@ -166,12 +167,12 @@ def _rows(motion: Motion, found: Quantity) -> Plotted:
     values = _shaped(motion, found.shown.values)
     largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
     natural = TURN if found.is_angle else 1.0 if found.dimension == "number" else motion.size
-    scale = max(largest, natural * _pace(motion) ** found.order)
+    scale = max(largest, found.scale or natural * _pace(motion) ** found.order)
     owner, _, attribute = found.name.rpartition(".")
     is_speed = attribute == SPEED and owner in motion.points
     vector = _shaped(motion, motion.points[owner].velocity) if is_speed else None
-    return Plotted(**{**vars(found.shown), "values": values}, scale=scale, vector=vector,
-                   has_poles=attribute == ADVANTAGE)  # fmt: skip
+    own = {**vars(found.shown), "values": values, "scale": scale}
+    return Plotted(**own, vector=vector, has_poles=attribute == ADVANTAGE)
 
 
 def _pace(motion: Motion) -> float:

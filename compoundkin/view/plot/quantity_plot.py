@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
+from compoundkin.dynamics.forces import Forces, moved
 from compoundkin.kinematics import Motion
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.marked_places import Events, at, events
@@ -42,7 +43,7 @@ class Panel:
 
 @checked
 def plot(
-    motion: Motion,
+    motion: Motion | Forces,
     *names: str,
     against: str | None = None,
     stacked: bool = True,
@@ -51,10 +52,10 @@ def plot(
     title: str | None = None,
     size: tuple[float, float] | None = None,
 ) -> Plot:
-    """Draw quantities of a motion over the time, its driver or any other quantity.
+    """Draw quantities of a motion or its forces over driver, time or others.
 
-    `names` as `quantity` takes them ("G.velocity", "bar.angle"), and parts of vectors ("G.velocity.x",
-    "G.velocity.length"); a vector is drawn as its components and its length; none means the mechanism's outputs.
+    `names` as `quantity` takes them ("G.velocity", "crank.effort"), also "G.velocity.x", "G.velocity.length"; a vector
+    is drawn as its components and its length; none means the mechanism's outputs.
     `against` is "time", "driver", "pose" or a quantity; without it the time of a motion in time, else the first driver
     that moves. Every quantity has a panel of its own; with ``stacked=False`` those of one unit share one. Angles are in
     degrees. The highest and lowest values are marked, between poses too, unless `extremes` is False or there are many
@@ -71,6 +72,7 @@ def plot(
     >>> [axes.get_ylabel() for axes in picture.figure.axes]
     ['bar.angle [deg]', 'G.velocity [mm/s]']
     """
+    motion = moved(motion)
     x, is_input = along(motion, against)
     shown = arranged(all_of(motion, names), motion.inputs.designs, stacked)
     called = canvas.design_names(motion.shape, designs)
@@ -79,8 +81,7 @@ def plot(
         raise InvalidInput(Problem("designs", told, "give one for each, or leave them out"))
     happened = events(motion)
     with plot_style.styled():
-        height = FIRST + EACH * len(shown)
-        text = motion.mechanism.title if title is None else title
+        height, text = FIRST + EACH * len(shown), motion.mechanism.title if title is None else title
         figure, axes = canvas.panels(len(shown), text, size or (canvas.WIDTH, height), sharex=True)
         labels: list[PointLabel] = []
         _across(axes, x, is_input)
@@ -205,8 +206,7 @@ def _mark_events(axes: Any, x: Plotted, happened: Events, is_input: bool) -> Non
 
 def _across(axes: Sequence[Any], x: Plotted, is_input: bool) -> None:
     """The horizontal axis from end to end of what drives the motion."""
-    known = x.values[np.isfinite(x.values)]
-    if is_input and np.ptp(known) > 0:
+    if is_input and np.ptp(known := x.values[np.isfinite(x.values)]) > 0:
         axes[0].set_xlim(known.min(), known.max())
 
 

@@ -1,0 +1,132 @@
+"""Loads along the free coordinate of a pair: efforts, such as those of gas and cutting; and what springs share."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.series import Number, Series
+from compoundkin.base.wrenches import Wrench
+from compoundkin.model.fields import value_key
+from compoundkin.model.loads.amounts import Amount, as_amount, needs_rates, value_of
+from compoundkin.model.loads.contract import Load, LoadedPoses, WrittenNames
+
+# What functions of a load along a pair may take.
+VARIABLES = ("coordinate", "rate", "time")
+FORWARD, BACK = "forward", "back"
+
+
+def rate_of(series: Series) -> Number:
+    """Return the rate of a coordinate; none of a motion without velocities."""
+    return series.c[1] if len(series.c) > 1 else 0.0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AlongPair(Load):
+    """A load along the free coordinate of a pair.
+
+    It acts on the pair's second link, its opposite on the first.
+    """
+
+    pair: str = field(metadata=value_key("name", "The pair, by its name, a pin's letter or a driver of it."))
+    members: tuple[str, ...] = field(default=(), kw_only=True)
+
+    @property
+    def called(self) -> str:
+        """Its name where none is given."""
+        return f"{self.title} along {self.pair}"
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The two links of its pair, which the mechanism tells it."""
+        return self.members
+
+    def completed(self, written: WrittenNames) -> Load:
+        """Return the load with the links of its pair."""
+        pair = written.pair(self.pair)
+        return self if pair is None else replace(self, members=pair.members[:2])
+
+    @abstractmethod
+    def effort(self, at: LoadedPoses) -> Number:
+        """Return the effort: positive where it drives the coordinate up."""
+
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+        """Find an unknown pair, or one without such a coordinate."""
+        pair = written.pair(self.pair)
+        if pair is None:
+            what = f"there is no pair, pin or driver {self.pair!r}"
+            yield Problem(f"{where}.pair", what, nearest(self.pair, written.pairs))
+        elif Effort.title not in pair.takes:
+            what = f"{self.pair!r} is a {pair.title}: nothing acts along its coordinate"
+            yield Problem(f"{where}.pair", what, "name a pin, a slide or a slot")
+
+    def wrenches(self, at: LoadedPoses) -> Iterator[tuple[str, Wrench]]:
+        """Yield the effort on the second link, and its opposite on the first."""
+        effort = self.effort(at)
+        for link, unit in at.unit_effort(self.pair):
+            yield link, unit.times(effort)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Effort(AlongPair):
+    """An effort along the free coordinate of a pair.
+
+    It is a thrust on a slide or along a slot, a torque at a pin. It acts on the pair's second link, the opposite on the
+    first; ``"forward"`` and ``"back"`` are while the coordinate grows and while it shrinks.
+    """
+
+    amount: Amount = field(
+        metadata=value_key("amount", "The thrust or torque, positive where it drives the coordinate up.")
+    )
+    only: str | None = field(
+        default=None, metadata=value_key("name", 'Whether it acts only while the coordinate goes "forward" or "back".')
+    )
+
+    title: ClassVar[str] = "effort"
+    table: ClassVar[str] = "efforts"
+    amounts: ClassVar[tuple[str, ...]] = ("amount",)
+
+    @property
+    def needs_rates(self) -> bool:
+        """Whether it depends on the rate of the coordinate."""
+        return self.only is not None or needs_rates(self.amount)
+
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+        """Find an unknown pair or direction."""
+        yield from super().problems(written, where)
+        if self.only not in (None, FORWARD, BACK):
+            yield Problem(f"{where}.only", f"{self.only!r} is no direction", nearest(self.only, [FORWARD, BACK]))
+
+    def effort(self, at: LoadedPoses) -> Number:
+        """Return the thrust or torque."""
+        series = at.coordinate(self.pair)
+        own = {"coordinate": lambda: series.c[0], "rate": lambda: rate_of(series)}
+        amount = value_of(self.where, self.amount, at, own)
+        if self.only is None:
+            return amount
+        rate = rate_of(series) * (1.0 if self.only == FORWARD else -1.0)
+        return np.where(rate > 0.0, amount, np.where(np.isnan(rate), np.nan, 0.0))
+
+
+@checked
+def effort(pair: str, amount: Any, *, only: str | None = None, name: str = "") -> Effort:
+    """Return an effort along the free coordinate of a pair.
+
+    It is a thrust on a slide or along a slot, such as that of gas, or a torque at a pin.
+
+    The pair is meant by its name, by a pin's letter (``J(crank-rod)`` for two links of a multiple pin), or by a driver.
+    It acts on the pair's second link, its opposite on the first, and is positive where it drives the coordinate up:
+    that of ``motion.pairs[pair]``, or of the driver. `amount` is a number, an array whose last axis is the motion, a
+    function of as many of (coordinate, rate, time) as it takes, or a table as of `force`, over the coordinate where it
+    does not say what it is over. It acts ``only="forward"`` while the coordinate grows, ``"back"`` while it shrinks.
+
+    >>> effort("stroke", lambda s: -400.0 / (0.1 + s)).name
+    'effort along stroke'
+    """
+    return Effort(pair, as_amount(f"efforts.{name or pair}.amount", amount, *VARIABLES), only, name=name)

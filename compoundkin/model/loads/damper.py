@@ -1,0 +1,118 @@
+"""Dampers between points of two links, and along the coordinate of a pair."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import Problem
+from compoundkin.base.series import Number
+from compoundkin.model.fields import NameWording, value_key
+from compoundkin.model.geometry import FRAME
+from compoundkin.model.loads.along_pair import AlongPair, rate_of
+from compoundkin.model.loads.amounts import Amount, as_amount, value_of
+from compoundkin.model.loads.between_points import BetweenPoints, EndGap
+from compoundkin.model.loads.contract import LoadedPoses, WrittenNames
+from compoundkin.model.loads.load_ends import as_spot, hold_ends
+from compoundkin.model.loads.spring import is_law
+
+_RATE = "Force or torque for a unit of speed, or the force itself as a table over that."
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Damper(BetweenPoints):
+    """A damper between points of two links.
+
+    It pulls with its rate times the speed at which it is drawn.
+
+    >>> damper("arm", "A", at="S", rate=40).name
+    'damper on arm'
+    """
+
+    rate: Amount = field(kw_only=True, metadata=value_key("amount", _RATE))
+
+    title: ClassVar[str] = "damper"
+    table: ClassVar[str] = "dampers"
+    wording: ClassVar[NameWording] = NameWording(verb="pull", two_links="a damper has its ends on two links")
+    amounts: ClassVar[tuple[str, ...]] = ("rate",)
+
+    @property
+    def needs_rates(self) -> bool:
+        """Whether it asks for velocities: it does nothing else."""
+        return True
+
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+        """Find unknown ends, and a negative rate."""
+        yield from super().problems(written, where)
+        yield from rate_problems(self.rate, where)
+
+    def pull(self, gap: EndGap, at: LoadedPoses) -> Number:
+        """Return its force; where its ends meet, along their relative velocity."""
+        own = {"rate": lambda: gap.rate, "length": lambda: gap.length}
+        amount = value_of(self.where, self.rate, at, own)
+        # ends that meet move along the line they are on before and after
+        line = np.where(np.asarray(gap.length) == 0.0, gap.velocity, gap.vector)
+        pull = amount if is_law(self.rate) else amount * gap.rate
+        return EndGap(line, np.abs(line), gap.velocity).along(pull, self.where)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PairDamper(AlongPair):
+    """A damper along the free coordinate of a pair: it works against its rate."""
+
+    rate: Amount = field(kw_only=True, metadata=value_key("amount", _RATE))
+
+    title: ClassVar[str] = "damper"
+    table: ClassVar[str] = "dampers"
+    amounts: ClassVar[tuple[str, ...]] = ("rate",)
+
+    @property
+    def needs_rates(self) -> bool:
+        """Whether it asks for velocities: it does nothing else."""
+        return True
+
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+        """Find an unknown pair, and a negative rate."""
+        yield from super().problems(written, where)
+        yield from rate_problems(self.rate, where)
+
+    def effort(self, at: LoadedPoses) -> Number:
+        """Return its effort, against the rate of the coordinate."""
+        series = at.coordinate(self.pair)
+        own = {"rate": lambda: rate_of(series), "coordinate": lambda: series.c[0]}
+        amount = value_of(self.where, self.rate, at, own)
+        return 0.0 - (amount if is_law(self.rate) else amount * rate_of(series))
+
+
+def rate_problems(rate: Amount, where: str) -> Iterator[Problem]:
+    """Find a damper that drives."""
+    if not is_law(rate) and np.any(np.asarray(rate) < 0.0):
+        yield Problem(f"{where}.{Damper.amounts[0]}", "a damper of negative rate drives", "give a rate above zero")
+
+
+@checked
+def damper(
+    link: str = "", point: Any = "", *, to: str = FRAME, at: Any = "", pair: str = "", rate: Any, name: str = ""
+) -> Damper | PairDamper:
+    """Return a damper between points of two links, or along a pair.
+
+    It is written as a `spring`, and pulls with `rate` times the speed at which it is drawn. Of a `rate` that is a
+    function of as many of (speed, length or coordinate, time) as it takes, or a table over the speed, it is the force
+    itself. Raises InvalidMechanism for ends of both sorts.
+
+    >>> damper("arm", "A", to="frame", at="S", rate=40).rate
+    40.0
+    >>> damper(pair="C", rate=lambda w: 2 * w * abs(w)).name
+    'damper along C'
+    """
+    where = f"dampers.{name or pair or link}"
+    amount = as_amount(f"{where}.{Damper.amounts[0]}", rate, "rate", "length" if link else "coordinate", "time")
+    hold_ends(where, pair, link, {"link": link, "point": point, "at": at} if pair else {})
+    if pair:
+        return PairDamper(pair, rate=amount, name=name)
+    one, other = (as_spot(f"{where}.{key}", spot) for key, spot in (("point", point), ("at", at)))
+    return Damper(link, one, to=to, at=other, rate=amount, name=name)

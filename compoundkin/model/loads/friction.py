@@ -1,0 +1,75 @@
+"""Coulomb friction in pairs: what is written of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.series import Number
+from compoundkin.model.fields import DeclaredKeys, value_key
+from compoundkin.model.geometry import real
+from compoundkin.model.loads.contract import WrittenNames
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Friction(PrintsShort):
+    """Coulomb friction in a pair, or in all pairs of a multiple pin."""
+
+    pair: str = field(metadata=value_key("name", "The pair by its name, or the letter of a pin."))
+    coefficient: Number = field(metadata=value_key("length", "The coefficient of friction."))
+    radius: Number | None = field(default=None, metadata=value_key("length", "The radius of the pin."))
+    length: Number | None = field(
+        default=None,
+        metadata=value_key("length", "The length of the guide that a block touches, its point in the middle."),
+    )
+
+    title: ClassVar[str] = "friction"
+    table: ClassVar[str] = "frictions"
+    keys = DeclaredKeys()
+
+    @property
+    def name(self) -> str:
+        """The name of its pair."""
+        return self.pair
+
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+        """Find an unknown pair, a pin without a radius, and what is negative."""
+        pair = written.pair(self.pair)
+        if pair is None:
+            yield Problem(f"{where}.pair", f"there is no pair {self.pair!r}", nearest(self.pair, written.pairs))
+        elif self.title not in pair.takes:
+            what = f"{self.pair!r} is a {pair.title}, whose friction is not known here"
+            yield Problem(f"{where}.pair", what, "name a pin, a slide, a slot or a cam")
+        elif pair.is_simple and pair.free_is_angle:
+            if self.radius is None:
+                remedy = f'friction("{self.pair}", ..., radius=5)'
+                yield Problem(f"{where}.radius", "friction at a pin needs its radius", remedy)
+            if self.length is not None:
+                yield Problem(f"{where}.length", "a pin has no guide", "leave the length out")
+        elif self.radius is not None:
+            yield Problem(f"{where}.radius", f"a {pair.title} has no pin of a radius", "leave the radius out")
+        if np.any(np.asarray(self.coefficient) < 0.0):
+            yield Problem(f"{where}.coefficient", "a coefficient of friction is not negative")
+        for key, value in (("radius", self.radius), ("length", self.length)):
+            if value is not None and not np.all(np.asarray(value) > 0.0):
+                yield Problem(f"{where}.{key}", f"a {key} is above zero")
+
+
+@checked
+def friction(pair: str, coefficient: Any, *, radius: Any = None, length: Any = None) -> Friction:
+    """Return Coulomb friction in a pair. A pin needs its `radius`; a slide may have the `length` of its guide.
+
+    The letter of a multiple pin stands for every pair of that pin. Numbers, or arrays for designs.
+
+    >>> friction("slot", 0.1, length=30).length
+    30.0
+    """
+    where = f"frictions.{pair}"
+    numbers = {"coefficient": coefficient, "radius": radius, "length": length}
+    return Friction(pair, **{key: real(f"{where}.{key}", value) for key, value in numbers.items()})

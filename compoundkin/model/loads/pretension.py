@@ -1,0 +1,54 @@
+"""The pretension of belts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.series import Number
+from compoundkin.model.fields import DeclaredKeys, value_key
+from compoundkin.model.geometry import real
+from compoundkin.model.loads.contract import WrittenNames
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Pretension(PrintsShort):
+    """The pretension of a belt. It is half the sum of the forces in its strands."""
+
+    pair: str = field(metadata=value_key("name", "The belt, by the name of its pair."))
+    force: Number = field(metadata=value_key("length", "Half the sum of the forces in its two strands."))
+
+    title: ClassVar[str] = "pretension"
+    table: ClassVar[str] = "pretensions"
+    keys = DeclaredKeys()
+
+    @property
+    def name(self) -> str:
+        """The name of its belt."""
+        return self.pair
+
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+        """Find an unknown pair, or one without strands; a belt that pushes."""
+        pair = written.pair(self.pair)
+        if pair is None:
+            yield Problem(f"{where}.pair", f"there is no pair {self.pair!r}", nearest(self.pair, written.pairs))
+        elif self.title not in pair.takes:
+            yield Problem(f"{where}.pair", f"{self.pair!r} is a {pair.title}, which has no strands", "name a belt")
+        if np.any(np.asarray(self.force) < 0.0):
+            yield Problem(f"{where}.force", "a belt does not push", "give a force above zero")
+
+
+@checked
+def pretension(pair: str, force: Any) -> Pretension:
+    """Return the pretension of a belt. It is half the sum of the forces in its strands.
+
+    >>> pretension("belt", 150).force
+    150.0
+    """
+    return Pretension(pair, real(f"pretensions.{pair}.force", force))

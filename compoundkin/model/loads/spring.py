@@ -1,0 +1,200 @@
+"""Springs between points of two links, and along the coordinate of a pair."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.series import Number
+from compoundkin.model.fields import NameWording, value_key
+from compoundkin.model.geometry import FRAME, real
+from compoundkin.model.loads.along_pair import VARIABLES, AlongPair, rate_of
+from compoundkin.model.loads.amounts import Amount, LoadFunction, as_amount, needs_rates, value_of
+from compoundkin.model.loads.between_points import BetweenPoints, EndGap
+from compoundkin.model.loads.contract import LoadedPoses, WrittenNames
+from compoundkin.model.loads.load_ends import as_spot, hold_ends
+from compoundkin.model.loads.load_table import LoadTable
+
+TENSION, COMPRESSION = "tension", "compression"
+_STIFFNESS = "Force or torque for a unit of extension, or the force itself as a table over that."
+_PRELOAD = "Its pull where it has its free length or angle."
+_ONLY = 'Whether it acts in "tension" or in "compression" only.'
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Spring(BetweenPoints):
+    """A spring between points of two links.
+
+    It pulls with stiffness times extension, plus a preload.
+
+    >>> spring("arm", "A", at="S", stiffness=900, free_length=0.2).name
+    'spring on arm'
+    """
+
+    stiffness: Amount = field(kw_only=True, metadata=value_key("amount", _STIFFNESS))
+    free_length: Number = field(default=0.0, kw_only=True, metadata=value_key("length", "Its length without load."))
+    preload: Number = field(default=0.0, kw_only=True, metadata=value_key("length", _PRELOAD))
+    only: str | None = field(default=None, kw_only=True, metadata=value_key("name", _ONLY))
+
+    title: ClassVar[str] = "spring"
+    table: ClassVar[str] = "springs"
+    wording: ClassVar[NameWording] = NameWording(verb="pull", two_links="a spring has its ends on two links")
+    amounts: ClassVar[tuple[str, ...]] = ("stiffness",)
+
+    @property
+    def needs_rates(self) -> bool:
+        """Whether its force depends on how fast it is drawn."""
+        return needs_rates(self.stiffness)
+
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+        """Find unknown ends, a negative length, a stiffness that is none."""
+        yield from super().problems(written, where)
+        yield from side_problems(self.only, where)
+        if np.any(np.asarray(self.free_length) < 0.0):
+            yield Problem(f"{where}.free_length", "a length is not negative", "give a preload instead")
+
+    def pull(self, gap: EndGap, at: LoadedPoses) -> Number:
+        """Return its force. Without a free length it is exact where its ends meet."""
+        preload, free = (at.fitted(value, self.where) for value in (self.preload, self.free_length))
+        extension = gap.length - free
+        if is_law(self.stiffness):
+            own = {"extension": lambda: extension, "rate": lambda: gap.rate}
+            pull = value_of(self.where, self.stiffness, at, own) + preload
+            return gap.along(sided(pull, self.only), self.where)
+        stiffness = at.fitted(self.stiffness, self.where)
+        # the part in proportion to the length has no need of a direction
+        force = stiffness * gap.vector + gap.along(preload - stiffness * free, self.where)
+        return force if self.only is None else np.where(acts(stiffness * extension + preload, self.only), force, 0.0)
+
+    def energy(self, at: LoadedPoses) -> Number | None:
+        """Return its energy, zero at its free length.
+
+        None where its force is a function or a table.
+        """
+        if is_law(self.stiffness):
+            return None
+        extension = self.gap(at).length - at.fitted(self.free_length)
+        return stored(at.fitted(self.stiffness), at.fitted(self.preload), extension, self.only)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PairSpring(AlongPair):
+    """A spring along the free coordinate of a pair.
+
+    It is a torsion spring at a pin, or a spring along a slide. It drives the coordinate down with stiffness times what
+    it is beyond `free`, plus a preload.
+    """
+
+    stiffness: Amount = field(kw_only=True, metadata=value_key("amount", _STIFFNESS))
+    free: Number = field(
+        default=0.0, kw_only=True, metadata=value_key("coordinate", "The coordinate without load; degrees of an angle.")
+    )
+    preload: Number = field(default=0.0, kw_only=True, metadata=value_key("length", _PRELOAD))
+    only: str | None = field(default=None, kw_only=True, metadata=value_key("name", _ONLY))
+
+    title: ClassVar[str] = "spring"
+    table: ClassVar[str] = "springs"
+    amounts: ClassVar[tuple[str, ...]] = ("stiffness",)
+
+    @property
+    def needs_rates(self) -> bool:
+        """Whether its force depends on how fast it is drawn."""
+        return needs_rates(self.stiffness)
+
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
+        """Find an unknown pair, or one that no spring could act along."""
+        yield from super().problems(written, where)
+        yield from side_problems(self.only, where)
+
+    def effort(self, at: LoadedPoses) -> Number:
+        """Return its effort, against what the coordinate is beyond its free one."""
+        series, preload = at.coordinate(self.pair), at.fitted(self.preload, self.where)
+        extension = series.c[0] - at.fitted(self.free, self.where)
+        if is_law(self.stiffness):
+            own = {"extension": lambda: extension, "rate": lambda: rate_of(series)}
+            return 0.0 - sided(value_of(self.where, self.stiffness, at, own) + preload, self.only)
+        return 0.0 - sided(at.fitted(self.stiffness, self.where) * extension + preload, self.only)
+
+    def energy(self, at: LoadedPoses) -> Number | None:
+        """Return its energy, zero at its free coordinate.
+
+        None where its effort is a function or a table.
+        """
+        if is_law(self.stiffness):
+            return None
+        extension = at.coordinate(self.pair).c[0] - at.fitted(self.free)
+        return stored(at.fitted(self.stiffness), at.fitted(self.preload), extension, self.only)
+
+
+def is_law(stiffness: Amount) -> bool:
+    """Tell whether a stiffness is the force itself, as a function or a table."""
+    return isinstance(stiffness, LoadFunction | LoadTable)
+
+
+def acts(pull: Number, only: str | None) -> Number:
+    """Tell where a one-sided spring acts. That is true where its pull is not a number."""
+    return ~(np.asarray(pull) <= 0.0) if only == TENSION else ~(np.asarray(pull) >= 0.0)
+
+
+def sided(pull: Number, only: str | None) -> Number:
+    """Return the pull of a spring that may act one way only."""
+    return pull if only is None else np.where(acts(pull, only), pull, 0.0)
+
+
+def stored(stiffness: Number, preload: Number, extension: Number, only: str | None) -> Number:
+    """Return the energy that a spring holds beyond its free length.
+
+    That of a one-sided spring stays where it acts no more.
+    """
+    whole = (stiffness * extension / 2.0 + preload) * extension
+    if only is None:
+        return whole
+    with np.errstate(all="ignore"):
+        released = np.where(np.asarray(stiffness) == 0.0, 0.0, -np.square(preload) / (2.0 * np.asarray(stiffness)))
+    return np.where(acts(stiffness * extension + preload, only), whole, released)
+
+
+def side_problems(only: str | None, where: str) -> Iterator[Problem]:
+    """Find a side on which no spring acts."""
+    if only not in (None, TENSION, COMPRESSION):
+        yield Problem(f"{where}.only", f"a spring does not act in {only!r} only", nearest(only, [TENSION, COMPRESSION]))
+
+
+@checked
+def spring(
+    link: str = "", point: Any = "", *, to: str = FRAME, at: Any = "", pair: str = "",
+    stiffness: Any, free_length: Any = 0.0, free: Any = 0.0, preload: Any = 0.0, only: str | None = None,
+    name: str = "",
+) -> Spring | PairSpring:  # fmt: skip
+    """Return a spring between points of two links, or along a pair.
+
+    ``spring("arm", "A", to="frame", at="S", stiffness=900, free_length=0.2)`` pulls the point A of the arm and the
+    point S of the frame together with stiffness times extension plus `preload`; points are letters, or places in their
+    links' frames. ``spring(pair="C", stiffness=5, free=0.3)`` drives the coordinate of a pair down by stiffness times
+    what it is beyond `free` (radians or a length): a torsion spring at a pin, a spring along a slide. A `stiffness`
+    that is a function of as many of (extension, rate, time) as it takes, or a table over the extension, gives the
+    force itself. ``only="tension"`` or ``"compression"`` is for one that does nothing else. Numbers, or arrays for
+    designs.
+
+    Raises InvalidMechanism for ends of both sorts.
+
+    >>> spring("arm", "A", to="frame", at="S", stiffness=900, free_length=0.2, only="tension").only
+    'tension'
+    >>> spring(pair="C", stiffness=5, free=0.3).name
+    'spring along C'
+    """
+    where = f"springs.{name or pair or link}"
+    force = as_amount(f"{where}.stiffness", stiffness, "extension", *VARIABLES[1:])
+    drawn = real(f"{where}.preload", preload)
+    ends = {"link": link, "point": point, "at": at, "free_length": free_length} if pair else {"free": free}
+    hold_ends(where, pair, link, ends)
+    if pair:
+        return PairSpring(pair, stiffness=force, free=real(f"{where}.free", free), preload=drawn, only=only, name=name)
+    one, other = (as_spot(f"{where}.{key}", spot) for key, spot in (("point", point), ("at", at)))
+    length = real(f"{where}.free_length", free_length)
+    return Spring(link, one, to=to, at=other, stiffness=force, free_length=length, preload=drawn, only=only, name=name)
