@@ -9,8 +9,22 @@ array([12.])
 
 from __future__ import annotations
 
+from compoundkin.dynamics.balance_figures import BalanceFigure
+from compoundkin.dynamics.counterweight_masses import Counterweight
+from compoundkin.dynamics.counterweights import ForceBalance, counterweights
 from compoundkin.dynamics.drive_figures import DriveFigures, drive_figures
 from compoundkin.dynamics.equivalent_inertia import EquivalentInertia, equivalent_inertia
 from compoundkin.dynamics.flywheel import Flywheel, flywheel
 
-__all__ = ["DriveFigures", "EquivalentInertia", "Flywheel", "drive_figures", "equivalent_inertia", "flywheel"]
+__all__ = [
+    "BalanceFigure",
+    "Counterweight",
+    "DriveFigures",
+    "EquivalentInertia",
+    "Flywheel",
+    "ForceBalance",
+    "counterweights",
+    "drive_figures",
+    "equivalent_inertia",
+    "flywheel",
+]

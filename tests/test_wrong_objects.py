@@ -223,6 +223,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                       "jerk": None},
         "laws.synchronised": {},
         "laws.time_table": {"times": range(9), "values": range(9), "degree": 5, "repeat": False},
+        "machine.counterweights": {"what": h["forces"].motion, "links": "crank", "mass": None, "radius": 1.0,
+                                   "disc": 0.0, "fraction": None, "about": None},
         "machine.drive_figures": {"forces": h["forces"], "driver": "crank"},
         "machine.equivalent_inertia": {"motion": h["moved"]},
         "machine.flywheel": {"forces": h["forces"], "fluctuation": 0.02, "driver": "crank"},

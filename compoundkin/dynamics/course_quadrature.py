@@ -82,9 +82,15 @@ def _two(one: Number, other: Number) -> Number:
     return np.stack([one, other], axis=-1).ravel()
 
 
+def nodes(pieces: Pieces) -> tuple[Number, Number, Number]:
+    """Return designs, places and weights of sums that are integrals."""
+    half = 0.5 * (pieces.high - pieces.low)[:, None]
+    places = 0.5 * (pieces.low + pieces.high)[:, None] + half * POINTS
+    return np.repeat(pieces.design, len(POINTS)), places.ravel(), (half * WEIGHTS).ravel()
+
+
 def _gauss(of: Integrand, pieces: Pieces) -> Number:
-    half = 0.5 * (pieces.high - pieces.low)
-    places = (0.5 * (pieces.low + pieces.high))[:, None] + half[:, None] * POINTS
-    values = of(np.repeat(pieces.design, len(POINTS)), places.ravel())
-    found: Number = values.reshape(len(values), len(pieces), len(POINTS)) @ WEIGHTS * half
+    designs, places, weights = nodes(pieces)
+    values = of(designs, places) * weights
+    found: Number = values.reshape(len(values), len(pieces), len(POINTS)).sum(axis=-1)
     return found
