@@ -21,6 +21,7 @@ from compoundkin.dynamics.link_wrench import LinkWrench
 from compoundkin.dynamics.pair_forces import PairForce
 from compoundkin.dynamics.pin_forces import PinForces
 from compoundkin.dynamics.power import Powers
+from compoundkin.dynamics.undetermined import Undetermined
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.kinematics.chosen_modes import GroupMode
 from compoundkin.kinematics.configuration import Configuration
@@ -71,5 +72,6 @@ __all__ = [
     "ShakingForce",
     "Structure",
     "Table",
+    "Undetermined",
     "Workspace",
 ]  # fmt: skip

@@ -11,6 +11,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.dynamics.redundant_reactions import own_wrenches
 from compoundkin.dynamics.reverse_pass import reverse_pass
 from compoundkin.kinematics.motion import Motion
 
@@ -33,7 +34,10 @@ def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
             for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():
                 store.take(name, wrench, loaded.designs, loaded.poses)
     found = store.wrenches()
-    wrenches = {name: found[name] for name in motion.solving_order.pairs if name in found}
+    if motion.structure.relaxation is not None:
+        found.update(own_wrenches(motion.structure, found, motion.failed.shape))
+    own = {pair.name for pair in motion.structure.pairs}
+    wrenches = {name: found[name] for name in motion.solving_order.pairs if name in found and name in own}
     told = replace(motion, loading={"inertia": inertia})
     forces = Forces(told, inertia, wrenches, found[ON_FRAME])
     # quantities of forces are read from their motion, which need not find them again

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -37,7 +38,8 @@ def check_of(forces: FoundForces) -> Check:
     The balance of every link by Newton and Euler, of every pin, of the frame; the efforts of drivers by virtual work;
     the balance of power; what each kind of pair can carry.
     """
-    motion = forces.motion
+    # of forces that equilibrium leaves open those of the named assumption must balance like any others
+    forces, motion = replace(forces, assumed=True), forces.motion
     regular = motion.regular if motion.order else motion.failed == 0
     closed = int(np.count_nonzero(motion.failed == 0))
     if not closed:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from compoundkin.dynamics.link_forces import LinkForces, link_forces
 from compoundkin.dynamics.pair_forces import PairForce
 from compoundkin.dynamics.pin_forces import PinForces
 from compoundkin.dynamics.power import Powers, powers_of
+from compoundkin.dynamics.undetermined import Undetermined, undetermined
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import Named
 from compoundkin.kinematics.table import Table, table_of
@@ -66,6 +67,29 @@ class Forces(FoundForces):
         return [f"{name}.{word}" for name, own in words.items() for word in own]
 
     @cached_property
+    def undetermined(self) -> tuple[Undetermined, ...]:
+        """What equilibrium leaves open, which is NaN in pairs and pins. None unless the mechanism is held by too much.
+
+        >>> from compoundkin.files.shipped_mechanisms import load_named
+        >>> from compoundkin.dynamics.force_analysis import force_analysis
+        >>> from compoundkin.kinematics import solve
+        >>> units = {"length": "mm", "mass": "kg", "force": "N"}
+        >>> held = load_named("parallelogram-third-crank").replace(unit="", units=units)
+        >>> forces = force_analysis(solve(held, {"crank": [1.0]}))
+        >>> print(forces.undetermined[0])
+        A: the force along A B of crank, balanced by forces in D, F, B, C, E
+        """
+        return undetermined(self)
+
+    @property
+    def assuming_freed(self) -> Forces:
+        """The forces under an assumption that makes all determined.
+
+        It is that the parts of pairs which `relaxed` names are free.
+        """
+        return replace(self, assumed=True)
+
+    @cached_property
     def power(self) -> Powers:
         """The power of all that acts, and the energies. Raises InvalidInput for a motion without velocities."""
         return powers_of(self)
@@ -109,6 +133,8 @@ class Forces(FoundForces):
     def __repr__(self) -> str:
         kind = "with" if self.inertia else "without"
         missing = f", {count} not assembled" if (count := int((self.motion.failed != 0).sum())) else ""
+        if self.assumed:
+            kind = f"assuming freed {', '.join(map(str, self.relaxed))}, {kind}"
         told = f"{kind} inertia: {len(self.wrenches)} pairs at {self.shape} poses{missing}"
         return f"Forces({self.mechanism.title!r} {told})"
 

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.copies import CopiesFields
 from compoundkin.base.poses import Pose
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.link_wrench import LinkWrench
+from compoundkin.dynamics.self_stresses import Open, SelfStress, self_stress
 from compoundkin.kinematics.inputs import Inputs, PoseGrid
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import LinkMotion, PointMotion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.units import Units
+from compoundkin.structure.parts import Dropped
 
 
 @dataclass(frozen=True, repr=False)
@@ -23,7 +26,9 @@ class FoundForces(CopiesFields):
     """What an analysis of forces found, with its motion.
 
     `wrenches` are those on the second member of each pair from the first, (designs, poses), about the world's origin;
-    `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction.
+    `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction. Of a mechanism
+    held by too much they are those with what the structure's `relaxation` names left free: one of many possible, which
+    is told only where that is `assumed`.
     """
 
     motion: Motion
@@ -31,6 +36,7 @@ class FoundForces(CopiesFields):
     wrenches: Mapping[str, Wrench]
     on_frame: Wrench
     more: tuple[LinkWrench, ...] = ()
+    assumed: bool = False
 
     @property
     def units(self) -> Units:
@@ -41,6 +47,23 @@ class FoundForces(CopiesFields):
         units = self.mechanism.units
         assert units is not None
         return units
+
+    @property
+    def relaxed(self) -> tuple[Dropped, ...]:
+        """The parts of pairs that, left free, make all forces determined. None unless there is too much that holds."""
+        relaxation = self.motion.structure.relaxation
+        return () if relaxation is None else relaxation.dropped
+
+    @cached_property
+    def self_stress(self) -> SelfStress:
+        """The states of self-stress. There are none unless the mechanism is held by too much."""
+        return self_stress(self.motion)
+
+    def left_open(self, parts: Sequence[tuple[str, float]], place: Number) -> Open | None:
+        """Return what equilibrium leaves open of a sum of wrenches. Its moment is about a place."""
+        if not self.relaxed or self.assumed:
+            return None
+        return self.self_stress.open(parts, place)
 
     @property
     def mechanism(self) -> Mechanism:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, overload
 
 from compoundkin.base.arrays import Number, Vectors
@@ -15,7 +15,6 @@ from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.link_wrench import (
     EFFORT,
     INERTIA,
-    PAIR,
     WEIGHT,
     LinkWrench,
     as_vectors,
@@ -102,13 +101,9 @@ def _of_pairs(forces: FoundForces, link: str) -> Iterator[LinkWrench]:
             continue
         effort = efforts[name]
         held = effort.wrench if found.on(link).side else -effort.wrench
-        yield _like(one, PAIR, name, one.whole - held)
-        driven.append(_like(one, EFFORT, effort.name, held))
+        yield replace(one, whole=one.whole - held)
+        driven.append(replace(one, kind=EFFORT, name=effort.name, whole=held, open=None))
     yield from driven
-
-
-def _like(one: LinkWrench, kind: str, name: str, whole: Wrench) -> LinkWrench:
-    return LinkWrench(one.motion, kind, name, one.on, one.by, one.at, whole, one.attack)
 
 
 def _known(forces: FoundForces, link: str) -> Iterator[LinkWrench]:

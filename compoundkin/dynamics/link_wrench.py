@@ -10,6 +10,7 @@ import numpy as np
 from compoundkin.base.arrays import Number, Vectors, cross
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.self_stresses import Open
 from compoundkin.kinematics.extremes import given_over
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.geometry import vector
@@ -17,14 +18,17 @@ from compoundkin.model.geometry import vector
 # What may act on a link, in the order in which it is told.
 PAIR, EFFORT, LOAD, WEIGHT, INERTIA, FRICTION = "pair", "effort", "load", "weight", "inertia", "friction"
 
+NOTHING = complex(np.nan, np.nan)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LinkWrench(PrintsShort):
     """A wrench on a link, in the mechanism's units.
 
-    Arrays have the motion's shape, NaN where not assembled. `kind` is "pair", "effort", "weight", "inertia", "friction"
-    or the kind of a load; `by` is the link it comes from, if it comes from one; `at` names the point of attack; `whole`
-    is the wrench about the world's origin (designs, poses), `attack` the point of attack in the world.
+    Arrays have the motion's shape, NaN where not assembled. `kind` is "pair", "effort", "weight", "inertia",
+    "friction" or the kind of a load; `by` is the link it comes from, if it comes from one; `at` names the point of
+    attack; `whole` is the wrench about the world's origin (designs, poses), `attack` the point of attack in the world.
+    What equilibrium leaves `open` is told as NaN; `whole` is then one of all that are possible.
     """
 
     motion: Motion = field(repr=False)
@@ -35,16 +39,25 @@ class LinkWrench(PrintsShort):
     at: str
     whole: Wrench = field(repr=False)
     attack: Number = field(repr=False)
+    open: Open | None = field(default=None, repr=False)
+
+    @property
+    def determined(self) -> Wrench:
+        """The wrench about the world's origin, NaN where equilibrium leaves it open, (designs, poses)."""
+        if self.open is None:
+            return self.whole
+        moment = np.where(self.open.moment, np.nan, self.whole.about(self.attack))
+        return Wrench.at(self.attack, np.where(self.open.force, NOTHING, self.whole.force), moment)
 
     @property
     def wrench(self) -> Wrench:
         """The wrench, its moment about the world's origin."""
-        return Wrench(self.force, self.motion.grid.known(self.whole.moment))
+        return Wrench(self.force, self.motion.grid.known(self.determined.moment))
 
     @property
     def force(self) -> Vectors:
         """The force, complex; `.xy` gives (..., 2)."""
-        return as_vectors(self.motion, self.whole.force)
+        return as_vectors(self.motion, self.determined.force)
 
     @property
     def place(self) -> Vectors:
@@ -54,11 +67,12 @@ class LinkWrench(PrintsShort):
     @property
     def moment(self) -> Number:
         """The moment about the point of attack."""
-        return self.motion.grid.known(self.whole.about(self.attack))
+        about = self.whole.about(self.attack)
+        return self.motion.grid.known(about if self.open is None else np.where(self.open.moment, np.nan, about))
 
     def moment_about(self, point: Any) -> Number:
         """Return the moment about a letter or a place of the world."""
-        return moment_about(self.motion, self.whole, point)
+        return moment_about(self.motion, self.determined, point)
 
 
 def as_vectors(motion: Motion, value: Number) -> Vectors:

@@ -62,7 +62,8 @@ class PairForce:
         found = self.forces.wrenches[self.pair.name]
         wrench = found if self.side else -found
         attack = self.pair.acting_place(self.ends, self.poses)
-        return LinkWrench(self.forces.motion, PAIR, self.name, self.link, self.by, self.at, wrench, attack)
+        left = self.forces.left_open([(self.name, 1.0)], attack)
+        return LinkWrench(self.forces.motion, PAIR, self.name, self.link, self.by, self.at, wrench, attack, left)
 
     @property
     def wrench(self) -> Wrench:

@@ -44,12 +44,14 @@ class PinForces:
         if link not in self.links:
             what = f"the pin {self.letter} does not join it"
             raise UnknownName(Problem(str(link), what, f"known: {', '.join(self.links)}"))
-        whole = Wrench()
+        whole, parts = Wrench(), list[tuple[str, float]]()
         for pair in self.pairs:
             if link in pair.members[:2]:
                 whole = whole + PairForce(self.forces, pair).on(link).acting.whole
+                parts.append((pair.name, 1.0 if link == pair.members[1] else -1.0))
         place = place_in_world(self.forces.motion, self.links[0], self.letter)
-        return LinkWrench(self.forces.motion, PAIR, self.letter, link, self.letter, self.letter, whole, place)
+        left = self.forces.left_open(parts, place)
+        return LinkWrench(self.forces.motion, PAIR, self.letter, link, self.letter, self.letter, whole, place, left)
 
     def __repr__(self) -> str:
         return told(self, self.forces.grid, f"{self.letter} on {', '.join(self.links)}")

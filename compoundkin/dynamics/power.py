@@ -28,7 +28,7 @@ class Powers(Shows, CopiesFields):
 
     Powers are in the unit of force times length per second, energies in that of moments; arrays have the motion's
     shape. What is positive drives the mechanism; what goes into speed is `kinetic_rate`. Springs and dampers are loads;
-    the `potential` is that of gravity.
+    the `potential` is that of gravity and of springs, but for those whose force is a function or a table.
     """
 
     motion: Motion
@@ -108,6 +108,9 @@ def _sums(at: LoadedBlock, forces: FoundForces) -> dict[str, Number]:
     """Return what is summed over masses and pairs. The power of weights, of inertia, of pairs; the energies."""
     found: dict[str, Number] = dict.fromkeys(("gravity", "pairs", "rate", "kinetic", "potential"), 0.0)
     free_fall = at.motion.mechanism.gravity * at.units.metre
+    for load in at.motion.mechanism.loads.values():
+        energy = load.energy(at)
+        found["potential"] += 0.0 if energy is None else energy
     for mass in at.motion.mechanism.masses.values():
         heavy = at.fitted(mass.mass) * at.units.inertia
         centre = at.place(mass.link, mass.at)
