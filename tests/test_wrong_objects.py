@@ -226,6 +226,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "machine.counterweights": {"what": h["forces"].motion, "links": "crank", "mass": None, "radius": 1.0,
                                    "disc": 0.0, "fraction": None, "about": None},
         "machine.drive_figures": {"forces": h["forces"], "driver": "crank"},
+        "machine.equilibria": {"mechanism": h["forces"].mechanism, "values": None},
         "machine.equivalent_inertia": {"motion": h["moved"]},
         "machine.flywheel": {"forces": h["forces"], "fluctuation": 0.02, "driver": "crank"},
         "plots.centrodes": {**on, "pose": 0, "design": 0, "every": None, "title": None, "size": None, "on": "frame"},

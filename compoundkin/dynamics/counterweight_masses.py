@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.dynamics.mass_motion import place_of
@@ -83,7 +84,7 @@ class CounterweightSizes:
 
     @property
     def _heaviest(self) -> float:
-        return max(float(np.ravel(mass.mass)[0]) for mass in self.ways.motion.mechanism.masses.values())
+        return max(float(first_entry(mass.mass)) for mass in self.ways.motion.mechanism.masses.values())
 
     def _radius(self, link: str) -> float:
         """Return how far a counterweight is from its pivot: without a number, as far as the link's farthest point."""
@@ -125,7 +126,7 @@ def with_counterweights(motion: Motion, counterweights: Sequence[Counterweight])
         mass, centre, inertia = 0.0, 0j, 0.0
         if one.link in own:
             known = own[one.link]
-            mass, inertia = (float(np.ravel(value)[0]) for value in (known.mass, known.inertia))
+            mass, inertia = (float(first_entry(value)) for value in (known.mass, known.inertia))
             centre = complex(np.ravel(place_of(motion, known))[0])
         both = mass + one.mass
         at = (mass * centre + one.mass * one.at) / both

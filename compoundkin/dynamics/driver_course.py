@@ -16,6 +16,7 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics.extremes import Measure, between, closed_cycles, given_over
 from compoundkin.kinematics.extremes.inputs_between import inputs_between
 from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import EFFORT, POWER
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -58,15 +59,16 @@ class DriverCourse(PrintsShort):
         def of(at: Motion) -> Number:
             return self.effort(at) - (own if at is self.motion else given_over(at, own)[0])
 
-        return Measure(f"{self.driver}.effort", self.unit, self.order, of, scale=scale)
+        return Measure(f"{self.driver}.{EFFORT}", self.unit, self.order, of, scale=scale)
 
     @property
     def measures(self) -> tuple[Measure, Measure]:
         """The effort and the power as what can be searched."""
-        power, effort = f"{self.unit}/s", f"{self.driver}.effort"
+        units, effort = self.motion.mechanism.units, f"{self.driver}.{EFFORT}"
+        assert units is not None
         return (
             Measure(effort, self.unit, self.order, self.effort, scale=self._largest),
-            Measure(f"{self.driver}.power", power, self.order, self.power, scale=self._largest * self._pace),
+            Measure(f"{self.driver}.{POWER}", units.power, self.order, self.power, scale=self._largest * self._pace),
         )
 
     @property

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.series import Number
 from compoundkin.dynamics.mass_motion import place_of
 from compoundkin.dynamics.pin_ways import PinWays, dependent_rows
@@ -24,7 +25,7 @@ class BalanceConditions:
 
     def __init__(self, ways: PinWays, closed: bool) -> None:
         self.ways = ways
-        self.masses = {name: complex(np.ravel(mass.mass)[0]) for name, mass in ways.motion.mechanism.masses.items()}
+        self.masses = {name: complex(first_entry(mass.mass)) for name, mass in ways.motion.mechanism.masses.items()}
         # a motion that is no whole cycle may show too many, as near to dependent as its vectors move little
         rows = [dependent_rows(ways)] if closed else []
         # what is left of a row when loops have taken from it all that they can; zeros stand for no row at all

@@ -44,11 +44,13 @@ class MassMotion(PrintsShort):
 
 def mass_motions(motion: Motion) -> Iterator[MassMotion]:
     """Yield the masses with their motions, to the order of the motion."""
+    free = {spin.link for spin in motion.structure.passive}
     for mass in motion.mechanism.masses.values():
         pose, place = motion.poses[mass.link], place_of(motion, mass)
         centre = tuple(pose.derivative(place, k) for k in range(motion.order + 1))
-        own = given_over(motion, mass.mass), given_over(motion, mass.inertia)
-        yield MassMotion(mass.link, *own, centre, _turning(motion, pose))
+        # a link that may turn freely, such as a roller, is not turned
+        inertia = 0.0 if mass.link in free else given_over(motion, mass.inertia)
+        yield MassMotion(mass.link, given_over(motion, mass.mass), inertia, centre, _turning(motion, pose))
 
 
 def place_of(motion: Motion, mass: Mass) -> Number:

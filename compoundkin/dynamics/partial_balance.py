@@ -52,7 +52,7 @@ def fraction_moment(ways: PinWays, fraction: float) -> tuple[str, complex]:
     crank, rod, piston = _slider_crank(ways)
     mechanism, own = ways.motion.mechanism, dict.fromkeys((crank, rod, piston), (0.0, 0j))
     for name, one in mechanism.masses.items():
-        own[name] = float(np.ravel(one.mass)[0]), complex(np.ravel(place_of(ways.motion, one))[0])
+        own[name] = float(first_entry(one.mass)), complex(np.ravel(place_of(ways.motion, one))[0])
     (a, on_crank), (b, _) = (_pin_between(ways, rod, other) for other in (crank, piston))
     pivot = ways.reached[crank].pivot
     mass, centre = own[rod]

@@ -120,10 +120,15 @@ def moved_alone(motion: Solved, driver: str) -> Any:
     return moved_together(motion, {driver: 1.0})
 
 
-def moved_together(motion: Solved, speeds: Mapping[str, Number], order: int = 1) -> Any:
-    """Return the motion with its drivers at other speeds, which do not change. Those not named are at rest."""
-    given = motion.inputs
-    drives = {name: (v[0], speeds.get(name, 0.0)) for name, v in given.drives.items()}
+def moved_together(
+    motion: Solved, speeds: Mapping[str, Number], order: int = 1, beyond: Mapping[str, Number] | None = None
+) -> Any:
+    """Return the motion with its drivers at other speeds, which do not change.
+
+    Those not named are at rest; drivers may be `beyond` their values by something, in the same configuration.
+    """
+    given, more = motion.inputs, beyond or {}
+    drives = {name: (v[0] + more.get(name, 0.0), speeds.get(name, 0.0)) for name, v in given.drives.items()}
     return _solved(motion, given.driven(drives), None, order)
 
 
