@@ -51,9 +51,7 @@ ROOMS = (
     ("cli",),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(ROOMS) for room in rooms}
-ALLOWED_BETWEEN_SISTERS: set[tuple[str, str]] = {
-    ("dynamics", "analysis"),  # what verifies forces are findings in the same table as those of motions
-}
+ALLOWED_BETWEEN_SISTERS: set[tuple[str, str]] = {}
 # `__init__`, `__main__` and the named modules of the public face, such as `laws`: no rooms, and nobody imports them.
 FACE = sorted(path for path in FILES if path.parent == PACKAGE)
 # Files that play the same part in sister folders.

@@ -10,6 +10,7 @@ import click
 from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import ARROWS, LABELS, PATHS, VECTORS, pose_options, solved_at
 from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
+from compoundkin.cli.force_options import FORCE_PICTURES, force_options, picture_of_forces, wanted_of_forces
 from compoundkin.cli.shell import put, say
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ VIEWS = ("groups", "loops", "graph", "circle")
 # What belongs to the sketch only, by the names of the values of the options.
 OF_SKETCH = ("ghosts", "paths", "centres", "vectors", "labels")
 # What is drawn instead of the sketch: options, and the names of their values.
-INSTEAD = {"structure": "view", "polygon": "polygon", "construction": "construction"}
+INSTEAD = {"structure": "view", "polygon": "polygon", "construction": "construction", **FORCE_PICTURES}
 
 
 @click.command(
@@ -34,6 +35,8 @@ Examples:
   compoundkin draw six-bar --at 35 --polygon velocity -o polygon.svg
   compoundkin draw six-bar --at 35 --construction plate -o circles.svg
   compoundkin draw six-bar --structure groups -o apart.svg
+  compoundkin draw loaded.toml --at 35 --forces -o forces.svg
+  compoundkin draw loaded.toml --at 35 --free-body plate -o plate.svg
 """
 )
 @mechanism_argument
@@ -59,6 +62,7 @@ Examples:
     help="Instead: taken apart into groups; the independent loops; the graph of links and pairs; the circle diagram "
     "of centres.",
 )
+@force_options
 @pose_options
 @LABELS
 @click.option("--size", type=float, metavar="PIXELS", help="The longer side.")
@@ -89,6 +93,8 @@ def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
         return draw(structure, kind=asked["view"], size=asked["size"])
     shown, at = _motion(structure, asked)
     words = {key: asked[key] for key in ("design", "size")}
+    if wanted_of_forces(asked):
+        return picture_of_forces(shown, at, asked, words)
     if asked["polygon"]:
         return draw(shown, at, kind="polygon", vectors=asked["polygon"], **words)
     if asked["construction"] is not None:
@@ -99,7 +105,9 @@ def _picture(structure: Structure, asked: Mapping[str, Any]) -> Picture:
 def _fitting(asked: Mapping[str, Any]) -> None:
     from compoundkin.base.errors import InvalidInput, Problem
 
-    instead = [option for option, name in INSTEAD.items() if asked[name] is not None]
+    instead = [option for option, name in INSTEAD.items() if asked[name] not in (None, False)]
+    if asked["statics"] and not any(option in FORCE_PICTURES for option in instead):
+        raise InvalidInput(Problem("--statics", "it tells how forces are found", "give --forces too"))
     unfit = instead[1:] + [key for key in OF_SKETCH if key != "labels" and asked[key]]
     if asked["view"]:
         unfit += [key for key in ("at", "speeds", "modes") if asked[key]]

@@ -8,6 +8,7 @@ import click
 
 from compoundkin.cli.drive_options import DESIGN, drive_options, solved
 from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
+from compoundkin.cli.force_options import STATICS, forces_of
 from compoundkin.cli.shell import NOT_ASSEMBLED
 from compoundkin.cli.structure import unsolvable
 
@@ -27,7 +28,7 @@ Examples:
 @mechanism_argument
 @drive_options
 @DESIGN
-@click.option("--statics", is_flag=True, help="Leave inertia out: masses have weight only.")
+@STATICS
 @report_options
 def command(file: str, design: int, statics: bool, form: str | None, path: str | None, **asked: Any) -> int:
     """Print forces in all pairs, efforts of drivers, the force on the frame.
@@ -36,7 +37,6 @@ def command(file: str, design: int, statics: bool, form: str | None, path: str |
     Exit code 3: some poses cannot be assembled.
     """
     from compoundkin.cli.progress import working
-    from compoundkin.dynamics.force_analysis import force_analysis
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
     from compoundkin.view.report.forces_section import forces_report
@@ -45,9 +45,9 @@ def command(file: str, design: int, statics: bool, form: str | None, path: str |
     if structure.faults:
         put_report(report(structure), form, path)
         return unsolvable(len(structure.faults))
-    motion = solved(structure, asked)
-    with working("finding forces"):
-        made = forces_report(force_analysis(motion, inertia=not statics), design)
+    forces = forces_of(solved(structure, asked), statics)
+    with working("finding extremes"):
+        made = forces_report(forces, design)
     put_report(made, form, path)
     return _missing(made)
 

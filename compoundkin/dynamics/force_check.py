@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from compoundkin.analysis.checks.finding import Check, Finding, worst
 from compoundkin.base.arrays import Number
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.driver_efforts import DriverEffort
@@ -23,6 +22,7 @@ from compoundkin.dynamics.newton_euler import (
 from compoundkin.dynamics.pair_check import strays
 from compoundkin.dynamics.power import powers_of
 from compoundkin.dynamics.virtual_work import virtual_efforts
+from compoundkin.kinematics.finding import Check, Finding, worst
 from compoundkin.kinematics.motion import Motion
 
 # What is left of forces is relative to the greatest one at the same pose, moments to it times the mechanism's size.

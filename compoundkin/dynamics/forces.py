@@ -22,7 +22,7 @@ from compoundkin.kinematics.table import Table, table_of
 from compoundkin.model.attributes import FORCE, FORCES, MOMENT
 
 if TYPE_CHECKING:
-    from compoundkin.analysis.checks import Check
+    from compoundkin.kinematics.finding import Check
 
 
 @dataclass(frozen=True, repr=False)

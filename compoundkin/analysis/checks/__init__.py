@@ -7,10 +7,10 @@ import numpy as np
 from compoundkin.analysis.checks.choice_check import choice_findings
 from compoundkin.analysis.checks.continuation_check import continuation_findings
 from compoundkin.analysis.checks.difference_check import difference_findings
-from compoundkin.analysis.checks.finding import Check, Checkable, Finding
 from compoundkin.analysis.checks.residuals import centre_findings, residuals
 from compoundkin.base.arguments import checked
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.finding import Check, Checkable, Finding
 
 __all__ = ["Check", "Finding", "verify"]
 

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from compoundkin.analysis.checks.continuation_check import SAME, known_at
-from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
 from compoundkin.analysis.checks.group_walk import GroupWalk
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block, places
+from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.kinematics.first_pose import distance, letters_shown
 from compoundkin.kinematics.groups import GroupSolver
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
 from compoundkin.analysis.checks.group_walk import NEWTON, SINGULAR, GroupWalk, bases, own_equations
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import poses_at
+from compoundkin.kinematics.finding import Finding, rounded_by, worst
 
 # Where continuation arrives and where the pose is may differ by this (of the size, or radians) and what rounding
 # leaves: the same configuration is found to rounding, another is farther away, but next to where the two meet.

@@ -8,12 +8,12 @@ from math import factorial
 
 import numpy as np
 
-from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import places
 from compoundkin.kinematics.double_roots import rates_at
+from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs.profile_contact import as_profiled

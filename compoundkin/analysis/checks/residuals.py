@@ -14,11 +14,11 @@ import numpy as np
 
 from compoundkin.analysis.centres import instant_centres
 from compoundkin.analysis.centres.centre_velocities import SLOWEST
-from compoundkin.analysis.checks.finding import Finding, rounded_by, worst
 from compoundkin.base.arrays import wrapped
 from compoundkin.base.errors import NotDetermined
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales

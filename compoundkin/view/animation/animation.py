@@ -16,12 +16,14 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.errors import ChangePointWarning, InvalidInput, Problem, UnassembledPoses
 from compoundkin.base.series import Number
 from compoundkin.base.suffixes import Kind, form_of
+from compoundkin.dynamics.forces import Forces
 from compoundkin.files.atomic import write_atomically
 from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
 from compoundkin.view.animation.films import Frames, Progress, gif, mp4, require_ffmpeg, require_pillow
+from compoundkin.view.animation.force_overlays import with_forces
 from compoundkin.view.animation.frame_caption import Caption
 from compoundkin.view.animation.moving_svg import smil
 from compoundkin.view.animation.overlays import Arrows, MovingCentre, moving_centres, with_arrows
@@ -150,7 +152,7 @@ def _untold(done: int, total: int) -> None:
 
 @checked
 def animate(
-    what: Motion | Mechanism | Structure,
+    what: Motion | Mechanism | Structure | Forces,
     *,
     design: int = 0,
     paths: str | Sequence[str] | bool = (),
@@ -164,15 +166,14 @@ def animate(
 ) -> Animation:
     """Animate a motion, to be saved as GIF, MP4 or SVG.
 
-    A mechanism is solved over its drivers' own ranges, finely enough to be shown.
+    A mechanism is solved over its drivers' own ranges, finely enough. Forces are arrows to one scale on their motion.
 
     `paths`, `vectors`, `centres`, `labels` and `size` are those of `draw`; vectors have one scale throughout. A motion
     in time is shown as fast as it is, any other one takes about four seconds, or `seconds`; `fps` is how many frames
     there are a second at most, 25 if left out. A motion that ends as it begins goes on for ever; any other one goes
     back the way it came, unless `back` is False. Poses that cannot be assembled are left out.
 
-    Raises InvalidInput, UnknownName for what does not fit, NotAssembled where no pose is assembled, and what `solve`
-    raises for a mechanism that it cannot solve.
+    Raises InvalidInput, UnknownName for what does not fit, NotAssembled where no pose is, and what `solve` raises.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = Mechanism("Crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
@@ -180,11 +181,13 @@ def animate(
     72
     """
     kinds, asked, shown_size = wanted(vectors), asked_labels(labels), checked_size(size)
-    motion = _motion(what)
+    motion = what.motion if isinstance(what, Forces) else _motion(what)
     scene = scene_in(motion, None, None, design)
     sketch = moving_sketch(motion, design, paths=asked_paths(scene, paths), labels=asked)
     timeline = timeline_of(sketch.scene, motion, design, back, seconds, fps)
     sketch, arrows = with_arrows(sketch, kinds, bool((timeline.ways < 0).any()))
+    if isinstance(what, Forces):
+        sketch, arrows = with_forces(sketch, what, arrows)
     names = [f"{number} {name}" for name, number in scene.legend.items()] if "links" in asked else []
     shown = timeline.poses[timeline.frames]
     caption = Caption(sketch, shown, tuple(names), tuple(one.scale for one in arrows), bool(asked))

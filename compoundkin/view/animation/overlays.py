@@ -15,7 +15,7 @@ from compoundkin.view.sketch.moving_sketch import MovingSketch
 from compoundkin.view.sketch.picture import MARGIN, Window
 from compoundkin.view.sketch.shapes import CircleShape, Shape, Text, leaves, moved
 from compoundkin.view.sketch.sketch_style import LETTER, SMALL
-from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, VectorScale, vector_shapes
+from compoundkin.view.sketch.vectors import VectorScale, vector_shapes
 
 # So near to the edge of a picture a centre is left out.
 EDGE = 2.0
@@ -34,7 +34,7 @@ class Arrows:
 
     def sign(self, way: int) -> int:
         """Tell what they are multiplied by where the motion goes back. Velocities turn round, accelerations do not."""
-        return int(way ** KINDS_OF_VECTOR[self.scale.kind][0])
+        return int(way**self.scale.order)
 
     def shapes(self, k: int, way: int) -> list[Shape]:
         """Return the arrows at the k-th assembled pose."""

@@ -11,9 +11,12 @@ import numpy as np
 
 from compoundkin.analysis.centres import Centres, instant_centres
 from compoundkin.base.series import Number
+from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.loaded_motions import loaded_forces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import ANGULAR_ACCELERATION, ANGULAR_VELOCITY, unit_of
+from compoundkin.view.page.force_data import force_data
 from compoundkin.view.page.markup import brief, exact
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.centre_pictures import centre_name
@@ -104,10 +107,19 @@ class MotionData:
             "links": [self._link(name) for name in self.links],
             "points": [self._point(letter) for letter in self.sketch.scene.letters],
             "parts": self._parts,
-            "vectors": dict(self._vectors()),
-            **self._centres(),
+            **self._overlays(),
             "outputs": [self._quantity(self.sample.quantity(name), brief) for name in self.outputs],
         }
+
+    @cached_property
+    def forces(self) -> Forces | None:
+        """The forces of the motion, where it has loads."""
+        return loaded_forces(self.motion) if self.with_centres else None
+
+    def _overlays(self) -> dict[str, Any]:
+        """What can be shown in the sketch: vectors, instant centres, forces where there are any."""
+        found = force_data(self.sketch, self.forces, self._numbers, self.chosen) if self.forces is not None else {}
+        return {"vectors": dict(self._vectors()), **self._centres(), **({"forces": found} if found else {})}
 
     @property
     def _seconds(self) -> float:

@@ -39,6 +39,10 @@ VIEWS = {
         "groups",
         "The mechanism taken apart, in solving order. Dashed circles are the pairs by which a group is attached.",
     ),
+    "forces": (
+        "free-bodies",
+        "Free bodies: every link on its own with all that acts on it, to one scale, at the pose nearest the drawing.",
+    ),
     "derivation": ("circle", "The circle diagram: a line for each instant centre, numbered in the order of the steps."),
 }
 OUTPUTS = "outputs"

@@ -29,6 +29,7 @@ MOST_ORDER = 2
 SWITCHES = (
     (VELOCITY, "velocities", "velocity vectors of all points"),
     (ACCELERATION, "accelerations", "acceleration vectors of all points"),
+    ("forces", "forces", "forces in pairs, loads, weights and inertia"),
     ("centres", "instant centres", "instant centres with the lines that give them"),
     ("names", "names", "letters of points and numbers of links"),
 )
@@ -100,7 +101,7 @@ def _sketch(moving: MotionData) -> str:
         *elements(sketch.still),
         *(element("g", "", class_=name) for name in ("traces", "rays")),
         element("g", lines(parts), class_="parts"),
-        *(element("g", "", class_=name) for name in ("velocities", "accelerations", "dots")),
+        *(element("g", "", class_=name) for name in ("velocities", "accelerations", "forces", "dots")),
     ]
     wide = f"max-width:{number(sketch.window.width * NATURAL)}px;{FONT}"
     return element("svg", lines(inside), viewBox=size, role="img", aria_label=title, style=wide, class_="sketch")
@@ -154,7 +155,7 @@ def _transport(moving: MotionData) -> str:
 def _switches(moving: MotionData, data: dict[str, Any]) -> str:
     """What may be shown or not; only what the motion has."""
     has = {kind: kind in data["vectors"] for kind in (VELOCITY, ACCELERATION)}
-    has |= {"centres": bool(data["centres"]), "names": True}
+    has |= {"forces": "forces" in data, "centres": bool(data["centres"]), "names": True}
     boxes = [_box(key, word, told, key == "names") for key, word, told in SWITCHES if has[key]]
     carriers = moving.motion.mechanism.carriers
     letters = [letter for letter in moving.sketch.scene.letters if FRAME not in carriers[letter]]

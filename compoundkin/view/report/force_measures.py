@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Extremes, Measure, extremes
@@ -30,24 +29,16 @@ class ForceFigure:
     is_length: bool = False
 
 
-class LastForces:
-    """The forces of the last motion asked for. Of one motion many figures are asked."""
-
-    def __init__(self, last: Forces) -> None:
-        self.last = last
-
-    def of(self, asked: Asked, motion: Motion) -> Number:
-        """Return a figure of a motion's forces. What is infinite is left out."""
-        if self.last.motion is not motion:
-            self.last = force_analysis(motion, inertia=self.last.inertia)
-        values = np.asarray(asked(self.last))
-        return np.where(np.isfinite(values), values, np.nan)
+def _asked(of: Asked, motion: Motion) -> Number:
+    """A figure of a motion's forces; what is infinite is left out."""
+    values = np.asarray(of(motion.forces))
+    return np.where(np.isfinite(values), values, np.nan)
 
 
 def force_extremes(forces: Forces, figures: tuple[ForceFigure, ...]) -> tuple[Extremes, ...]:
     """Return the least and the greatest value of figures, between the poses too."""
-    known, largest = LastForces(forces), largest_of(forces)
-    measures = [Measure(one.name, one.unit, 2 if forces.inertia else 1, partial(known.of, one.of), one.is_length,
+    largest = largest_of(forces)
+    measures = [Measure(one.name, one.unit, 2 if forces.inertia else 1, partial(_asked, one.of), one.is_length,
                         largest) for one in figures]  # fmt: skip
     return extremes(forces.motion, *measures)
 

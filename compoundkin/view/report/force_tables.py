@@ -1,20 +1,16 @@
-"""Tables of forces: loads and masses as written, reactions, drivers, what the frame is shaken by."""
+"""Tables of forces: reactions, drivers, what the frame is shaken by."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import fields
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
 from compoundkin.base.series import Number
 from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics.extremes import Extremes
-from compoundkin.model.elements import Load
-from compoundkin.model.units import Units
+from compoundkin.model.elements import FRAME
 from compoundkin.view.report.extremes_blocks import extremes_columns, extremes_row
 from compoundkin.view.report.force_measures import (
     ROUNDING,
@@ -26,72 +22,15 @@ from compoundkin.view.report.force_measures import (
 )
 from compoundkin.view.report.report_data import Block, Cell, Column, Paragraph, TableBlock
 from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.report.wording import listed, number
+from compoundkin.view.report.wording import listed
 
 # What is below this part of the largest moment, by forces and the size of the mechanism, is rounding.
 NOTHING = 1e-9
 
 
-def units_of(forces: Forces) -> Units:
-    """Return the units of forces."""
-    units = forces.motion.mechanism.units
-    assert units is not None
-    return units
-
-
-def masses_table(forces: Forces) -> TableBlock:
-    """Return the masses as they are written, the first of several designs."""
-    units, mechanism = units_of(forces), forces.motion.mechanism
-    columns = (Column("link"), Column("mass", units.mass, "each"), Column("mass centre"),
-               Column("inertia about it", f"{units.mass} {units.length}^2", "each"))  # fmt: skip
-    rows = [(one.link, _first(one.mass), _place(one.at), _first(one.inertia)) for one in mechanism.masses.values()]
-    return TableBlock(columns, tuple(rows))
-
-
-def loads_table(forces: Forces) -> TableBlock:
-    """Return the loads as written. What each is, on which links, with which numbers."""
-    rows = [(one.name, one.title, ", ".join(one.links), _told(one)) for one in forces.motion.mechanism.loads.values()]
-    return TableBlock((Column("load"), Column("kind"), Column("on"), Column("as written")), tuple(rows))
-
-
-def _told(load: Load) -> str:
-    """The numbers of a load, by what they are called."""
-    names = [f.name for f in fields(load) if f.name not in ("name", *load.link_keys)]
-    values = {name: _value(getattr(load, name)) for name in names}
-    return ", ".join(f"{name} {value}" for name, value in values.items() if value)
-
-
-def _value(value: Any) -> str:
-    if value is None or isinstance(value, bool | str):
-        return str(value or "")
-    if callable(value):
-        return "a function"
-    values = np.ravel(np.asarray(value))
-    if np.iscomplexobj(values):
-        parts = [_range(values.real), _range(values.imag)]
-        return f"({', '.join(parts)})"
-    return _range(values)
-
-
-def _range(values: Number) -> str:
-    low, high = float(np.min(values)), float(np.max(values))
-    return number(low) if low == high else f"{number(low)} to {number(high)}"
-
-
-def _place(at: Any) -> str:
-    if isinstance(at, str):
-        return at
-    place = complex(_first(at))
-    return f"({number(place.real)}, {number(place.imag)})"
-
-
-def _first(value: Any) -> Any:
-    return first_entry(value) if np.ndim(value) else value
-
-
 def reaction_figures(forces: Forces) -> tuple[ForceFigure, ...]:
     """Return what is listed of pairs. The force, and its moment where there is one."""
-    units = units_of(forces)
+    units = forces.units
     efforts = {driven.pair.name for driven in forces.motion.structure.driven.values()}
     found = []
     for name, own in forces.pairs.items():
@@ -130,7 +69,7 @@ def reactions_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     for figure, row in zip(figures, extremes_rows(sample, forces, figures), strict=True):
         (pair, _, on), _, what = figure.name.partition("|")[0].partition(", on "), "", figure.name.partition("|")[2]
         rows.append((pair, on, what, figure.unit, *row))
-    columns = Column("pair"), Column("on"), Column(""), Column("unit"), *extremes_columns(sample)
+    columns = Column("pair"), Column("on"), Column("quantity"), Column("unit"), *extremes_columns(sample)
     yield TableBlock(columns, tuple(rows), keys=1)
 
 
@@ -164,17 +103,17 @@ def drives_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
         average = mean(forces, values, sample.design)
         average = 0.0 if abs(average) <= NOTHING * root else average
         rows.append((*figure.name.split("|"), figure.unit, average, root, *row))
-    columns = (Column("driver"), Column(""), Column("unit"), Column("mean", style="each"), Column("rms", style="each"),
-               *extremes_columns(sample))  # fmt: skip
+    first = Column("driver"), Column("quantity"), Column("unit")
+    columns = (*first, Column("mean", style="each"), Column("rms", style="each"), *extremes_columns(sample))
     yield TableBlock(columns, tuple(rows), keys=1)
 
 
 def _drive_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:
-    units, is_angle = units_of(forces), forces.motion.drives[name].is_angle
+    units, is_angle = forces.units, forces.motion.drives[name].is_angle
     what, unit = ("torque", units.moment) if is_angle else ("thrust", units.force)
     yield ForceFigure(f"{name}|{what}", unit, partial(_effort, name))
     if forces.motion.order:
-        yield ForceFigure(f"{name}|power", f"{units.moment}/s", partial(_power, name))
+        yield ForceFigure(f"{name}|power", units.power, partial(_power, name))
 
 
 def _effort(name: str, forces: Forces) -> Number:
@@ -189,33 +128,33 @@ def _power(name: str, forces: Forces) -> Number:
 
 def shaking_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     """Yield the shaking force, and its moment about a point of the frame."""
-    letter, place = frame_point(forces)
-    units = units_of(forces)
+    letter = frame_point(forces)
+    units = forces.units
+    about = letter or "the origin"
     figures = (ForceFigure("force", units.force, _shaking, True),
-               ForceFigure(f"moment about {letter}", units.moment, partial(_shaking_moment, place)))  # fmt: skip
+               ForceFigure(f"moment about {about}", units.moment, partial(_shaking_moment, letter)))  # fmt: skip
     yield Paragraph("The mechanism on its frame (shaking force), reactions of the drivers included:")
     rows = [(figure.name, figure.unit, *row)
             for figure, row in zip(figures, extremes_rows(sample, forces, figures), strict=True)]  # fmt: skip
     yield TableBlock((Column("on the frame"), Column("unit"), *extremes_columns(sample)), tuple(rows), keys=1)
 
 
-def frame_point(forces: Forces) -> tuple[str, Number]:
+def frame_point(forces: Forces) -> str:
     """Return the point of the frame about which moments are told.
 
-    It is that of the first driver, else the first one.
+    It is that of the first driver, else the first one; nothing for a frame without points.
     """
-    points = forces.motion.mechanism.geometry.points["frame"]
+    points = forces.mechanism.geometry.points[FRAME]
     letters = [driven.pair.letters[0] for driven in forces.motion.structure.driven.values()]
-    letter = next((one for one in (*letters, *points) if one in points), "")
-    return (letter, points[letter]) if letter else ("the origin", 0j)
+    return next((one for one in (*letters, *points) if one in points), "")
 
 
 def _shaking(forces: Forces) -> Number:
-    return np.abs(forces.shaped(forces.on_frame.force))
+    return np.abs(forces.shaking.force)
 
 
-def _shaking_moment(place: Number, forces: Forces) -> Number:
-    return forces.shaped(forces.on_frame.about(_first(place)))
+def _shaking_moment(letter: str, forces: Forces) -> Number:
+    return forces.shaking.moment_about(letter or 0j)
 
 
 def undetermined(names: Sequence[str]) -> str:

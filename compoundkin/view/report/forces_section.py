@@ -7,18 +7,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from compoundkin.base.arrays import degrees, first_entry
-from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.loaded_motions import loaded_forces
 from compoundkin.kinematics import Motion
-from compoundkin.model.mechanism import Mechanism
 from compoundkin.view.report.force_tables import (
     drives_blocks,
-    loads_table,
-    masses_table,
     reactions_blocks,
     shaking_blocks,
-    units_of,
 )
+from compoundkin.view.report.load_tables import loads_table, masses_table
 from compoundkin.view.report.report_data import Block, Outcome, Paragraph, Section
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
@@ -28,17 +25,10 @@ from compoundkin.view.report.wording import listed, number
 STEADY = 1e-9
 
 
-def has_forces(mechanism: Mechanism) -> bool:
-    """Tell whether there is anything to report: units, and masses or loads."""
-    return mechanism.units is not None and bool(mechanism.masses or mechanism.loads)
-
-
 def forces_sections(motion: Motion, design: int = 0) -> tuple[Section, ...]:
     """Return the section on the forces of a motion. None without masses and loads."""
-    if not has_forces(motion.mechanism) or not motion.assembled.any():
-        return ()
-    # without accelerations there is no inertia to tell: statics, and the section says so
-    return (forces_section(force_analysis(motion, inertia=motion.order >= 2), design),)
+    forces = loaded_forces(motion)
+    return () if forces is None else (forces_section(forces, design),)
 
 
 def forces_section(forces: Forces, design: int = 0) -> Section:
@@ -69,7 +59,7 @@ def _blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
 
 def assumptions(sample: Sample, forces: Forces) -> Iterator[str]:
     """Yield what the numbers stand on, one clause each."""
-    units, mechanism = units_of(forces), forces.motion.mechanism
+    units, mechanism = forces.units, forces.motion.mechanism
     yield f"lengths in {units.length}, masses in {units.mass}, forces in {units.force}, moments in {units.moment}"
     free_fall = complex(first_entry(mechanism.gravity)) if np.ndim(mechanism.gravity) else complex(mechanism.gravity)
     told = f"({number(free_fall.real)}, {number(free_fall.imag)}) m/s^2"

@@ -7,11 +7,16 @@ from typing import Any
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem, nearest
-from compoundkin.kinematics import Motion
+from compoundkin.dynamics.force_analysis import force_analysis
+from compoundkin.dynamics.forces import Forces
+from compoundkin.kinematics import Motion, solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.view.sketch.centre_pictures import circle_diagram
 from compoundkin.view.sketch.construction import construction
+from compoundkin.view.sketch.force_polygons import force_polygons
+from compoundkin.view.sketch.force_sketch import force_sketch
+from compoundkin.view.sketch.free_bodies import free_bodies
 from compoundkin.view.sketch.graph_picture import graph
 from compoundkin.view.sketch.groups_in_graph import groups_in_graph
 from compoundkin.view.sketch.picture import Picture
@@ -24,7 +29,7 @@ from compoundkin.view.sketch.vectors import vector_polygon
 
 @checked
 def draw(
-    what: Motion | Mechanism | Structure,
+    what: Motion | Mechanism | Structure | Forces,
     at: Any = None,
     *,
     kind: str = "sketch",
@@ -44,8 +49,10 @@ def draw(
     group in solving order, the pairs by which it is attached in dashed circles; "loops", the independent loops as
     polygons of vectors; "graph", the kinematic graph of links and pairs; "circle", the circle diagram of the instant
     centres; "polygon", the polygon of the velocities of all points (`vectors="acceleration"`: of their accelerations)
-    with the images of the links; or "construction", how the dyad with a `link` (the first one if left out) is drawn
-    with circles and lines, its other mode dashed.
+    with the images of the links; "construction", how the dyad with a `link` (the first one if left out) is drawn
+    with circles and lines, its other mode dashed; "free-bodies", each link or one `link` alone with all that acts on
+    it; or "force-polygon", the forces on each link or one head to tail. The last two are of forces, or find them; the
+    sketch of forces has them as arrows, that in each pair on its second link, or all those on one `link`.
 
     The pose is that of the drivers' values `at` (radians or lengths: a number, or several by name), or the pose with
     the index `pose`; else the one nearest to the mechanism's drawing. Graph and circle diagram have none. In a sketch,
@@ -71,9 +78,25 @@ def draw(
         raise InvalidInput(Problem("kind", f"there is no picture {kind!r}", nearest(kind, list(KINDS))))
     wishes = Wishes(at, pose, design, ghosts, paths, centres, vectors, labels, size, link)
     drawn, known = KINDS[kind]
+    if isinstance(what, Forces) and kind in OF_FORCES:
+        drawn, known = OF_FORCES[kind]
+    elif isinstance(what, Forces):
+        what = what.motion
     if unfit := wishes.others(known):
         raise InvalidInput(Problem(unfit[0], f"it does not go with the kind {kind!r}", "leave one of them out"))
     return drawn(what, wishes)
+
+
+def _of_forces(drawn: Callable[[Forces, Wishes], Picture]) -> Callable[[Drawable | Forces, Wishes], Picture]:
+    """Return what draws forces, or those of a motion or a mechanism, which are found first."""
+    return lambda what, wishes: drawn(_forces(what), wishes)
+
+
+def _forces(what: Drawable | Forces) -> Forces:
+    """The forces, or those of a motion; of a mechanism those over its drivers' own ranges."""
+    if isinstance(what, Forces):
+        return what
+    return force_analysis(what if isinstance(what, Motion) else solve(what))
 
 
 def _groups(what: Drawable, wishes: Wishes) -> Picture:
@@ -127,7 +150,7 @@ def _taken_apart(what: Drawable) -> Structure:
 
 POSE = ("at", "pose", "design")
 # Each kind of picture: what draws it, and which of the wishes it knows.
-KINDS: Mapping[str, tuple[Callable[[Drawable, Wishes], Picture], Sequence[str]]] = {
+KINDS: Mapping[str, tuple[Callable[[Any, Wishes], Picture], Sequence[str]]] = {
     "sketch": (sketch, (*POSE, "ghosts", "paths", "centres", "vectors", "labels", "size")),
     "groups": (_groups, (*POSE, "size")),
     "loops": (_loops, (*POSE, "size")),
@@ -135,4 +158,11 @@ KINDS: Mapping[str, tuple[Callable[[Drawable, Wishes], Picture], Sequence[str]]]
     "circle": (_circle, ("size",)),
     "polygon": (vector_polygon, (*POSE, "vectors", "size")),
     "construction": (construction, (*POSE, "link", "size")),
+    "free-bodies": (_of_forces(free_bodies), (*POSE, "link", "size")),
+    "force-polygon": (_of_forces(force_polygons), (*POSE, "link", "size")),
+}
+# The same of forces, where it is another picture.
+OF_FORCES: Mapping[str, tuple[Callable[[Any, Wishes], Picture], Sequence[str]]] = {
+    "sketch": (_of_forces(force_sketch), (*POSE, "labels", "link", "size")),
+    **{kind: KINDS[kind] for kind in ("free-bodies", "force-polygon")},
 }

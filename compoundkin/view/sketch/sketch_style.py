@@ -38,6 +38,13 @@ COLOURS: tuple[tuple[str, str], ...] = (
 )
 OF_VELOCITIES = "#b3261e", "#ff8a80"
 OF_ACCELERATIONS = "#5b4bc4", "#a79bff"
+# What acts on links: forces in pairs and of drivers, loads and weights, what inertia does.
+REACTION, LOAD, INERTIA = "reaction", "load", "inertia"
+OF_FORCES: Mapping[str, tuple[str, str]] = {
+    REACTION: ("#c2001a", "#ff7b7b"),
+    LOAD: ("#0047ab", "#82b4ff"),
+    INERTIA: ("#7a4fa3", "#c9a6ee"),
+}
 
 _LINE = "fill:none;stroke-linecap:round;stroke-linejoin:round"
 
@@ -62,6 +69,9 @@ CLASSES: Mapping[str, tuple[str, tuple[str, str]]] = {
     f"{VELOCITY}-head": ("fill:{}", OF_VELOCITIES),
     ACCELERATION: (f"{_LINE};stroke:{{}};stroke-width:2", OF_ACCELERATIONS),
     f"{ACCELERATION}-head": ("fill:{}", OF_ACCELERATIONS),
+    **{kind: (f"{_LINE};stroke:{{}};stroke-width:2", colours) for kind, colours in OF_FORCES.items()},
+    **{f"{kind}-head": ("fill:{}", colours) for kind, colours in OF_FORCES.items()},
+    **{f"{kind}-name": (f"fill:{{}};font-size:{SMALL:g}px", colours) for kind, colours in OF_FORCES.items()},
     "centre": ("fill:{}", ("#b3261e", "#ff8a80")),
     "ray": (f"{_LINE};stroke:{{}};stroke-width:.9;stroke-dasharray:5 4", FAINT),
     "edge": (f"{_LINE};stroke:{{}};stroke-width:1.6", FAINT),

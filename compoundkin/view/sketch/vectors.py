@@ -37,12 +37,16 @@ SAME = 1.0
 
 @dataclass(frozen=True)
 class VectorScale:
-    """How vectors are drawn. Picture units for a unit of theirs, and a round amount to show beside the picture."""
+    """How vectors are drawn. Picture units for a unit of theirs, and a round amount to show beside the picture.
+
+    `order` is how many time derivatives they take: odd ones turn round where a motion goes back.
+    """
 
     kind: str
     per_unit: float
     amount: float
     text: str
+    order: int = 0
 
 
 def wanted(vectors: Any) -> tuple[str, ...]:
@@ -82,8 +86,8 @@ def scale_of(kind: str, rates: Mapping[str, complex], length: float, unit: str) 
     if largest <= 0:
         return None
     amount = round_below(largest)
-    text = f"{amount:g} {unit or 'length'}{KINDS_OF_VECTOR[kind][1]}"
-    return VectorScale(kind, length / largest, amount, text)
+    order, per_second = KINDS_OF_VECTOR[kind]
+    return VectorScale(kind, length / largest, amount, f"{amount:g} {unit or 'length'}{per_second}", order)
 
 
 def round_below(value: float) -> float:

@@ -11,6 +11,7 @@
   const TOGETHER = 3; // centres nearer to each other are named together
   const ROUNDING = 3e-7;
   const SCALE = 18; // the height of the line that tells a scale of vectors
+  const KEY = 22; // the length of an arrow that tells a colour
   const VECTORS = [["velocity", 1, "velocities"], ["acceleration", 2, "accelerations"]];
   const HEAD = 10, HALF = 3.6; // an arrow's head, as in every other picture
 
@@ -67,6 +68,9 @@
       this.drivers = data.drivers.map(quantity);
       this.outputs = data.outputs.map(quantity);
       this.centres = data.centres.map((centre) => ({ ...centre, at: centre.at.map(open) }));
+      if (data.forces) {
+        this.forces = data.forces.arrows.map((one) => ({ ...one, force: one.force.map(open), at: one.at && one.at.map(open) }));
+      }
       this.points = Object.fromEntries(data.points.map((point) => [point.name, point]));
       this.shown = new Set(["names"]);
       this.letters = 1;
@@ -83,7 +87,7 @@
       this.parts = [...this.svg.querySelectorAll(".parts > g")];
       this.placed = [];
       this.names = this.parts.map((part) => (part.classList.contains("name") ? this.box(part) : null));
-      this.layers = Object.fromEntries(["traces", "rays", "velocities", "accelerations", "dots"].map((k) => [k, one(`svg .${k}`)]));
+      this.layers = Object.fromEntries(["traces", "rays", "velocities", "accelerations", "forces", "dots"].map((k) => [k, one(`svg .${k}`)]));
       Object.assign(this, { slider: one(".slider"), play: one(".play"), where: one(".where"), said: one(".said") });
       this.reading = one(".reading tbody");
       this.rows = this.outputs.map((output) => {
@@ -252,7 +256,20 @@
           }
         }
       }
-      bottom += kinds.length * SCALE * this.letters;
+      const told = kinds.length + (this.shown.has("forces") && this.forces ? 1 + Object.keys(this.data.forces.kinds).length : 0);
+      if (this.shown.has("forces") && this.forces) {
+        for (const one of this.forces) {
+          for (let k = 0; k < this.poses; k++) {
+            const [x, y] = this.paper(this.acts(one, k)), [dx, dy] = one.force.map((c) => c[k] * this.data.forces.scale);
+            if (!Number.isFinite(x + y + dx + dy)) continue;
+            left = Math.min(left, x + dx - HALF);
+            right = Math.max(right, x + dx + HALF);
+            top = Math.min(top, y - dy - HALF);
+            bottom = Math.max(bottom, y - dy + HALF);
+          }
+        }
+      }
+      bottom += told * SCALE * this.letters;
       this.view = { left, bottom };
       this.svg.setAttribute("viewBox", `${left} ${top} ${right - left} ${bottom - top}`);
     }
@@ -262,6 +279,8 @@
         this.layers[layer].replaceChildren();
         if (known && this.shown.has(kind)) this.vectors(kind, order, this.layers[layer]);
       }
+      this.layers.forces.replaceChildren();
+      if (known && this.forces && this.shown.has("forces")) this.acting(this.layers.forces);
       this.layers.dots.replaceChildren();
       this.layers.rays.replaceChildren();
       if (known && this.shown.has("centres")) this.centred();
@@ -276,6 +295,28 @@
       const x = this.view.left + 12, y = this.view.bottom - (both ? 1.5 : 0.5) * SCALE * this.letters;
       this.arrow([x, y], [scale.length, 0], kind, layer);
       this.text(`${kind}, ${scale.text}`, x + 8 + scale.length, y, "ck-note", "start", layer);
+    }
+    // where a force acts: at a point of its link, or where it was told for every pose
+    acts(one, k = this.pose) {
+      return one.at ? one.at.map((values) => values[k]) : this.at(one.link, one.x, one.y, k);
+    }
+    acting(layer) {
+      const { scale, shortest, length, text, kinds, unit } = this.data.forces;
+      for (const one of this.forces) {
+        const [fx, fy] = one.force.map((c) => c[this.pose]);
+        if (!(Math.hypot(fx, fy) * scale >= shortest)) continue;
+        const group = make("g", {}, layer);
+        make("title", {}, group).textContent = `${one.told}: ${withUnit(Math.hypot(fx, fy), unit)}`;
+        this.arrow(this.paper(this.acts(one)), [fx * scale, -fy * scale], one.kind, group);
+      }
+      const before = VECTORS.filter(([kind]) => this.shown.has(kind) && this.data.vectors[kind]).length;
+      const rows = [["drive", text], ...Object.entries(kinds)];
+      rows.forEach(([kind, words], row) => {
+        const x = this.view.left + 12, y = this.view.bottom - (before + rows.length - row - 0.5) * SCALE * this.letters;
+        const long = kind === "drive" ? length : KEY;
+        this.arrow([x, y], [long, 0], kind, layer);
+        this.text(words, x + 8 + long, y, "ck-note", "start", layer);
+      });
     }
     text(words, x, y, style, anchor, layer) {
       const grown = this.letters > 1 ? ` scale(${this.letters})` : "";

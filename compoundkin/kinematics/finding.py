@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.display import Shows
 from compoundkin.base.series import Number
-from compoundkin.kinematics import Motion
+from compoundkin.kinematics.motion import Motion
 
 # So many times the estimate of its error a residual may be: it adds the errors of several links.
 LEFT = 10.0

@@ -1,0 +1,101 @@
+"""Forces on pictures: arrows to one scale, closed polygons, free bodies, names, and what it says of wrong wishes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.errors import InvalidInput, UnknownName
+from compoundkin.view.sketch.acting_forces import acting_forces
+from compoundkin.view.sketch.force_arrows import drawn, force_scale, moment_arc
+from compoundkin.view.sketch.shapes import ArcShape, Polygon, Polyline, Shape, ShapeGroup, Text, leaves
+from compoundkin.view.sketch.shown_pose import scene_of
+from tests.view.loaded import MASS, REACH, SPEED, UNITS, crank_forces, six_bar_forces
+
+
+def _texts(shapes: tuple[Shape, ...]) -> list[str]:
+    return [shape.text for shape in leaves(shapes) if isinstance(shape, Text)]
+
+
+def test_what_acts_on_each_link_is_in_equilibrium_and_as_in_the_closed_form() -> None:
+    forces = six_bar_forces()
+    scene = scene_of(forces.motion, np.deg2rad(37.5), None, 0)  # between two poses: found anew there
+    for link, own in acting_forces(forces, scene).items():
+        if link != "frame":
+            assert abs(sum(one.force for one in own)) < 1e-9
+            assert abs(sum(one.moment + (np.conjugate(one.at) * one.force).imag for one in own)) < 1e-7
+    one = crank_forces()
+    own = {one.name: one for one in acting_forces(one, scene_of(one.motion, 0.0, None, 0))["crank"]}
+    assert own["m₂g"].force == pytest.approx(-9.81j * MASS)
+    assert own["m₂g"].at == pytest.approx(REACH)
+    assert own["−m₂a₂"].force == pytest.approx(MASS * SPEED**2 * REACH / 1000.0)
+    assert own["F₁₂"].force == pytest.approx(9.81j * MASS - MASS * SPEED**2 * REACH / 1000.0)
+    assert own["P₂"].moment == pytest.approx(9.81 * MASS * REACH)
+
+
+def test_arrows_are_to_scale_and_press_from_outside() -> None:
+    forces = six_bar_forces()
+    scene = scene_of(forces.motion, np.deg2rad(35), None, 0)
+    pushed = next(one for one in acting_forces(forces, scene)["bar"] if one.name == "force")
+    scale = force_scale([pushed], 100.0, "N")
+    assert scale is not None
+    assert (scale.amount, scale.text) == (5.0, "5 N")
+    away, into = drawn(pushed, 0j, scale), drawn(pushed, 0j, scale, complex(np.conjugate(pushed.force)) * 9)
+    for arrow in (away, into):
+        assert abs(arrow.stop - arrow.start) == pytest.approx(100.0)
+        assert np.angle(np.conjugate(arrow.stop - arrow.start)) == pytest.approx(np.angle(-3 - 5j))
+    assert abs(away.start) < abs(away.stop)
+    assert abs(into.stop) < abs(into.start)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_arcs_turn_as_the_moments_do(sign: int) -> None:
+    found = next(iter(acting_forces(crank_forces(), scene_of(crank_forces().motion, 0.0, None, 0))["crank"]))
+    turned = moment_arc(type(found)(**{**vars(found), "moment": sign * 2.0}), 0j, 20.0, 1 + 0j)
+    arc, head = (next(s for s in leaves(turned) if isinstance(s, kind)) for kind in (ArcShape, Polygon))
+    # y points downward: counterclockwise goes against the sweep of SVG
+    assert arc.sweep is (sign < 0)
+    way = (np.conjugate(arc.start) * (arc.stop - arc.start)).imag
+    assert np.sign(way) == -sign
+    assert abs(abs(head.points[0]) - 20.0) < 1e-9
+
+
+def test_polygons_close() -> None:
+    picture = ck.draw(six_bar_forces(), at=ck.deg(35), kind="force-polygon", link="plate")
+    groups = [s for s in picture.shapes if isinstance(s, ShapeGroup)]
+    arrows = [s for g in groups for s in g.shapes if isinstance(s, ShapeGroup) and s.title]
+    lines = [shape for one in arrows for shape in one.shapes if isinstance(shape, Polyline | Polygon)]
+    starts = [shape.points[0] for shape in lines if isinstance(shape, Polyline)]
+    tips = [shape.points[0] for shape in lines if isinstance(shape, Polygon)]
+    assert len(starts) == len(tips) == 5
+    assert np.allclose(starts, [tips[-1], *tips[:-1]])
+
+
+def test_free_bodies_name_everything() -> None:
+    forces = six_bar_forces()
+    texts = _texts(ck.draw(forces, at=ck.deg(35), kind="free-bodies").shapes)
+    assert {"2 crank", "3 plate", "4 rocker", "5 bar", "6 block"} <= set(texts)
+    assert any(text.startswith("F₅₆") for text in texts)
+    assert any(text.startswith("T₂") for text in texts)
+    assert any("arcs not to scale" in text for text in texts)
+    assert ck.draw(forces.motion, at=ck.deg(35), kind="free-bodies", link="bar").title.endswith("free body")
+    assert ck.draw(forces, at=ck.deg(35)).title.endswith("forces")
+    assert ck.draw(forces, kind="graph").title == ck.draw(forces.motion, kind="graph").title
+
+
+def test_a_pin_of_three_links_acts_on_each() -> None:
+    bare = ck.catalog.load_named("toggle-press")
+    press = ck.Mechanism("Press", *bare.items, ck.force("slider", (-10000, 0), at="D"), units=UNITS)
+    forces = ck.force_analysis(ck.solve(press))
+    texts = _texts(ck.draw(forces, at=ck.deg(45)).shapes)
+    assert {"F₃(B)", "F₄(B)", "F₅(B)"} <= set(texts)
+
+
+def test_wrong_wishes() -> None:
+    with pytest.raises(UnknownName, match="plate"):
+        ck.draw(six_bar_forces(), kind="free-bodies", link="plat")
+    with pytest.raises(InvalidInput, match="units"):
+        ck.draw(ck.catalog.load_named("six-bar"), kind="free-bodies")
+    with pytest.raises(InvalidInput, match="ghosts"):
+        ck.draw(six_bar_forces(), ghosts=3)
