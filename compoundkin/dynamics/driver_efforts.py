@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from compoundkin.base.arrays import Number
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.found_forces import FoundForces
@@ -35,6 +37,25 @@ class DriverEffort:
         """The torque or thrust on the driven link. Positive where it drives the coordinate up."""
         pair = self.driven.pair
         return self.forces.motion.grid.known(self.along * pair.driven_by(self.driven.drive.link))
+
+    @property
+    def interval(self) -> tuple[Number, Number]:
+        """The least and the greatest effort that hold it, of the motion's shape.
+
+        Where drivers move they are one number, the effort. At rest friction holds too, whichever way it is needed.
+        """
+        friction, effort = self.forces.friction, self.effort
+        ends = friction.intervals.get(self.name)
+        if ends is None:
+            return effort, effort
+        low, high = (np.where(friction.at_rest, self.forces.grid.known(end), effort) for end in ends)
+        return low, high
+
+    @property
+    def backward(self) -> Number:
+        """The effort if all moves the other way, under the same loads."""
+        found = self.forces.friction.backward.get(self.name)
+        return self.effort if found is None else self.forces.grid.known(found)
 
     @property
     def along(self) -> Number:

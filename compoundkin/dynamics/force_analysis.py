@@ -9,6 +9,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.friction.rubbed_motion import with_friction
 from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.redundant_reactions import own_wrenches
@@ -40,6 +41,8 @@ def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
     wrenches = {name: found[name] for name in motion.solving_order.pairs if name in found and name in own}
     told = replace(motion, loading={"inertia": inertia})
     forces = Forces(told, inertia, wrenches, found[ON_FRAME])
+    if motion.mechanism.frictions:
+        forces = with_friction(forces)
     # quantities of forces are read from their motion, which need not find them again
     vars(told)["forces"] = forces
     return forces

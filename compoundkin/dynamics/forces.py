@@ -11,6 +11,7 @@ from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.dynamics.driver_efforts import DriverEffort
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.frame_forces import ShakingForce
+from compoundkin.dynamics.friction.efficiency import Efficiency
 from compoundkin.dynamics.link_forces import LinkForces, link_forces
 from compoundkin.dynamics.pair_forces import PairForce
 from compoundkin.dynamics.pin_forces import PinForces
@@ -31,6 +32,18 @@ class Forces(FoundForces):
 
     Arrays have the motion's shape, and are NaN where poses are not assembled.
     """
+
+    dry: Forces | None = None
+
+    @property
+    def frictionless(self) -> Forces:
+        """The forces of the same motion without friction."""
+        return self if self.dry is None else self.dry
+
+    @cached_property
+    def efficiency(self) -> Efficiency:
+        """How much of the power put in comes out, and whether it is self-locking."""
+        return Efficiency(self)
 
     @cached_property
     def pairs(self) -> Mapping[str, PairForce]:

@@ -10,6 +10,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.copies import CopiesFields
 from compoundkin.base.poses import Pose
 from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.friction.friction_forces import FrictionForces, no_friction
 from compoundkin.dynamics.link_wrench import LinkWrench
 from compoundkin.dynamics.self_stresses import Open, SelfStress, self_stress
 from compoundkin.kinematics.inputs import Inputs, PoseGrid
@@ -26,9 +27,9 @@ class FoundForces(CopiesFields):
     """What an analysis of forces found, with its motion.
 
     `wrenches` are those on the second member of each pair from the first, (designs, poses), about the world's origin;
-    `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction. Of a mechanism
-    held by too much they are those with what the structure's `relaxation` names left free: one of many possible, which
-    is told only where that is `assumed`.
+    `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction; `rubbed` are the
+    frictions of a mechanism that has some. Of a mechanism held by too much they are those with what the structure's
+    `relaxation` names left free: one of many possible, which is told only where that is `assumed`.
     """
 
     motion: Motion
@@ -37,6 +38,12 @@ class FoundForces(CopiesFields):
     on_frame: Wrench
     more: tuple[LinkWrench, ...] = ()
     assumed: bool = False
+    rubbed: FrictionForces | None = None
+
+    @property
+    def friction(self) -> FrictionForces:
+        """The frictions in pairs, and where the mechanism is wedged by them."""
+        return no_friction(self.motion) if self.rubbed is None else self.rubbed
 
     @property
     def units(self) -> Units:

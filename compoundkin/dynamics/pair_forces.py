@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from compoundkin.base.arrays import Number, Vectors
 from compoundkin.base.errors import Problem, UnknownName
 from compoundkin.base.poses import Pose
@@ -88,6 +90,23 @@ class PairForce:
     def moment_about(self, point: Any) -> Number:
         """Return the moment about a letter or a place of the world."""
         return self.acting.moment_about(point)
+
+    @property
+    def friction(self) -> Number:
+        """The friction on the link, toward a growing coordinate of the second.
+
+        It is a force, in a pin a moment; zero without friction.
+        """
+        found = self.forces.friction.pairs
+        if self.name not in found:
+            return np.zeros(self.forces.shape)
+        return found[self.name].friction * (1.0 if self.side else -1.0)
+
+    @property
+    def friction_power(self) -> Number:
+        """The power of friction, never positive."""
+        found = self.forces.friction.pairs
+        return found[self.name].power if self.name in found else np.zeros(self.forces.shape)
 
     @property
     def ends(self) -> Ends:

@@ -13,8 +13,9 @@ from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import Contact, Touch, row
+from compoundkin.model.pairs.contact import Touch, row
 from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.dry_contacts import RubbingContact
 from compoundkin.model.pairs.guide_ends import EndedArc, Reach, reach_key
 from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
 from compoundkin.model.pairs.revolute import Revolute
@@ -22,7 +23,7 @@ from compoundkin.model.pairs.symbols import Groove, Mark, Stud, arc_line, reach
 
 
 @dataclass(frozen=True, eq=False)
-class ArcSlot(Contact, Guided, EndedArc):
+class ArcSlot(RubbingContact, Guided, EndedArc):
     """A point of `link` that runs along a circular slot in the link `on`.
 
     The point is `at`, the circle of `radius` about `centre_at`.

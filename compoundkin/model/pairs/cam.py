@@ -19,6 +19,7 @@ from compoundkin.model.pairs.arc import ArcSlot
 from compoundkin.model.pairs.contact import Touch, centre_of_curvature, row
 from compoundkin.model.pairs.contact_search import Freedom, crossings_on_way, path_of
 from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.dry_contacts import RubbingContact
 from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.loop_vectors import Curved, Sum, Unknown, angle_of
 from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
@@ -28,7 +29,7 @@ from compoundkin.model.profiles import Profile, side_of
 
 
 @dataclass(frozen=True, eq=False)
-class Cam(Profiled, Guided):
+class Cam(Profiled, Guided, RubbingContact):
     """A roller of `radius`, or the point `at`, on the profile of `on`.
 
     A closed profile is touched from outside, or from `inside`; without a radius the point runs on the profile itself,

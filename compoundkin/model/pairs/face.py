@@ -18,6 +18,7 @@ from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import Touch, centre_of_curvature, row
 from compoundkin.model.pairs.contact_search import Freedom, path_of, tangents_on_way
 from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.dry_contacts import RubbingContact
 from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.loop_vectors import (
     Curved,
@@ -43,7 +44,7 @@ ALONG = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Face(Profiled):
+class Face(Profiled, RubbingContact):
     """A flat face of `link` rests on the profile of the link `on`.
 
     The face is the line through the point `at` of `link` in the direction `angle` (radians, from its x axis); the

@@ -16,6 +16,7 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import NameWording, link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
+from compoundkin.model.pairs.dry_contacts import RubbingGuide
 from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
 from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
@@ -24,7 +25,7 @@ from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 
 
 @dataclass(frozen=True, eq=False)
-class Prismatic(Drivable, Orienting, Guided, Ended):
+class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended):
     """The link `link` slides on the link `on`. Its point `at` runs along a guide.
 
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x
@@ -71,7 +72,6 @@ class Prismatic(Drivable, Orienting, Guided, Ended):
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
     is_simple: ClassVar[bool] = True
-    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
     table: ClassVar[str] = "slides"
     wording: ClassVar[NameWording] = NameWording("slide", "name the link that carries the guide", "the one that slides")
 
@@ -110,7 +110,6 @@ class Prismatic(Drivable, Orienting, Guided, Ended):
                 what = f"{self.through!r} and {self.toward!r} are at one place, so that the guide has no direction"
                 raise InvalidMechanism(Problem(f"{self.name}.toward", what, "name another point or give an angle"))
             guide = line / np.abs(line)
-        point = geometry.points[self.link][self.at]
         offset, turn = self.offset, self.turn
         along: Number = 1 + 0j if turn is None else np.cos(turn) - 1j * np.sin(turn)
         if {self.on, self.link} <= geometry.as_drawn and self.on in geometry.drawn:
@@ -121,7 +120,7 @@ class Prismatic(Drivable, Orienting, Guided, Ended):
                 offset = (np.conjugate(seen) * (geometry.sketch[self.at] - geometry.sketch[self.through])).imag
         if offset is not None:
             start = start + 1j * guide * offset
-        return End(start, guide), End(point, along)
+        return End(start, guide), End(geometry.points[self.link][self.at], along)
 
     def closure(self, ends: Ends, poses: Poses) -> tuple[Series, ...]:
         """Return the distance from the guide, the sine of the angle to it."""

@@ -14,13 +14,14 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
+from compoundkin.model.pairs.dry_contacts import RubbingPin
 from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.model.pairs.symbols import Mark, Pin
 
 
 @dataclass(frozen=True)
-class Revolute(Drivable):
+class Revolute(RubbingPin, Drivable):
     """A pin at the letter `at` between the links `first` and `second`.
 
     Held: the distance in x and in y between the two sides of the pin. Free: the angle from first to second.

@@ -16,8 +16,9 @@ from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.contact import Contact, Touch, row
+from compoundkin.model.pairs.contact import Touch, row
 from compoundkin.model.pairs.contract import Ends, Pair, Poses
+from compoundkin.model.pairs.dry_contacts import RubbingContact
 from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
 from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
@@ -26,7 +27,7 @@ from compoundkin.model.pairs.symbols import Groove, Mark, Stud, reach
 
 
 @dataclass(frozen=True, eq=False)
-class Slot(Contact, Guided, Ended):
+class Slot(RubbingContact, Guided, Ended):
     """The point `at` of `link` runs along a straight slot in the link `on`.
 
     The slot is the line through the point `through` of `on`, in the direction `angle` (radians, from the x axis of

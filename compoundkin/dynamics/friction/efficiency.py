@@ -1,0 +1,130 @@
+"""Efficiency: the power that comes out of a mechanism over that put in, forward and with all motion reversed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.display import PrintsShort
+from compoundkin.dynamics.friction.pose_stretches import PoseStretch, stretches_where
+
+if TYPE_CHECKING:
+    from compoundkin.dynamics.forces import Forces
+
+# Powers below this part of the greatest one at any pose of the motion are rounding.
+NOTHING = 1e-12
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Efficiency(PrintsShort):
+    """How much of the power put in comes out. The rest is lost, by friction.
+
+    What gives power at a pose puts it in, be it a driver, a load, weight or inertia; what takes it, takes it out.
+    Arrays have the motion's shape; NaN where nothing flows.
+    """
+
+    forces: Forces
+
+    @property
+    def at_poses(self) -> Number:
+        """The power out over the power in at every pose."""
+        return self._shaped(_ratio(self._all, self._least))
+
+    @property
+    def over_motion(self) -> Number:
+        """The work out over the work in of the whole motion, for each design. Each driver and load counts once."""
+        works = [self._integrated(power) for power in self._all]
+        return np.reshape(_ratio(works, self._least), self.forces.motion.shape[:-1])[()]
+
+    @property
+    def backward(self) -> Number:
+        """The power out over the power in at every pose, all moving backward.
+
+        The loads are the same. Zero or less where a driver must help loads that drive: self-locking.
+        """
+        given, taken = self._loads_backward, self._drivers_backward
+        with np.errstate(all="ignore"):
+            found = np.where(given > 0.0, -taken / given, -given / taken)
+        return self._shaped(np.where(np.abs(given) + np.abs(taken) > self._least, found, np.nan))
+
+    @property
+    def self_locking(self) -> Number:
+        """Where loads cannot move it: whichever way they would, the drivers must help. Bool, of the motion's shape."""
+        return self.forces.motion.grid.shaped(self._locked)
+
+    @property
+    def self_locking_stretches(self) -> tuple[PoseStretch, ...]:
+        """The stretches of poses where it is self-locking, with the driver's values."""
+        labels = np.where(self._locked, 0, -1)
+        return tuple(stretch for _, stretch in stretches_where(self.forces.motion, labels))
+
+    @cached_property
+    def _locked(self) -> Number:
+        motion = self.forces.motion
+        drivers, loads = sum(self._drivers), sum(self._loads)
+        forward = (loads > self._least) & (drivers >= 0.0)
+        backward = (self._loads_backward > self._least) & (self._drivers_backward >= 0.0)
+        resting = np.zeros(motion.failed.shape, dtype=bool)
+        friction = self.forces.friction
+        for name, (low, high) in friction.intervals.items():
+            held = self._flat(self.forces.frictionless.drives[name].effort)
+            resting = resting | (friction.resting & (low <= 0.0) & (high >= 0.0) & (np.abs(held) > 0.0))
+        return (forward | backward | resting) & (motion.failed == 0)
+
+    @cached_property
+    def _drivers(self) -> list[Number]:
+        return [self._flat(power) for power in self.forces.power.drives.values()]
+
+    @cached_property
+    def _loads(self) -> list[Number]:
+        """The powers of loads one by one, of all weights, and of inertia."""
+        power = self.forces.power
+        return [self._flat(one) for one in (*power.loads.values(), power.gravity, -power.kinetic_rate)]
+
+    @property
+    def _all(self) -> list[Number]:
+        return [*self._drivers, *self._loads]
+
+    @cached_property
+    def _least(self) -> float:
+        """What is no power but rounding."""
+        return NOTHING * max((float(np.nanmax(np.abs(one), initial=0.0)) for one in self._all), default=0.0)
+
+    @property
+    def _loads_backward(self) -> Number:
+        return -sum(self._loads)
+
+    @property
+    def _drivers_backward(self) -> Number:
+        efforts, drives = self.forces.friction.backward, self.forces.motion.drives
+        if not efforts:
+            return -sum(self._drivers)
+        return -sum(effort * self._flat(drives[name].rate) for name, effort in efforts.items())
+
+    def _integrated(self, power: Number) -> Number:
+        """Return the work of a power (designs, poses) over the motion."""
+        motion = self.forces.motion
+        if motion.time is not None:
+            return np.trapezoid(power, np.broadcast_to(motion.time, motion.shape).reshape(power.shape), axis=-1)
+        name = next(iter(motion.drives))
+        value, rate = (self._flat(motion.drives[name].derivative(k)) for k in (0, 1))
+        return np.trapezoid(power / rate, value, axis=-1)
+
+    def _flat(self, value: Number) -> Number:
+        return np.reshape(value, self.forces.motion.failed.shape)
+
+    def _shaped(self, value: Number) -> Number:
+        return self.forces.motion.grid.known(value)
+
+
+def _ratio(powers: Iterable[Number], least: float) -> Number:
+    """Return what is taken over what is given."""
+    given = sum(np.maximum(one, 0.0) for one in powers)
+    taken = sum(np.maximum(-one, 0.0) for one in powers)
+    with np.errstate(all="ignore"):
+        return np.where(given > least, taken / given, np.nan)

@@ -1,0 +1,133 @@
+"""Frictions by name: their sizes and powers; where pairs are wedged; what drivers hold at rest, and driven backward."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.copies import CopiesFields
+from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.friction.coulomb_equations import NONE, SEVERAL
+from compoundkin.dynamics.friction.pose_stretches import PoseStretch, stretches_where
+from compoundkin.dynamics.friction.rubs import Rub
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.results import Named
+
+REASONS = {NONE: "no forces satisfy Coulomb's law", SEVERAL: "more than one set of forces satisfies Coulomb's law"}
+
+
+@dataclass(frozen=True)
+class Wedged:
+    """A stretch of poses at which a mechanism is wedged.
+
+    In its `pair` friction feeds on itself most.
+    """
+
+    pair: str
+    stretch: PoseStretch
+    reason: str
+
+    def __str__(self) -> str:
+        return f"wedged in {self.pair}, {self.stretch}: {self.reason}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FrictionForces(CopiesFields):
+    """The frictions of a motion. Arrays are (designs, poses) here, of the motion's shape in what is asked by name.
+
+    `sizes` are those by pairs, for a press of one, toward a growing coordinate of the pair; `state` tells how many
+    solutions there are, `worst` the pair that is wedged first. `backward` are the drivers' efforts if all moves the
+    other way, `intervals` the least and greatest ones that hold where all rests.
+    """
+
+    motion: Motion
+    rubs: tuple[Rub, ...]
+    sizes: Mapping[str, Number]
+    units: Mapping[str, Wrench]
+    state: Number
+    worst: Number
+    resting: Number
+    backward: Mapping[str, Number]
+    intervals: Mapping[str, tuple[Number, Number]]
+    undetermined: tuple[str, ...] = ()
+
+    @cached_property
+    def pairs(self) -> Mapping[str, PairFriction]:
+        """The friction of every pair that has some, by the pair's name."""
+        rubs = {rub.name: rub for rub in self.rubs}
+        return Named("pair with friction", tuple(rubs), lambda name: PairFriction(self, rubs[name]))
+
+    @property
+    def power(self) -> Number:
+        """The power of all frictions, never positive."""
+        return sum((one.power for one in self.pairs.values()), np.zeros(self.motion.shape))
+
+    @property
+    def at_rest(self) -> Number:
+        """Where no driver moves. There efforts are intervals, and pairs are shown without friction."""
+        return self.motion.grid.shaped(self.resting)
+
+    @cached_property
+    def wedged(self) -> tuple[Wedged, ...]:
+        """The stretches of poses without forces, each with its pair and the reason."""
+        return tuple(self._stretches())
+
+    def _stretches(self) -> Iterator[Wedged]:
+        stuck = np.isin(self.state, tuple(REASONS)) & (self.motion.failed == 0)
+        count = max(len(self.rubs), 1)
+        for label, stretch in stretches_where(self.motion, np.where(stuck, self.state * count + self.worst, -1)):
+            yield Wedged(self.rubs[label % count].name, stretch, REASONS[label // count])
+
+    def __repr__(self) -> str:
+        stuck = f", {len(self.wedged)} stretches wedged" if self.wedged else ""
+        return f"FrictionForces({', '.join(rub.name for rub in self.rubs)}{stuck})"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PairFriction:
+    """The friction in a pair, on its second link from its first."""
+
+    forces: FrictionForces
+    rub: Rub
+
+    @property
+    def name(self) -> str:
+        """The name of the pair."""
+        return self.rub.name
+
+    @property
+    def is_moment(self) -> bool:
+        """Whether it is a moment, as in a pin; else a force."""
+        return self.rub.pair.needs_radius
+
+    @property
+    def friction(self) -> Number:
+        """The force, or in a pin the moment, positive toward a growing coordinate."""
+        unit = self.forces.units[self.name]
+        size = unit.moment if self.is_moment else np.abs(unit.force)
+        return self.forces.motion.grid.known(self.forces.sizes[self.name] * size)
+
+    @property
+    def wrench(self) -> Wrench:
+        """What it is on the second link, about the world's origin, (designs, poses)."""
+        return self.forces.units[self.name].times(self.forces.sizes[self.name])
+
+    @property
+    def power(self) -> Number:
+        """Its power, never positive."""
+        poses = self.forces.motion.poses
+        first, second = (poses[name] for name in self.rub.pair.members[:2])
+        return self.forces.motion.grid.known(self.wrench.power(second) - self.wrench.power(first))
+
+    def __repr__(self) -> str:
+        return f"PairFriction({self.name}: {'moment' if self.is_moment else 'force'})"
+
+
+def no_friction(motion: Motion) -> FrictionForces:
+    """Return the frictions of a motion that has none."""
+    nothing = np.zeros(motion.failed.shape, dtype=int)
+    return FrictionForces(motion, (), {}, {}, nothing, nothing, nothing > 0, {}, {})

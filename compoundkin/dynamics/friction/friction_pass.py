@@ -1,0 +1,89 @@
+"""The reverse pass with friction: a pass for each friction alone, Coulomb's law at every pose, and a pass with it.
+
+Source: Coulomb friction on a reverse pass over Assur groups, e.g. J. J. Uicker, G. R. Pennock, J. E. Shigley, Theory
+of Machines and Mechanisms, chapter on static forces; a pin's friction moment is coefficient times radius times force.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.friction.coulomb_equations import NONE, frictions
+from compoundkin.dynamics.friction.press_influence import PressInfluence
+from compoundkin.dynamics.friction.rubs import Rub, flat, senses
+from compoundkin.dynamics.loaded_block import LoadedBlock
+from compoundkin.dynamics.reverse_pass import Reactions, reverse_pass
+
+
+@dataclass(frozen=True, eq=False)
+class RubbedBlock:
+    """A block of poses whose frictions can be found in any direction of motion. The loads are known."""
+
+    at: LoadedBlock
+    rubs: tuple[Rub, ...]
+    known: Mapping[str, Wrench]
+    units: tuple[Wrench, ...]
+    dry: Reactions
+    alone: tuple[Reactions, ...]
+    influence: PressInfluence
+
+    def with_friction(self, sizes: Number) -> Reactions:
+        """Return the reactions under frictions of these sizes (frictions, poses)."""
+        loads = dict(self.known)
+        for k, (rub, unit) in enumerate(zip(self.rubs, self.units, strict=True)):
+            for link, wrench in rub.on_links(unit.times(sizes[k].reshape(self.at.block.shape))).items():
+                loads[link] = loads.get(link, Wrench()) + wrench
+        return reverse_pass(self.at.motion.solving_order, self.at.block, loads)
+
+    def effort(self, driver: str, sizes: Number) -> Number:
+        """Return a driver's effort (poses) under frictions of these sizes."""
+        own, *by = (flat(self._effort(driver, found), self.at) for found in (self.dry, *self.alone))
+        return own + sum(sizes[k] * one for k, one in enumerate(by))
+
+    def _effort(self, driver: str, found: Reactions) -> Number:
+        step = self.at.motion.structure.driven[driver]
+        poses = tuple(self.at.block.world[name] for name in step.pair.members)
+        along = step.pair.effort(self.at.block.ends[step.pair.name], poses, found.pairs[step.pair.name])
+        return along * step.pair.driven_by(step.drive.link)
+
+    def interval(self, driver: str, moved: LoadedBlock, which: Number) -> tuple[Number, Number]:
+        """Return the least and the greatest effort that hold a driver at rest.
+
+        `which` are the poses asked for, a mask. The efforts move it one way and the other; where it is
+        wedged one way there is no limit that way.
+        """
+        signs = senses(self.rubs, moved)
+        ends = []
+        for way in (-1.0, 1.0):
+            sizes = np.full(signs.shape, np.nan)
+            found = frictions(self.influence.of(which), way * signs[:, which])
+            sizes[:, which] = found.sizes
+            effort = self.effort(driver, sizes)
+            effort[which] = np.where(found.state == NONE, way * np.inf, effort[which])
+            ends.append(effort)
+        return np.minimum(*ends), np.maximum(*ends)
+
+
+def rubbed_block(at: LoadedBlock, rubs: tuple[Rub, ...], known: Mapping[str, Wrench]) -> RubbedBlock:
+    """Return a block with what each friction does alone."""
+    order, block = at.motion.solving_order, at.block
+    dry = reverse_pass(order, block, known)
+    units = tuple(rub.unit(at) for rub in rubs)
+    alone = tuple(reverse_pass(order, block, rub.on_links(unit)) for rub, unit in zip(rubs, units, strict=True))
+    return RubbedBlock(at, rubs, known, units, dry, alone, _influence(at, rubs, dry, alone))
+
+
+def _influence(at: LoadedBlock, rubs: tuple[Rub, ...], dry: Reactions, alone: tuple[Reactions, ...]) -> PressInfluence:
+    """Return how the pairs that rub are pressed without friction, and by a unit of each."""
+    own, by, starts = list[Number](), [list[Number]() for _ in rubs], list[int]()
+    for rub in rubs:
+        starts.append(len(own))
+        own += [flat(press, at) for press in rub.presses(at, dry.pairs[rub.name])]
+        for column, reactions in zip(by, alone, strict=True):
+            column += [flat(press, at) for press in rub.presses(at, reactions.pairs[rub.name])]
+    return PressInfluence(np.array(own, dtype=complex), np.array(by, dtype=complex), np.array(starts))

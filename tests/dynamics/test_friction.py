@@ -1,0 +1,380 @@
+"""Coulomb friction: against the reference, closed forms of textbooks, and all equations solved at once by SciPy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import root
+from scipy.optimize._numdiff import approx_derivative
+
+import compoundkin as ck
+from tests.support import drawn_values, random_sketch, reference, well_conditioned
+
+SI = {"length": "m", "mass": "kg", "force": "N"}
+CASE = reference("friction_slider_crank_and_wedge", "forces")
+
+
+def slider_crank(*items: Any, sizes: Mapping[str, float], factor: float = 1.0) -> ck.Mechanism:
+    """The slider-crank of the reference, its coefficients times a factor."""
+    pins = [ck.friction(k, factor * sizes["mu_pin"], radius=sizes["pin_radius"]) for k in "OAB"]
+    return ck.Mechanism(
+        "slider-crank",
+        ck.link("frame", O=0),
+        ck.link("crank", O=0, A=sizes["r"]),
+        ck.link("rod", A=0, B=sizes["l"]),
+        ck.link("piston", B=0),
+        ck.slide("piston", on="frame", at="B", through="O", name="guide"),
+        ck.drive("crank"),
+        ck.friction("guide", factor * sizes["mu_guide"]),
+        *pins,
+        *items,
+        units=SI,
+    )
+
+
+def test_slider_crank_of_the_reference() -> None:
+    rows, sizes = CASE["expected"]["rows"], CASE["dimensions"]
+    pushes = np.array([row["load_force_x"] for row in rows], dtype=complex)
+    load = ck.force("piston", pushes, at="B")
+    motion = ck.solve(slider_crank(load, sizes=sizes), {"crank": np.deg2rad([row["crank_deg"] for row in rows])})
+    forces = ck.force_analysis(motion)
+
+    def agrees(found: Any, expected: Any, scale: float) -> None:
+        assert np.max(np.abs(np.asarray(found) - expected)) < 1e-13 * scale
+
+    agrees(forces.drives["crank"].effort, [row["driver"] for row in rows], 100.0)
+    agrees(forces.frictionless.drives["crank"].effort, [row["driver_without_friction"] for row in rows], 100.0)
+    agrees(forces.pairs["A"].on("rod").force, [complex(*row["rod_from_crank"]) for row in rows], 2000.0)
+    guide = forces.pairs["guide"].on("piston")
+    agrees(guide.force.imag, [row["guide"]["normal"] for row in rows], 2000.0)
+    agrees(guide.moment, [row["guide"]["moment"] for row in rows], 100.0)
+    agrees(-forces.friction.power, [row["power_lost_at_speed_1"] for row in rows], 100.0)
+    agrees(forces.efficiency.at_poses, [row["efficiency"] for row in rows], 1.0)
+    agrees(np.abs(forces.pairs["guide"].friction), 0.1 * np.abs(guide.force.imag), 2000.0)
+    # the same loads with the crank turned back are the other row of each angle
+    agrees(forces.drives["crank"].backward[::2], -forces.drives["crank"].effort[1::2], 100.0)
+    for link in ("crank", "rod", "piston"):
+        assert np.max(np.abs(forces.on(link).force)) < 1e-11
+        assert np.max(np.abs(forces.on(link).moment_about("O"))) < 1e-12
+
+
+def wedge(tangent: Any, floor: float, slope: float, wall: float, load: float = -1000.0) -> ck.Mechanism:
+    """A wedge driven along the floor under a ram in a wall."""
+    return ck.Mechanism(
+        "wedge",
+        ck.link("frame", O=0),
+        ck.link("wedge", P=0),
+        ck.link("ram", Q=0),
+        ck.slide("wedge", on="frame", at="P", through="O", name="floor"),
+        ck.slide("ram", on="frame", at="Q", through="O", angle=np.pi / 2, turn=np.pi / 2, name="wall"),
+        ck.slot("ram", on="wedge", at="Q", through="P", angle=-np.arctan(tangent), name="slope"),
+        ck.drive("wedge", on="frame"),
+        ck.force("ram", (0.0, load), at="Q"),
+        ck.friction("floor", floor),
+        ck.friction("slope", slope),
+        ck.friction("wall", wall),
+        units=SI,
+    )
+
+
+def test_wedge_of_the_reference() -> None:
+    expected = CASE["expected"]["wedge"]
+    mu, tangent = expected["friction"], np.tan(np.deg2rad(expected["angle_deg"]))
+    motion = ck.solve(wedge(tangent, mu, mu, mu), {"wedge": [1.0, 2.0]}, speed=np.array([1.0, -1.0]))
+    forces = ck.force_analysis(motion)
+    held = forces.drives["wedge"]
+    up, down = expected["force_to_raise"], expected["force_to_hold_while_lowering"]
+    assert held.effort == pytest.approx([up, down], rel=1e-13)
+    assert held.backward == pytest.approx([down, up], rel=1e-12)
+    assert forces.frictionless.drives["wedge"].effort == pytest.approx(expected["without_friction"], rel=1e-13)
+    assert forces.efficiency.at_poses[0] == pytest.approx(expected["efficiency_raising"], rel=1e-13)
+    assert forces.efficiency.backward[1] == pytest.approx(expected["efficiency_raising"], rel=1e-12)
+    at_rest = ck.force_analysis(ck.solve(wedge(tangent, mu, mu, mu), {"wedge": [1.0]}, speed=0.0))
+    low, high = at_rest.drives["wedge"].interval
+    assert (low[0], high[0]) == pytest.approx((down, up), rel=1e-13)
+    assert at_rest.friction.at_rest.all()
+
+
+def test_wedge_locks_itself_and_is_wedged() -> None:
+    """Self-locking begins at tan(angle / 2); nothing raises it where angle + 2 friction angles pass a right angle."""
+    angle, begins = np.deg2rad(15.0), CASE["expected"]["wedge"]["self_locking_from_friction_coefficient"]
+    for mu, locks in ((begins * (1.0 - 1e-9), False), (begins * (1.0 + 1e-9), True)):
+        forces = ck.force_analysis(ck.solve(wedge(np.tan(angle), mu, mu, mu), {"wedge": [1.0]}))
+        assert bool(forces.efficiency.self_locking[0]) is locks
+        assert (forces.efficiency.backward[0] <= 0.0) == locks
+    for speed in (1.0, -1.0):
+        wedged = np.tan((np.pi / 2 - angle) / 2)
+        for mu, stuck in ((0.999 * wedged, False), (1.001 * wedged, True)):
+            motion = ck.solve(wedge(np.tan(angle), mu, mu, mu), {"wedge": [1.0]}, speed=speed)
+            forces = ck.force_analysis(motion)
+            told = forces.friction.wedged
+            assert bool(told) == np.isnan(forces.drives["wedge"].effort[0]) == stuck
+            if told:
+                assert "wedge at 1" in str(told[0])
+                assert ("no forces" if speed > 0.0 else "more than one") in told[0].reason
+
+
+def test_power_screw_of_shigley() -> None:
+    """R. G. Budynas, J. K. Nisbett, Shigley's Mechanical Engineering Design, example 8-1.
+
+    Its thread is developed at the mean diameter of 30 mm, the collar of 40 mm a floor: raising takes
+    15.94 + 10.24 N m, lowering -0.466 + 10.24, the efficiency is 0.311.
+    """
+    screw = wedge(8.0 / (np.pi * 30.0), 0.08 * 40.0 / 30.0, 0.08, 0.0, load=-6400.0)
+    forces = ck.force_analysis(ck.solve(screw, {"wedge": [1.0, 2.0]}, speed=np.array([1.0, -1.0])))
+    torque = forces.drives["wedge"].effort * np.array([1.0, -1.0]) * 0.030 / 2.0
+    assert torque == pytest.approx([26.18, 9.77], abs=0.005)
+    assert forces.efficiency.at_poses[0] == pytest.approx(0.311, abs=0.0005)
+    # it takes work to lower: the load alone does not
+    assert forces.efficiency.self_locking.all()
+
+
+def test_block_on_an_incline() -> None:
+    """Any holding effort within weight times sin(angle) -+ mu cos(angle); it stays by itself where tan(angle) <= mu."""
+    mu, angles = 0.3, np.deg2rad(np.linspace(1.0, 80.0, 200))[:, None]
+    incline = ck.Mechanism(
+        "incline",
+        ck.link("frame", O=0),
+        ck.link("block", P=0),
+        ck.slide("block", on="frame", at="P", through="O", angle=angles, turn=0.0, name="plane"),
+        ck.drive("block", on="frame"),
+        ck.mass("block", 2.0),
+        ck.gravity(0.0, -10.0),
+        ck.friction("plane", mu, length=0.2),
+        units=SI,
+    )
+    forces = ck.force_analysis(ck.solve(incline, {"block": [1.0]}, speed=0.0), inertia=False)
+    low, high = forces.drives["block"].interval
+    assert low == pytest.approx(20.0 * (np.sin(angles) - mu * np.cos(angles)), abs=1e-13)
+    assert high == pytest.approx(20.0 * (np.sin(angles) + mu * np.cos(angles)), abs=1e-13)
+    assert np.array_equal(forces.efficiency.self_locking, np.tan(angles) <= mu)
+    sliding = ck.force_analysis(ck.solve(incline, {"block": [1.0]}), inertia=False)
+    assert np.array_equal(sliding.efficiency.self_locking, np.tan(angles) <= mu)
+    assert sliding.drives["block"].effort == pytest.approx(high, rel=1e-13)
+
+
+@pytest.mark.parametrize(("offset", "stuck"), [(0.9, False), (1.9999, False), (2.0001, True), (5.0, True)])
+def test_drawer_that_jams(offset: float, stuck: bool) -> None:
+    """A guide of length 1 pushed beside it jams at 2 mu offset > 1: at 2 with mu 0.25, the 2:1 rule of plain bearings.
+
+    Source: igus, drylin R design tips, and PBC Linear, Cantilevered Loads and the 2:1 Ratio: binding beyond 2:1,
+    by a coefficient of 0.25. In closed form the push is load / (1 - 2 mu offset / length).
+    """
+    drawer = ck.Mechanism(
+        "drawer",
+        ck.link("frame", O=0, R=(0.0, offset)),
+        ck.link("hand", H=0),
+        ck.link("drawer", P=0, Q=(0.0, offset)),
+        ck.slide("hand", on="frame", at="H", through="R", name="arm"),
+        ck.slide("drawer", on="frame", at="P", through="O", name="guide"),
+        ck.slot("drawer", on="hand", at="Q", through="H", angle=np.pi / 2, name="grip"),
+        ck.drive("hand", on="frame"),
+        ck.force("drawer", (-10.0, 0.0), at="P"),
+        ck.friction("guide", 0.25, length=1.0),
+        units=SI,
+    )
+    forces = ck.force_analysis(ck.solve(drawer, {"hand": [0.5, 1.0, 1.5]}))
+    push = forces.drives["hand"].effort
+    if stuck:
+        assert np.isnan(push).all()
+        (told,) = forces.friction.wedged
+        assert (told.pair, told.stretch.first, told.stretch.last, told.stretch.values) == ("guide", 0, 2, (0.5, 1.5))
+        assert "no forces" in str(told)
+        assert forces.frictionless.drives["hand"].effort == pytest.approx(10.0)
+    else:
+        assert push == pytest.approx(10.0 / (1.0 - 0.5 * offset), rel=1e-9)
+        assert not forces.friction.wedged
+    # pulled by its load it may follow, or jam: two sets of forces
+    (both,) = ck.force_analysis(ck.solve(drawer, {"hand": [0.5]}, speed=-1.0)).friction.wedged if stuck else (None,)
+    assert both is None or "more than one" in both.reason
+
+
+# --- all equations at once ----------------------------------------------------------------------------------
+
+
+def rubbed(rng: np.random.Generator, kinds: tuple[str, ...], driver: str) -> ck.Mechanism | None:
+    """A random mechanism with masses, weights, loads and friction in every pair, or None."""
+    plain = random_sketch(rng, kinds, driver).mechanism()
+    if not well_conditioned(plain, 30.0, 0.1):
+        return None
+    pairs = ck.decompose(plain).pairs
+    items: list[Any] = [ck.gravity(0.3, -9.81)]
+    for name in plain.links:
+        if name != "frame":
+            items.append(ck.mass(name, rng.uniform(0.1, 2.0), at=tuple(rng.normal(size=2)), inertia=20.0))
+            items.append(ck.force(name, tuple(rng.normal(size=2) * 20.0), at=plain.links[name].letters[0]))
+    for pair in pairs:
+        if pair.free_is_angle:
+            items.append(ck.friction(pair.name, rng.uniform(0.0, 0.15), radius=rng.uniform(0.02, 0.2)))
+        else:
+            long = {"length": rng.uniform(2.0, 4.0)} if rng.random() < 0.5 else {}
+            items.append(ck.friction(pair.name, rng.uniform(0.0, 0.08), **long))
+    return ck.Mechanism("rubbed", *plain.items, *items, units=SI)
+
+
+def by_all_equations(motion: Any) -> tuple[Any, Any]:
+    """The drivers' efforts and the sizes of frictions at the one pose: all equations of all links, by SciPy's root.
+
+    Unknown are x, y forces of pins, normal forces and moments of slides, efforts; Newton and Euler about the mass
+    centres, by plain geometry.
+    """
+    mechanism, links = motion.mechanism, [name for name in motion.mechanism.links if name != "frame"]
+    driven = {step.pair.name: step.drive.link for step in motion.structure.driven.values()}
+    pairs = list(motion.structure.pairs)
+    centre = {k: complex(motion.links[k].at(mechanism.masses[k].at).position[0]) for k in links}
+    pushes = {load.link: load.force for load in mechanism.loads.values()}
+    world = {k: complex(point.position[0]) for k, point in motion.points.items()}
+
+    def acting(x: Any) -> tuple[dict[str, list[tuple[complex, complex, float]]], list[float]]:
+        on: dict[str, list[tuple[complex, complex, float]]] = {name: [] for name in mechanism.links}
+        sizes, k = [], 0
+        for pair in pairs:
+            one, other = pair.members
+            rub, at = mechanism.frictions[pair.name], world[pair.letters[0]]
+            rate = motion.pairs[pair.name].rate[0]
+            rate = rate if abs(rate) > 1e-9 else 0.0
+            if pair.free_is_angle:
+                force, moment = complex(x[k], x[k + 1]), 0.0
+                size = -np.sign(rate) * rub.coefficient * rub.radius * abs(force)
+                moment += size
+            else:
+                _, through, toward = pair.letters
+                along = (world[toward] - world[through]) / abs(world[toward] - world[through])
+                force, moment = 1j * along * x[k], x[k + 1]
+                if rub.length is None:
+                    pressed = abs(x[k])
+                else:
+                    ends = np.linalg.solve([[1.0, 1.0], [rub.length / 2, -rub.length / 2]], x[k : k + 2])
+                    pressed = np.sum(np.abs(ends))
+                size = -np.sign(rate) * rub.coefficient * pressed
+                force += along * size
+            k += 2
+            if pair.name in driven:
+                effort = x[k] * (1.0 if driven[pair.name] == other else -1.0)
+                force, moment = (force, moment + effort) if pair.free_is_angle else (force + along * effort, moment)
+                k += 1
+            sizes.append(size)
+            on[other].append((at, force, moment))
+            on[one].append((at, -force, -moment))
+        return on, sizes
+
+    def balance(x: Any) -> Any:
+        on, _ = acting(x)
+        rows = []
+        for name in links:
+            mass = mechanism.masses[name]
+            everything = [*on[name], (world[mechanism.links[name].letters[0]], pushes[name], 0.0)]
+            total = sum(force for _, force, _ in everything) + mass.mass * (0.3 - 9.81j)
+            total -= mass.mass * complex(motion.links[name].at(mass.at).acceleration[0])
+            turn = sum((np.conj(at - centre[name]) * force).imag + moment for at, force, moment in everything)
+            rows += [total.real, total.imag, turn - mass.inertia * motion.links[name].angular_acceleration[0]]
+        return np.array(rows)
+
+    # linear but for friction: start where there is none
+    found = root(balance, np.zeros(2 * len(pairs) + len(driven)), tol=1e-13)
+    x = found.x
+    for _ in range(3):
+        x = x - np.linalg.solve(approx_derivative(balance, x), balance(x))
+    _, sizes = acting(x)
+    at_driver = 2 * next(k for k, pair in enumerate(pairs) if pair.name in driven) + 2
+    return x[at_driver], (np.array(sizes), np.max(np.abs(balance(x))))
+
+
+def test_random_mechanisms_by_all_equations_at_once() -> None:
+    rng, count = np.random.default_rng(12), 0
+    every = [("RRR",), ("RRP",), ("RPR",), ("PRP",), ("RPP",), ("RRR", "RRP"), ("RPR", "RRR")]
+    while count < 14:
+        kinds, driver = every[count % 7], "RP"[count % 2]
+        mechanism = rubbed(rng, kinds, driver)
+        if mechanism is None:
+            continue
+        values = {name: [value] for name, value in drawn_values(mechanism).items()}
+        motion = ck.solve(mechanism, values, speed=1.3)
+        forces = ck.force_analysis(motion)
+        effort, (sizes, residual) = by_all_equations(motion)
+        if forces.friction.wedged or residual > 1e-9:
+            continue
+        scale = np.max(np.abs(sizes)) + abs(effort)
+        ((_, held),) = forces.drives.items()
+        assert held.effort[0] == pytest.approx(effort, abs=1e-11 * scale)
+        found = [forces.pairs[pair.name].friction[0] for pair in motion.structure.pairs]
+        assert np.max(np.abs(found - sizes)) < 1e-11 * scale
+        count += 1
+
+
+# --- laws that hold everywhere ------------------------------------------------------------------------------
+
+
+def loaded(plain: ck.Mechanism, size: float, coefficient: float, rng: np.random.Generator) -> ck.Mechanism:
+    """A mechanism with masses, weights and friction in all pairs that rub."""
+    items: list[Any] = [ck.gravity(0.0, -9.81)]
+    for name in plain.links:
+        if name != "frame":
+            place = tuple(rng.normal(size=2) * 0.1 * size)
+            items.append(ck.mass(name, rng.uniform(0.5, 2.0), at=place, inertia=0.3 * size**2))
+    used = ck.decompose(plain).pairs
+    for pair in (pair for pair in used if "friction" in pair.takes):
+        is_pin = pair.free_is_angle and pair.is_simple
+        items.append(ck.friction(pair.name, coefficient, **({"radius": 0.02 * size} if is_pin else {})))
+    return ck.Mechanism(plain.title, *plain.items, *items, units=SI)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["scotch-yoke", "crank-shaper", "geneva-wheel", "flat-faced-follower", "groove-cam-plate", "windscreen-wiper"],
+)
+def test_powers_of_shipped_mechanisms(name: str) -> None:
+    """Friction takes power only, as Coulomb's law has it; all powers add up to nothing."""
+    plain = ck.catalog.load_named(name)
+    forces = ck.force_analysis(ck.solve(loaded(plain, ck.solve(plain).size, 0.05, np.random.default_rng(3))))
+    good = np.isfinite(forces.friction.power)
+    assert np.mean(good) > 0.7
+    rounding = 1e-12 * np.max(np.abs(forces.power.kinetic_rate[good]))
+    assert np.max(np.abs(forces.power.sum[good])) < rounding
+    assert np.max(np.abs(forces.friction.power - forces.power.friction)[good]) < rounding
+    for pair in forces.friction.pairs.values():
+        assert np.all(pair.power[good] <= rounding)
+        # the press times coefficient and radius, its wrench against the motion
+        found = forces.pairs[pair.name]
+        if pair.is_moment:
+            radius = forces.motion.mechanism.frictions[pair.name].radius
+            assert np.abs(pair.friction[good]) == pytest.approx(0.05 * radius * np.abs(found.force[good]), rel=1e-9)
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.6))
+def test_friction_takes_power(seed: int, coefficient: float) -> None:
+    """At every pose that is not wedged, whatever the mechanism and its coefficient."""
+    rng = np.random.default_rng(seed)
+    plain = random_sketch(rng, [rng.choice(["RRR", "RRP", "RPR", "PRP", "RPP"])], rng.choice(["R", "P"])).mechanism()
+    if not well_conditioned(plain, 30.0, 0.1):
+        return
+    values = {name: value + np.linspace(-0.1, 0.1, 7) for name, value in drawn_values(plain).items()}
+    forces = ck.force_analysis(ck.solve(loaded(plain, 3.0, coefficient, rng), values, speed=rng.normal()))
+    good = ~np.isnan(forces.friction.power)
+    powers = forces.power
+    largest = np.max(np.abs([powers.kinetic_rate, powers.gravity, *powers.drives.values()]), axis=0, initial=0.0)[good]
+    assert np.all(forces.friction.power[good] <= 1e-14 * largest)
+    assert np.all(np.abs(powers.sum[good]) <= 1e-10 * largest)
+    # wedged poses are named, the others have forces
+    named = sum(one.stretch.last - one.stretch.first + 1 for one in forces.friction.wedged)
+    assert named == np.count_nonzero(~good)
+
+
+def test_little_friction_is_proportional() -> None:
+    sizes = CASE["dimensions"]
+    load, angles = ck.force("piston", (2000.0, 0.0), at="B"), np.linspace(0.1, 6.1, 50)
+
+    def effort(factor: float) -> Any:
+        motion = ck.solve(slider_crank(load, sizes=sizes, factor=factor), {"crank": angles})
+        return ck.force_analysis(motion).drives["crank"].effort
+
+    none = effort(0.0)
+    slopes = [(effort(factor) - none) / factor for factor in (1e-3, 1e-4)]
+    assert np.max(np.abs(slopes[1] - slopes[0])) < 2e-3 * np.max(np.abs(slopes[0]))
+    assert np.max(np.abs(none - ck.force_analysis(ck.solve(slider_crank(load, sizes=sizes), {"crank": angles}))
+                         .frictionless.drives["crank"].effort)) < 1e-11  # fmt: skip
