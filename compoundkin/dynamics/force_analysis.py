@@ -13,7 +13,7 @@ from compoundkin.dynamics.friction.rubbed_motion import with_friction
 from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.redundant_reactions import own_wrenches
-from compoundkin.dynamics.reverse_pass import reverse_pass
+from compoundkin.dynamics.reverse_pass import found_reactions
 from compoundkin.kinematics.motion import Motion
 
 # What the mechanism does to its frame, among the wrenches by pairs.
@@ -31,7 +31,7 @@ def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
     store: JoinedWrenches[str] = JoinedWrenches(motion.failed.shape)
     with np.errstate(all="ignore"):
         for loaded in loaded_blocks(motion):
-            reactions = reverse_pass(motion.solving_order, loaded.block, loaded.known(inertia))
+            reactions = found_reactions(loaded, loaded.known(inertia))
             for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():
                 store.take(name, wrench, loaded.designs, loaded.poses)
     found = store.wrenches()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -30,6 +30,7 @@ class LoadedBlock:
     block: Block
     designs: slice
     poses: slice
+    counted: dict[str, Number] = field(default_factory=dict)  # angles of pairs over the whole motion, once asked for
 
     @cached_property
     def units(self) -> Units:
@@ -60,9 +61,15 @@ class LoadedBlock:
         """Return the free coordinate of a pair or a driver. Angles are counted along the motion."""
         pair, sign = self._meant(name)
         found = pair.coordinate(self._ends(pair), self._poses(pair))
-        is_known = pair.name in self.motion.solving_order.pairs
-        value = self._cut(fit(self.motion.shape)(self.motion.pairs[pair.name].value)) if is_known else found.c[0]
+        is_counted = pair.free_is_angle and pair.name in self.motion.solving_order.pairs
+        value = self._counted(pair.name) if is_counted else found.c[0]
         return Series((value * sign, *(one * sign for one in found.c[1:])))
+
+    def _counted(self, name: str) -> Number:
+        """Return an angle with its turns, which the whole motion tells. It is found once for all blocks."""
+        if name not in self.counted:
+            self.counted[name] = fit(self.motion.shape)(self.motion.pairs[name].value)
+        return self._cut(self.counted[name])
 
     def unit_effort(self, name: str) -> Iterator[tuple[str, Wrench]]:
         """Yield the links of a pair with the wrenches of a unit effort."""
@@ -139,12 +146,12 @@ class LoadedBlock:
 
 def loaded_blocks(motion: Motion) -> Iterator[LoadedBlock]:
     """Yield a motion in blocks whose arrays stay in cache."""
-    inputs = motion.inputs
+    inputs, counted = motion.inputs, dict[str, Number]()
     for designs, poses in blocks(inputs.designs, inputs.poses):
         cut = inputs.cut(designs, poses)
         world = {name: _pose(pose, designs, poses) for name, pose in motion.poses.items()}
         shape = (designs.stop - designs.start, poses.stop - poses.start)
-        yield LoadedBlock(motion, Block(shape, cut.ends, world, {}, motion.order), designs, poses)
+        yield LoadedBlock(motion, Block(shape, cut.ends, world, {}, motion.order), designs, poses, counted)
 
 
 def without_rates(block: LoadedBlock) -> LoadedBlock:
