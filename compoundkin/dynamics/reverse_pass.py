@@ -56,7 +56,7 @@ def accompanying(at: LoadedBlock, found: Reactions) -> dict[str, Wrench]:
         if pair := as_accompanied(at.motion.solving_order.pairs[name]):
             ends, poses = at.block.ends[name], tuple(at.block.world[link].trimmed(0) for link in pair.members)
             written = pretensions.get(name)
-            tension = None if written is None else at.fitted(written.force, f"pretensions.{name}.force")
+            tension = None if written is None else at.fitted(written.force, f"pretensions.{name}")
             beside[name] = pair.accompanying(ends, poses, pair.transmitted(ends, poses, wrench), tension)
     return beside
 
