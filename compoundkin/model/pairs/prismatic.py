@@ -163,7 +163,7 @@ class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended):
         )
 
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
-        """Return a force to the left of the guide, a couple, and a force along it."""
+        """Return a force to the left of the guide, a couple, one along it."""
         place, e = poses[1].at(ends[1].point).c[0], poses[0].carry(ends[0]).along.c[0]
         return Wrench.at(place, 1j * e), Wrench(0j, 1.0), Wrench.at(place, e)
 
