@@ -17,6 +17,8 @@ from compoundkin.dynamics.equilibria import EquilibriumPositions, equilibria
 from compoundkin.dynamics.equilibrium_kind import EquilibriumPosition
 from compoundkin.dynamics.equivalent_inertia import EquivalentInertia, equivalent_inertia
 from compoundkin.dynamics.flywheel import Flywheel, flywheel
+from compoundkin.dynamics.force_ratio import force_ratio
+from compoundkin.dynamics.harmonics import Harmonics, harmonics
 
 __all__ = [
     "BalanceFigure",
@@ -27,9 +29,12 @@ __all__ = [
     "EquivalentInertia",
     "Flywheel",
     "ForceBalance",
+    "Harmonics",
     "counterweights",
     "drive_figures",
     "equilibria",
     "equivalent_inertia",
     "flywheel",
+    "force_ratio",
+    "harmonics",
 ]

@@ -228,6 +228,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "machine.drive_figures": {"forces": h["forces"], "driver": "crank"},
         "machine.equilibria": {"mechanism": h["forces"].mechanism, "values": None},
         "machine.equivalent_inertia": {"motion": h["moved"]},
+        "machine.force_ratio": {"motion": motion, "output": "rocker", "driver": "crank"},
+        "machine.harmonics": {"of": h["forces"], "name": "frame.shaking_force", "orders": 3, "driver": "crank"},
         "machine.flywheel": {"forces": h["forces"], "fluctuation": 0.02, "driver": "crank"},
         "plots.centrodes": {**on, "pose": 0, "design": 0, "every": None, "title": None, "size": None, "on": "frame"},
         "plots.circuits": {"what": m, "driver": "crank", "values": None, "between": None, "design": 0, "title": None,

@@ -140,12 +140,7 @@ def course_of(forces: Forces, driver: str | None, of_cycle: bool = False) -> Dri
     Raises UnknownName for another name, InvalidInput where none is named of several, where it does not move, and for
     what is no whole closed cycle if that is asked.
     """
-    motion, names = forces.motion, tuple(forces.motion.drives)
-    if driver is None and len(names) != 1:
-        raise InvalidInput(Problem("driver", f"there are {len(names)}: {', '.join(names)}", "name one"))
-    name = names[0] if driver is None else driver
-    if name not in names:
-        raise UnknownName(Problem("driver", f"there is no driver {name!r}", nearest(name, names)))
+    motion, name = forces.motion, driver_named(forces.motion, driver)
     if motion.inputs.poses < 2:
         raise InvalidInput(Problem("motion", "a single pose has no course", "solve it at several values of a driver"))
     if of_cycle and not (closed_cycles(motion).all() and not np.any(motion.failed)):
@@ -153,3 +148,13 @@ def course_of(forces: Forces, driver: str | None, of_cycle: bool = False) -> Dri
     if np.any(np.ptp(np.broadcast_to(motion.drives[name].value, motion.shape), axis=-1) == 0.0):
         raise InvalidInput(Problem(name, "the driver does not move along the motion", "name one that does"))
     return DriverCourse(forces, name)
+
+
+def driver_named(motion: Motion, driver: str | None) -> str:
+    """Return a driver, the only one without a name. Raises UnknownName, InvalidInput where none is named of several."""
+    names = tuple(motion.drives)
+    if driver is None and len(names) != 1:
+        raise InvalidInput(Problem("driver", f"there are {len(names)}: {', '.join(names)}", "name one"))
+    if driver is not None and driver not in names:
+        raise UnknownName(Problem("driver", f"there is no driver {driver!r}", nearest(driver, names)))
+    return names[0] if driver is None else driver
