@@ -1,0 +1,99 @@
+"""Forward dynamics: how a mechanism moves under its masses and loads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.given_numbers import real_numbers
+from compoundkin.base.series import Number
+from compoundkin.dynamics.driver_chart import DriverChart
+from compoundkin.dynamics.integration import Course, Step, integrate
+from compoundkin.dynamics.simulated_energy import simulated_energy
+from compoundkin.dynamics.simulated_motion import simulated_motion
+from compoundkin.dynamics.simulation import Simulation
+from compoundkin.dynamics.simulation_start import simulation_start
+from compoundkin.kinematics.configuration import Configuration
+from compoundkin.model.mechanism import Mechanism
+
+# From one pose of the result to the next drivers go so far at most (radians, or parts of the size), in so many poses.
+APART, FEWEST, MOST = np.deg2rad(5.0), 100, 20000
+
+
+@checked
+def simulate(
+    mechanism: Mechanism,
+    *,
+    start: Any = None,
+    until: float,
+    prescribed: Mapping[str, Any] | None = None,
+    times: Any = None,
+    tolerance: float = 1e-10,
+    modes: Mapping[str, int] | str | Configuration | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Simulation:
+    """Return how a mechanism moves under its masses and loads, from a start until a time."""
+    _hold(mechanism, until, tolerance)
+    begun = simulation_start(mechanism, start, prescribed or {}, modes)
+    chart = DriverChart(begun.motion, tuple(begun.speeds), begun.laws)
+    state = np.array([*(begun.values[name] for name in chart.free), *begun.speeds.values(), 0.0])
+    course = Course(float(until), float(tolerance))
+    with np.errstate(all="ignore"):
+        _hold_moving(chart, state)
+        integrate(chart, state, course, progress)
+        stretches = course.at(_times(course, times))
+        motion = simulated_motion(stretches)
+        energy = simulated_energy(motion, np.concatenate([one.states[-1, one.asked] for one in stretches]))
+    return Simulation(motion, energy, tuple(course.events), course.tolerance, len(course.steps), course.evaluations)
+
+
+def _hold(mechanism: Mechanism, until: float, tolerance: float) -> None:
+    """Raise InvalidInput for what cannot be simulated."""
+    if mechanism.units is None:
+        remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
+        raise InvalidInput(Problem("units", "forces need units of length, mass and force", remedy))
+    if not mechanism.masses:
+        raise InvalidInput(Problem("masses", "nothing has a mass", 'write mass("link", 0.2, at=..., inertia=...)'))
+    if not 0.0 < until < np.inf:
+        raise InvalidInput(Problem("until", f"{until:g} is no end", "give seconds after the start, more than 0"))
+    if not 1e-13 <= tolerance <= 1e-2:
+        raise InvalidInput(Problem("tolerance", f"{tolerance:g} is too fine or too coarse", "1e-13 to 1e-2"))
+
+
+def _hold_moving(chart: DriverChart, state: Number) -> None:
+    """Raise InvalidInput where a free driver moves no mass."""
+    n = len(chart.free)
+    matrix = chart.state(0.0, state[:n], state[n : 2 * n]).terms.matrix[:n, :n]
+    heaviest = max(own.mass * chart.order.size**2 + own.inertia for own in chart.masses)
+    sizes = np.diag(matrix) * (chart.scales / chart.scales.max()) ** 2
+    for name, one in zip(chart.free, sizes, strict=True):
+        if not one > 1e-20 * heaviest:
+            raise InvalidInput(Problem(f"start.{name}", "this driver moves no mass", "give a link that it moves a mass"))
+
+
+def _times(course: Course, times: Any) -> Number:
+    """Return the times of the result: those asked for as far as they are reached, else evenly spaced ones."""
+    if times is not None:
+        return _asked(times, course)
+    speeds = [_farthest(step) / (step.last - step.first) for step in course.steps]
+    count = int(np.clip(np.ceil(max(speeds) * course.last / APART), FEWEST, MOST))
+    return np.linspace(0.0, course.last, count + 1)
+
+
+def _farthest(step: Step) -> float:
+    """Return how far the free drivers go in a step, by their scales."""
+    n = len(step.chart.free)
+    first, last = (step.between(time)[:n] for time in (step.first, step.last))
+    return float(np.max(np.abs(last - first) / step.chart.scales))
+
+
+def _asked(times: Any, course: Course) -> Number:
+    asked = real_numbers("times", times).reshape(-1)
+    if len(asked) < 2 or not np.all(np.diff(asked) > 0.0) or asked[0] < 0.0 or asked[-1] > course.until:
+        what = "they are not two or more increasing times within the simulation"
+        raise InvalidInput(Problem("times", what, f"give times from 0 to {course.until:g}"))
+    return asked[asked <= course.last]
