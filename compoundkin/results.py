@@ -21,6 +21,9 @@ from compoundkin.dynamics.link_wrench import LinkWrench
 from compoundkin.dynamics.pair_forces import PairForce
 from compoundkin.dynamics.pin_forces import PinForces
 from compoundkin.dynamics.power import Powers
+from compoundkin.dynamics.simulated_energy import SimulatedEnergy
+from compoundkin.dynamics.simulation import Simulation
+from compoundkin.dynamics.simulation_events import SimulationEvent
 from compoundkin.dynamics.undetermined import Undetermined
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.kinematics.chosen_modes import GroupMode
@@ -70,6 +73,9 @@ __all__ = [
     "Quantity",
     "Report",
     "ShakingForce",
+    "SimulatedEnergy",
+    "Simulation",
+    "SimulationEvent",
     "Structure",
     "Table",
     "Undetermined",

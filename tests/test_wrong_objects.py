@@ -31,6 +31,7 @@ def at_hand() -> dict[str, Any]:
     return {
         "forces": ck.force_analysis(ck.solve(turned, ck.deg(range(0, 361, 30)), speed=2)),
         "arm": arm,
+        "heavy": heavy,
         "moved": ck.solve(heavy, {"upper": [0.1, 0.2], "fore": [1.0, 1.1]}),
         "region": ck.performance.workspace(arm, "P", cells=8),
         "bar": bar,
@@ -125,6 +126,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "roll_around": {"link": "a", "on": "b", "centre_at": "A", "at": "B", "circle": 3.0, "radius": 1.0,
                         "inside": False, "phase": None, "name": "n"},
         "save": {"what": motion, "path": os.devnull + "/x.csv"},
+        "simulate": {"mechanism": h["heavy"], "start": {"upper": (0.1, 0.2)}, "until": 0.1, "prescribed": {"fore": 1.0},
+                     "times": None, "tolerance": 1e-6, "modes": None, "progress": None},
         "slide": {"link": "a", "on": "b", "at": "A", "through": "B", "angle": 0.0, "toward": None, "offset": None,
                   "turn": None, "name": "n"},
         "slot": {"link": "a", "on": "b", "at": "A", "through": "B", "angle": 0.0, "toward": None, "offset": 0.0,

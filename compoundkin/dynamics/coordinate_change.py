@@ -7,14 +7,14 @@ and is regular there: the driver's coordinate is then a smooth function of it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.series import Number
-from compoundkin.dynamics.driver_chart import DriverChart, DriverState
+from compoundkin.dynamics.driver_chart import DriverChart
+from compoundkin.dynamics.driver_state import DriverState
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.model.elements import Drive, Expectation, Item, Mode
@@ -28,20 +28,19 @@ FASTER = 30.0
 
 
 class FastPair(NamedTuple):
-    """A pair, how fast it moves by the scales at unit rate of a driver, and that driver."""
+    """A pair and how fast it moves by the scales. A driver moves at unit rate."""
 
     pair: Pair
     ratio: float
     driver: str
 
 
-def fastest_pair(state: DriverState) -> FastPair | None:
+def fastest_pair(chart: DriverChart, state: DriverState) -> FastPair | None:
     """Return the pair that moves fastest at unit rate of a free driver. None where none could be driven."""
-    return max(_pairs(state), key=lambda found: found.ratio, default=None)
+    return max(_pairs(chart, state), key=lambda found: found.ratio, default=None)
 
 
-def _pairs(state: DriverState) -> Iterator[FastPair]:
-    chart = state.chart
+def _pairs(chart: DriverChart, state: DriverState) -> Iterator[FastPair]:
     for pair in chart.candidates:
         slopes = np.abs(state.slopes(pair))[: len(chart.free)] * chart.scales
         slopes = slopes / (1.0 if pair.free_is_angle else chart.order.size)
@@ -49,9 +48,12 @@ def _pairs(state: DriverState) -> Iterator[FastPair]:
             yield FastPair(pair, float(slopes.max()), chart.free[int(np.argmax(slopes))])
 
 
-def driven_there(state: DriverState, fast: FastPair) -> tuple[DriverChart, Number] | None:
-    """Return the chart with a pair driven in the place of a driver, and its state. None where it cannot be solved."""
-    chart, (first, second) = state.chart, fast.pair.members
+def driven_there(chart: DriverChart, state: DriverState, fast: FastPair) -> tuple[DriverChart, Number] | None:
+    """Return the chart with a pair driven in the place of a driver.
+
+    With it comes its state. None where it cannot be solved.
+    """
+    first, second = fast.pair.members
     taken = {own.name for own in chart.mechanism.drives}
     name = next(one for one in (second, f"{second} on {first}", f"{fast.pair.name} driven") if one not in taken)
     items = [Drive(name, second, first) if isinstance(item, Drive) and item.name == fast.driver else item
@@ -75,7 +77,9 @@ def driven_there(state: DriverState, fast: FastPair) -> tuple[DriverChart, Numbe
 def _here(state: DriverState, values: dict[str, float]) -> Configuration:
     """Return the configuration of a state."""
     structure = state.chart.start.structure
-    return Configuration(structure, values, placed_at(state.block.world, (0, 0)), {}, {}, dimensions_at(structure, 0, 0))
+    return Configuration(
+        structure, values, placed_at(state.block.world, (0, 0)), {}, {}, dimensions_at(structure, 0, 0)
+    )
 
 
 def _written(mechanism: Mechanism, items: list[Item]) -> Mechanism:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
-from compoundkin.dynamics.loaded_state import LoadedState
-from compoundkin.dynamics.moving_masses import InertiaTerms, free_fall, inertia_terms, moving_masses
+from compoundkin.dynamics.driver_state import DriverState, Rates
+from compoundkin.dynamics.linear_angle import LinearAngle, by_drivers
+from compoundkin.dynamics.moving_masses import free_fall, moving_masses
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.contract import equations_of
@@ -22,13 +22,6 @@ from compoundkin.kinematics.solving_order import run
 from compoundkin.model.laws import Law
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.optional_answers import as_drivable
-
-
-class Rates(NamedTuple):
-    """What a state grows by: accelerations of the free drivers, and the power of what has no potential."""
-
-    accelerations: Number
-    power: float
 
 
 @dataclass(eq=False)
@@ -45,6 +38,7 @@ class DriverChart:
     signs: dict[int, Number] = field(init=False)
     states: dict[int, Number] = field(init=False)
     near: dict[str, LinearAngle] = field(init=False)
+    turned: dict[str, LinearAngle] = field(init=False)
 
     def __post_init__(self) -> None:
         self.names = (*self.free, *self.laws)
@@ -59,7 +53,7 @@ class DriverChart:
 
     @cached_property
     def candidates(self) -> tuple[Pair, ...]:
-        """The pairs that might be driven instead: those that are the only ones between their links."""
+        """The pairs that might be driven instead. They are the only ones between their links."""
         pairs = self.start.structure.pairs
         sides = [frozenset(pair.members) for pair in pairs]
         single = zip(pairs, sides, strict=True)
@@ -67,7 +61,10 @@ class DriverChart:
 
     @cached_property
     def scales(self) -> Number:
-        """How far each free driver goes where it goes far: a radian, or the mechanism's size."""
+        """How far each free driver goes where it goes far.
+
+        That is a radian, or the mechanism's size.
+        """
         return np.array([self.order.unit(name) for name in self.free])
 
     def prescribed(self, time: float) -> tuple[Number, Number, Number]:
@@ -102,18 +99,22 @@ class DriverChart:
         for link in self.order.turning:
             if (turned := world[link].theta) is None:
                 continue
-            slopes = np.zeros(len(self.names)) if values is None or len(turned.c) < 2 else _row(turned.c[1], self.names)
+            slopes = (
+                np.zeros(len(self.names))
+                if values is None or len(turned.c) < 2
+                else by_drivers(turned.c[1], self.names)
+            )
             self.near[link] = LinearAngle(float(np.ravel(turned.c[0])[0]), values, slopes)
 
-    def turns_of(self, pair: str, angle: float, state: DriverState) -> float:
+    def turns_of(self, pair: str, angle: float, values: Number) -> float:
         """Return an angle of a pair with the full turns that it has made."""
         if pair in self.driven:
             name, own = self.driven[pair]
-            return float(state.values[self.names.index(name)]) * own.pair.driven_by(own.drive.link)
+            return float(values[self.names.index(name)]) * own.pair.driven_by(own.drive.link)
         if pair not in self.turned:
             first = float(np.ravel(self.start.pairs[pair].value)[0])
-            self.turned[pair] = LinearAngle(first, None, state.speeds)
-        return angle + float(whole_turns(self.turned[pair].at(state.values) - angle))
+            self.turned[pair] = LinearAngle(first, None, np.zeros(len(self.names)))
+        return angle + float(whole_turns(self.turned[pair].at(values) - angle))
 
     def _block(self, values: Number, speeds: Number) -> Block:
         """Solve a pose with the rates at unit rate of each driver, and last the true ones."""
@@ -123,18 +124,6 @@ class DriverChart:
         part = self.start.inputs.driven(drives)
         block = self.order.start(self._ends, part.series(2), 2, (count + 1, 1))
         return run(self.order, block, _Held(self, values))
-
-
-class LinearAngle(NamedTuple):
-    """About where an angle is: its value at values of the drivers, and its rates by them."""
-
-    angle: float
-    values: Number | None
-    slopes: Number
-
-    def at(self, values: Number) -> float:
-        """Return it at other values."""
-        return self.angle if self.values is None else self.angle + float(self.slopes @ (values - self.values))
 
 
 @dataclass(frozen=True)
@@ -154,87 +143,6 @@ class _Held:
         return None if known is None else known.at(self.values)
 
 
-@dataclass(frozen=True, eq=False)
-class DriverState:
-    """A pose with the speeds of all drivers, and what the equation of motion says of it."""
-
-    chart: DriverChart
-    time: float
-    values: Number
-    speeds: Number
-    prescribed: Number  # the accelerations of the drivers that are
-    block: Block
-
-    @cached_property
-    def terms(self) -> InertiaTerms:
-        """The mass matrix and the bias by all drivers."""
-        return inertia_terms(self.chart.masses, self.block.world, len(self.values), self.chart.gravity)
-
-    @cached_property
-    def loaded(self) -> LoadedState:
-        """What loads are asked at."""
-        start, ends = self.chart.start, self.block.ends
-        return LoadedState(start, self.block.world, ends, self.time, len(self.values), self._turned)
-
-    def _turned(self, pair: str, angle: float) -> float:
-        return self.chart.turns_of(pair, angle, self)
-
-    def slopes(self, pair: Pair) -> Number:
-        """Return the rates of a pair's coordinate by the drivers."""
-        ends, poses = self.block.ends[pair.name], tuple(self.block.world[name] for name in pair.members)
-        moved = pair.coordinate(ends, poses).c
-        return _row(moved[1], self.chart.names) if len(moved) > 1 else np.zeros(len(self.values))
-
-    def angle_of(self, name: str) -> LinearAngle:
-        """Return the angle of a pair here, with its rates by the drivers."""
-        here = float(np.ravel(self.loaded.coordinate(name).c[0])[0])
-        return LinearAngle(here, self.values, self.slopes(self.chart.order.pairs[name]))
-
-    @cached_property
-    def forces(self) -> tuple[Number, Number]:
-        """The forces along the drivers' coordinates: those of weights, and of all loads."""
-        return self.terms.weight, self.loaded.generalised()
-
-    @cached_property
-    def accelerations(self) -> Number:
-        """The accelerations of the free drivers."""
-        n, (matrix, bias, _) = len(self.chart.free), self.terms
-        push = sum(self.forces)[:n] - bias[:n]
-        if len(self.prescribed):
-            push = push - matrix[:n, n:] @ self.prescribed
-        if n == 1:
-            return push / matrix[0, 0]
-        try:
-            found: Number = np.linalg.solve(matrix[:n, :n], push)
-        except np.linalg.LinAlgError:
-            found = np.full(n, np.nan)
-        return found
-
-    @property
-    def rates(self) -> Rates:
-        """What the state grows by."""
-        return Rates(self.accelerations, float(self.forces[1] @ self.speeds) + self._driven)
-
-    @property
-    def _driven(self) -> float:
-        """The power of the prescribed drivers."""
-        if not len(self.prescribed):
-            return 0.0
-        n, (matrix, bias, _) = len(self.chart.free), self.terms
-        whole = np.concatenate([self.accelerations, self.prescribed])
-        efforts = matrix[n:] @ whole + bias[n:] - sum(self.forces)[n:]
-        return float(efforts @ self.speeds[n:])
-
-    @property
-    def kinetic(self) -> float:
-        """The kinetic energy."""
-        return float(self.speeds @ self.terms.matrix @ self.speeds) / 2.0
-
-
 def _still(pose: Pose) -> Pose:
     """Return a pose at its first entry, without rates."""
     return pose if pose is FIXED else pose.trimmed(0).entry((0, 0))
-
-
-def _row(value: Number, names: tuple[str, ...]) -> Number:
-    return np.broadcast_to(value, (len(names) + 1, 1))[:-1, 0]

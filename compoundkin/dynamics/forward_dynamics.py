@@ -12,7 +12,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.dynamics.driver_chart import DriverChart
-from compoundkin.dynamics.integration import Course, Step, integrate
+from compoundkin.dynamics.integration import SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulated_energy import simulated_energy
 from compoundkin.dynamics.simulated_motion import simulated_motion
 from compoundkin.dynamics.simulation import Simulation
@@ -36,12 +36,34 @@ def simulate(
     modes: Mapping[str, int] | str | Configuration | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Simulation:
-    """Return how a mechanism moves under its masses and loads, from a start until a time."""
+    """Return how a mechanism moves under its masses and loads. It is followed until a time in seconds.
+
+    Its drivers do not drive: their coordinates are what is found. `start` gives each its value (radians, lengths) or
+    (value, speed), a single driver without its name; without it they rest at the drawn pose, else at the first.
+    Drivers with a law are `prescribed`, and so are those that the call gives a law, a function of time, or a value at
+    which they are held. `modes` are those of `solve`.
+
+    The result is a motion in time at `times`, evenly spaced ones without them; with its forces and energies.
+    The error of a step is `tolerance` of the drivers' values and speeds. Where a driver comes to a limit position,
+    another pair takes its place as the coordinate. `progress(done, total)` is told of every step.
+
+    Raises InvalidInput for a mechanism without units or masses, for drivers that move no mass, for times that do not
+    increase; UnknownName for drivers that there are not.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.model.loads import gravity, mass
+    >>> bar, units = link("bar", A=0, B=1), {"length": "m", "mass": "kg", "force": "N"}
+    >>> weight = mass("bar", 1.0, at="B"), gravity(0, -9.81)
+    >>> pendulum = Mechanism("Pendulum", link("frame", A=0), bar, drive("bar"), *weight, units=units)
+    >>> swung = simulate(pendulum, start={"bar": -3.0}, until=2.0)
+    >>> swung, swung.energy.worst < 1e-9
+    (Simulation('Pendulum' over 2 s in 18 steps), True)
+    """
     _hold(mechanism, until, tolerance)
     begun = simulation_start(mechanism, start, prescribed or {}, modes)
     chart = DriverChart(begun.motion, tuple(begun.speeds), begun.laws)
     state = np.array([*(begun.values[name] for name in chart.free), *begun.speeds.values(), 0.0])
-    course = Course(float(until), float(tolerance))
+    course = SimulatedCourse(float(until), float(tolerance))
     with np.errstate(all="ignore"):
         _hold_moving(chart, state)
         integrate(chart, state, course, progress)
@@ -72,10 +94,12 @@ def _hold_moving(chart: DriverChart, state: Number) -> None:
     sizes = np.diag(matrix) * (chart.scales / chart.scales.max()) ** 2
     for name, one in zip(chart.free, sizes, strict=True):
         if not one > 1e-20 * heaviest:
-            raise InvalidInput(Problem(f"start.{name}", "this driver moves no mass", "give a link that it moves a mass"))
+            raise InvalidInput(
+                Problem(f"start.{name}", "this driver moves no mass", "give a link that it moves a mass")
+            )
 
 
-def _times(course: Course, times: Any) -> Number:
+def _times(course: SimulatedCourse, times: Any) -> Number:
     """Return the times of the result: those asked for as far as they are reached, else evenly spaced ones."""
     if times is not None:
         return _asked(times, course)
@@ -91,7 +115,7 @@ def _farthest(step: Step) -> float:
     return float(np.max(np.abs(last - first) / step.chart.scales))
 
 
-def _asked(times: Any, course: Course) -> Number:
+def _asked(times: Any, course: SimulatedCourse) -> Number:
     asked = real_numbers("times", times).reshape(-1)
     if len(asked) < 2 or not np.all(np.diff(asked) > 0.0) or asked[0] < 0.0 or asked[-1] > course.until:
         what = "they are not two or more increasing times within the simulation"

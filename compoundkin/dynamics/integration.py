@@ -38,7 +38,7 @@ class Step:
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
+class ChartStretch:
     """The course in one chart. The states at times are in columns, its first and last among them.
 
     `asked` tells which of the times were asked for.
@@ -51,7 +51,7 @@ class Stretch:
 
 
 @dataclass(eq=False)
-class Course:
+class SimulatedCourse:
     """The steps from the start on. A state is the free drivers' values, their speeds, and the work done."""
 
     until: float
@@ -60,7 +60,7 @@ class Course:
     events: list[SimulationEvent] = field(default_factory=list)
     evaluations: int = 0
 
-    def at(self, times: Number) -> list[Stretch]:
+    def at(self, times: Number) -> list[ChartStretch]:
         """Return the states at times in order, chart by chart."""
         charts = list(dict.fromkeys(step.chart for step in self.steps))
         runs = [[step for step in self.steps if step.chart is chart] for chart in charts]
@@ -72,17 +72,17 @@ class Course:
         return self.steps[-1].last if self.steps else 0.0
 
 
-def _stretch(steps: list[Step], times: Number, is_first: bool) -> Stretch:
+def _stretch(steps: list[Step], times: Number, is_first: bool) -> ChartStretch:
     """Return the states at times in the steps of one chart. A time at which charts change belongs to the first."""
     first, last = steps[0].first, steps[-1].last
     own = times[((times >= first) if is_first else (times > first)) & (times <= last)]
     whole = np.unique(np.concatenate([[first], own, [last]]))
     index = np.minimum(np.searchsorted([step.last for step in steps], whole), len(steps) - 1)
     parts = [steps[k].between(whole[index == k]) for k in np.unique(index)]
-    return Stretch(steps[0].chart, whole, np.concatenate(parts, axis=1), np.isin(whole, own))
+    return ChartStretch(steps[0].chart, whole, np.concatenate(parts, axis=1), np.isin(whole, own))
 
 
-def integrate(chart: DriverChart, state: Number, course: Course, progress: Progress | None) -> None:
+def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
     """Add the steps from a state of a chart on, and what happens."""
     solver, n = _solver(chart, 0.0, state, course), len(chart.free)
     while solver.status == "running":
@@ -102,14 +102,14 @@ def integrate(chart: DriverChart, state: Number, course: Course, progress: Progr
     return None
 
 
-def _changed(chart: DriverChart, solver: Any, course: Course) -> tuple[DriverChart, Number] | None:
+def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[DriverChart, Number] | None:
     """Return a chart and its state with which to go on. None where this one is good, or where nothing is better."""
     n = len(chart.free)
     here = chart.state(solver.t, solver.y[:n], solver.y[n : 2 * n])
-    fast = fastest_pair(here)
+    fast = fastest_pair(chart, here)
     if fast is None or fast.ratio < FASTER:
         return None
-    found = driven_there(here, fast)
+    found = driven_there(chart, here, fast)
     if found is None:
         if fast.ratio > LIMIT:
             solver.status = "finished"
@@ -120,11 +120,11 @@ def _changed(chart: DriverChart, solver: Any, course: Course) -> tuple[DriverCha
     return found[0], np.append(found[1], solver.y[-1])
 
 
-def _stop(course: Course, name: str, text: str) -> None:
+def _stop(course: SimulatedCourse, name: str, text: str) -> None:
     course.events.append(SimulationEvent(course.last, name, text, True))
 
 
-def _solver(chart: DriverChart, time: float, state: Number, course: Course) -> Any:
+def _solver(chart: DriverChart, time: float, state: Number, course: SimulatedCourse) -> Any:
     """Return SciPy's integrator at a state of a chart."""
     from scipy.integrate import DOP853
 

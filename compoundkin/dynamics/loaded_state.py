@@ -52,7 +52,7 @@ class LoadedState:
         return pose if pose is FIXED else pose.mapped(_true)
 
     def moved(self, link: str) -> Pose:
-        """Return the pose of a link with its rates at unit rate of each coordinate."""
+        """Return the pose of a link. Its rates are those at unit rate of each coordinate."""
         pose = self.world[link]
         return pose if pose is FIXED else pose.mapped(self._unit)
 
@@ -91,7 +91,9 @@ class LoadedState:
             yield from load.wrenches(self)
 
     def _unit(self, series: Series) -> Series:
-        return Series((_number(series.c[0]), np.ravel(series.c[1])[: self.count])) if len(series.c) > 1 else _true(series)
+        return (
+            Series((_number(series.c[0]), np.ravel(series.c[1])[: self.count])) if len(series.c) > 1 else _true(series)
+        )
 
 
 def _true(series: Series) -> Series:

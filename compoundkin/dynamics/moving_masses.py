@@ -21,10 +21,20 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.units import Units
+
+
+def units_of(mechanism: Mechanism) -> Units:
+    """Return the units of a mechanism that has some."""
+    assert mechanism.units is not None
+    return mechanism.units
 
 
 class MovingMass(NamedTuple):
-    """The mass of a link that moves, in the units in which forces come out; its centre in the link's frame."""
+    """The mass of a link that moves, and its centre in the link's frame.
+
+    It is in the units in which forces come out.
+    """
 
     link: str
     centre: complex
@@ -34,8 +44,7 @@ class MovingMass(NamedTuple):
 
 def moving_masses(mechanism: Mechanism) -> tuple[MovingMass, ...]:
     """Return the masses of the links. Raises InvalidInput for those that are arrays over designs."""
-    assert mechanism.units is not None
-    factor, found = mechanism.units.inertia, []
+    factor, found = units_of(mechanism).inertia, []
     for own in mechanism.masses.values():
         at = mechanism.geometry.points[own.link][own.at] if isinstance(own.at, str) else own.at
         if any(np.size(value) > 1 for value in (own.mass, own.inertia, at)):
@@ -48,7 +57,10 @@ def moving_masses(mechanism: Mechanism) -> tuple[MovingMass, ...]:
 
 
 class InertiaTerms(NamedTuple):
-    """The mass matrix by the drivers, the bias that inertia takes without accelerations of theirs, the weights."""
+    """The mass matrix by the drivers, the bias, and the weights.
+
+    The bias is what inertia takes without accelerations of the drivers.
+    """
 
     matrix: Number
     bias: Number
@@ -57,11 +69,12 @@ class InertiaTerms(NamedTuple):
 
 def free_fall(mechanism: Mechanism) -> complex:
     """Return the acceleration of gravity in the mechanism's own unit of length."""
-    assert mechanism.units is not None
-    return complex(np.ravel(mechanism.gravity)[0]) * mechanism.units.metre
+    return complex(np.ravel(mechanism.gravity)[0]) * units_of(mechanism).metre
 
 
-def inertia_terms(masses: Sequence[MovingMass], world: Mapping[str, Pose], count: int, gravity: complex) -> InertiaTerms:
+def inertia_terms(
+    masses: Sequence[MovingMass], world: Mapping[str, Pose], count: int, gravity: complex
+) -> InertiaTerms:
     """Return the terms of an equation of motion at one pose of `count` drivers.
 
     Each pose has the rates at unit rate of every driver in a column, and last those of the true motion without

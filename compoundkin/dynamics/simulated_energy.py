@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.arrays import dot
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
+from compoundkin.dynamics.mass_motion import mass_motions
+from compoundkin.dynamics.moving_masses import free_fall, units_of
 from compoundkin.kinematics.motion import Motion
 
 
@@ -35,7 +37,7 @@ class SimulatedEnergy(PrintsShort):
 
     @property
     def peak(self) -> float:
-        """The greatest energy that was moved about: kinetic, of a change of the potential, or of the work."""
+        """The greatest of the energies. Kinetic, a change of the potential, or the work."""
         parts = (self.kinetic, self.potential - self.potential[0], self.work)
         return max(float(np.max(np.abs(part))) for part in parts)
 
@@ -46,25 +48,11 @@ class SimulatedEnergy(PrintsShort):
 
 
 def simulated_energy(motion: Motion, work: Number) -> SimulatedEnergy:
-    """Return the energies of a motion of one design."""
-    kinetic, potential = np.zeros(motion.failed.shape), np.zeros(motion.failed.shape)
-    for loaded in loaded_blocks(motion):
-        at = loaded.designs, loaded.poses
-        kinetic[at], potential[at] = _of_block(loaded)
-    return SimulatedEnergy(kinetic[0], potential[0], work)
-
-
-def _of_block(loaded: LoadedBlock) -> tuple[Number, Number]:
-    factor, mechanism = loaded.units.inertia, loaded.motion.mechanism
-    kinetic: Number = 0.0
-    potential: Number = 0.0
-    fall = mechanism.gravity * loaded.units.metre
-    for mass in mechanism.masses.values():
-        own, spin = loaded.fitted(mass.mass) * factor, loaded.fitted(mass.inertia) * factor
-        centre, turned = loaded.place(mass.link, mass.at).c, loaded.pose(mass.link).u.c
-        if len(centre) > 1:
-            kinetic = kinetic + own * abs(centre[1]) ** 2 / 2.0
-        if len(turned) > 1:
-            kinetic = kinetic + spin * abs(turned[1]) ** 2 / 2.0
-        potential = potential - own * (fall.conjugate() * centre[0]).real
-    return kinetic, potential
+    """Return the energies of a motion of one design. Its mass centres tell them."""
+    mechanism = motion.mechanism
+    factor, fall = units_of(mechanism).inertia, free_fall(mechanism)
+    kinetic, potential = np.zeros(motion.shape), np.zeros(motion.shape)
+    for own in mass_motions(motion):
+        kinetic += np.ravel(own.product(1, own, 1)) * (factor / 2.0)
+        potential -= np.ravel(dot(fall, own.centre[0]) * own.mass) * factor
+    return SimulatedEnergy(kinetic, potential, work)

@@ -12,7 +12,7 @@ from compoundkin.base.arrays import whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.dynamics.driver_chart import DriverChart
-from compoundkin.dynamics.integration import Stretch
+from compoundkin.dynamics.integration import ChartStretch
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.motion import Motion
@@ -28,7 +28,7 @@ SAME = 1e-6
 Moved = tuple[Number, Number, Number]
 
 
-def simulated_motion(stretches: list[Stretch]) -> Motion:
+def simulated_motion(stretches: list[ChartStretch]) -> Motion:
     """Return the motion of all stretches together, at the times that were asked for.
 
     It is driven by a coordinate that tells the pose all the time, where there is one.
@@ -48,12 +48,12 @@ def simulated_motion(stretches: list[Stretch]) -> Motion:
     return replace(mended, failed=np.zeros_like(motion.failed))
 
 
-def _alone(stretch: Stretch) -> Motion:
+def _alone(stretch: ChartStretch) -> Motion:
     asked = replace(stretch, times=stretch.times[stretch.asked], states=stretch.states[:, stretch.asked])
     return in_time(stretch.chart, asked.times, _moved(asked), first_configuration(stretch.chart.start, 0))
 
 
-def _joined(parts: list[Motion], stretches: list[Stretch]) -> dict[str, Pose]:
+def _joined(parts: list[Motion], stretches: list[ChartStretch]) -> dict[str, Pose]:
     """Return the poses of all links at the times that were asked for, in a row."""
 
     def row(name: str, side: str, k: int) -> Number:
@@ -71,7 +71,7 @@ def _joined(parts: list[Motion], stretches: list[Stretch]) -> dict[str, Pose]:
 
 
 def _driven_by(
-    chart: DriverChart, parts: list[Motion], stretches: list[Stretch], times: Number, poses: Mapping[str, Pose]
+    chart: DriverChart, parts: list[Motion], stretches: list[ChartStretch], times: Number, poses: Mapping[str, Pose]
 ) -> tuple[Motion, bool]:
     """Return the motion by the free drivers of one chart, and whether its poses are those that were found."""
     moved = {name: _followed(chart, name, parts, stretches) for name in chart.free}
@@ -86,7 +86,7 @@ def _driven_by(
     return motion, agrees
 
 
-def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: list[Stretch]) -> Moved:
+def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: list[ChartStretch]) -> Moved:
     """Return how a driver of a chart moves all the time, read off the motions of all stretches."""
     own = chart.start.structure.driven[name]
     sense, found, last = float(own.pair.driven_by(own.drive.link)), [], None
@@ -101,7 +101,7 @@ def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: lis
     return value, speed, acceleration
 
 
-def _moved(stretch: Stretch) -> dict[str, Moved]:
+def _moved(stretch: ChartStretch) -> dict[str, Moved]:
     """Return how the free drivers move in a stretch."""
     chart, n = stretch.chart, len(stretch.chart.free)
     values, speeds = stretch.states[:n], stretch.states[n : 2 * n]
@@ -110,9 +110,7 @@ def _moved(stretch: Stretch) -> dict[str, Moved]:
     return {name: (values[k], speeds[k], rates[:, k]) for k, name in enumerate(chart.free)}
 
 
-def in_time(
-    chart: DriverChart, times: Number, moved: Mapping[str, Moved], first: Configuration | None
-) -> Motion:
+def in_time(chart: DriverChart, times: Number, moved: Mapping[str, Moved], first: Configuration | None) -> Motion:
     """Return a motion in time of a chart's mechanism. Its free drivers have a law that goes through what they did."""
     laws = {**chart.laws, **{name: motion_table(times, *one) for name, one in moved.items()}}
     drives = [replace(item, values=None, law=laws[item.name]) for item in chart.mechanism.items

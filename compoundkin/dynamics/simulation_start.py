@@ -24,7 +24,7 @@ from compoundkin.model.mechanism import Mechanism
 
 @dataclass(frozen=True, eq=False)
 class SimulationStart:
-    """The first pose as a motion; the speeds of the free drivers there; the laws of the others."""
+    """The first pose as a motion. The speeds of free drivers, the laws of others."""
 
     motion: Motion
     speeds: Mapping[str, float]
@@ -37,7 +37,10 @@ class SimulationStart:
 
 
 def simulation_start(
-    mechanism: Mechanism, start: Any, prescribed: Mapping[str, Any], modes: Mapping[str, int] | str | Configuration | None
+    mechanism: Mechanism,
+    start: Any,
+    prescribed: Mapping[str, Any],
+    modes: Mapping[str, int] | str | Configuration | None,
 ) -> SimulationStart:
     """Return where a simulation starts; raises InvalidInput and UnknownName for what does not fit."""
     names = [own.name for own in mechanism.drives]

@@ -1,0 +1,77 @@
+"""The mechanisms of the forward dynamics in `tests/reference/forces.json`, built from words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import compoundkin as ck
+from tests.dynamics.cases import SI
+from tests.support import reference
+
+ENTRY = reference("forward_slider_crank_four_bar_five_bar", "forces")
+
+
+def slider_crank(driver: Any = None) -> ck.Mechanism:
+    """The vertical slider-crank that is let go."""
+    own = ENTRY["dimensions"]["slider_crank"]
+    bodies = [ck.mass(link, own[link]["mass"], at=tuple(own[link]["mass_centre"]), inertia=own[link]["inertia"])
+              for link in ("crank", "rod")]  # fmt: skip
+    return ck.Mechanism(
+        "Slider-crank let go",
+        ck.link("frame", O=(0, 0)),
+        ck.link("crank", O=(0, 0), A=(own["OA"], 0)),
+        ck.link("rod", A=(0, 0), B=(own["AB"], 0)),
+        ck.link("piston", B=(0, 0)),
+        ck.slide("piston", on="frame", at="B", through="O", angle=np.pi / 2, name="guide"),
+        ck.drawn(O=(0, 0), A=(own["OA"], 0), B=(0, 0.335)),
+        driver or ck.drive("crank"),
+        *bodies,
+        ck.mass("piston", own["piston"]["mass"], at="B"),
+        ck.gravity(*own["gravity"]),
+        units=SI,
+    )
+
+
+def four_bar() -> ck.Mechanism:
+    """The four-bar driven by a constant torque."""
+    own = ENTRY["dimensions"]["four_bar"]
+    bodies = [ck.mass(link, own[link]["mass"], at=tuple(own[link]["mass_centre"]), inertia=own[link]["inertia"])
+              for link in ("coupler", "rocker")]  # fmt: skip
+    return ck.Mechanism(
+        "Four-bar under a torque",
+        ck.link("frame", O=(0, 0), C=(own["OC"], 0)),
+        ck.link("crank", O=(0, 0), A=(own["OA"], 0)),
+        ck.link("coupler", A=(0, 0), B=(own["AB"], 0)),
+        ck.link("rocker", C=(0, 0), B=(own["CB"], 0)),
+        ck.drawn(O=(0, 0), C=(own["OC"], 0), A=(own["OA"], 0), B=(0.19, 0.12)),
+        ck.drive("crank"),
+        # about the pivot: what the mass adds at a distance is in it
+        ck.mass("crank", 1e-9, at="O", inertia=own["crank_inertia_about_O"]),
+        *bodies,
+        ck.torque("crank", own["torque"]),
+        units=SI,
+    )
+
+
+def five_bar() -> ck.Mechanism:
+    """The pendulum of five bars, with two freedoms."""
+    own = ENTRY["dimensions"]["five_bar"]
+    bars = {"left": "cranks", "right": "cranks", "left rod": "rods", "right rod": "rods"}
+    weights = {"cranks": own["crank_mass"], "rods": own["rod_mass"]}
+    return ck.Mechanism(
+        "Five-bar let go",
+        ck.link("frame", A=own["A"], D=own["D"]),
+        ck.link("left", A=(0, 0), P=(own["cranks"], 0)),
+        ck.link("right", D=(0, 0), R=(own["cranks"], 0)),
+        ck.link("left rod", P=(0, 0), Q=(own["rods"], 0)),
+        ck.link("right rod", R=(0, 0), Q=(own["rods"], 0)),
+        ck.drawn(A=(0, 0), D=(0.2, 0), P=(0, 0.1), R=(0.25, 0.09), Q=(0.1, 0.3)),
+        ck.drive("left"),
+        ck.drive("right"),
+        *(ck.mass(link, weights[kind], at=(own[kind] / 2, 0), inertia=weights[kind] * own[kind] ** 2 / 12)
+          for link, kind in bars.items()),
+        ck.gravity(*own["gravity"]),
+        units=SI,
+    )  # fmt: skip

@@ -1,0 +1,134 @@
+"""Forward dynamics against quadrature, published states, energy, and against itself in other coordinates."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.errors import InvalidInput, UnknownName
+from tests.dynamics.cases import SI
+from tests.dynamics.moving_cases import ENTRY, five_bar, four_bar, slider_crank
+
+# The reference is good to about this: quadrature at 30 digits, integration to 1e-10.
+TOLERANCE = 1e-9
+
+
+def test_slider_crank_let_go() -> None:
+    """Times, speeds and accelerations of the fall, by quadrature."""
+    rows = ENTRY["expected"]["slider_crank"]["rows"]
+    times = [0.0, *(row["time"] for row in rows)]
+    found = ck.simulate(slider_crank(), start=ck.deg(60), until=times[-1], times=times, tolerance=1e-12)
+    crank = found.motion.drives["crank"]
+    assert crank.second[0] == pytest.approx(ENTRY["expected"]["slider_crank"]["initial_acceleration"], rel=TOLERANCE)
+    np.testing.assert_allclose(crank.value[1:], ck.deg([row["crank_deg"] for row in rows]), atol=TOLERANCE)
+    np.testing.assert_allclose(crank.rate[1:], [row["speed"] for row in rows], rtol=TOLERANCE)
+    np.testing.assert_allclose(crank.second[1:], [row["acceleration"] for row in rows], rtol=TOLERANCE, atol=1e-6)
+    np.testing.assert_allclose(found.motion.points["B"].y[1:], [row["piston_y"] for row in rows], rtol=TOLERANCE)
+    assert np.max(np.abs(found.forces.drives["crank"].effort)) < 1e-9
+    assert found.energy.worst < 1e-11
+
+
+def test_four_bar_under_a_torque() -> None:
+    """A full turn from rest: times by quadrature; the torque's work is the torque times the angle."""
+    rows = ENTRY["expected"]["four_bar"]["rows"]
+    times = [0.0, *(row["time"] for row in rows)]
+    found = ck.simulate(four_bar(), start={"crank": 0.0}, until=times[-1], times=times, tolerance=1e-12)
+    crank = found.motion.drives["crank"]
+    np.testing.assert_allclose(crank.value[1:], ck.deg([row["crank_deg"] for row in rows]), atol=TOLERANCE)
+    np.testing.assert_allclose(crank.rate[1:], [row["speed"] for row in rows], rtol=TOLERANCE)
+    np.testing.assert_allclose(crank.second[1:], [row["acceleration"] for row in rows], rtol=TOLERANCE)
+    np.testing.assert_allclose(found.motion.points["B"].position.xy[1:], [row["B"] for row in rows], atol=TOLERANCE)
+    np.testing.assert_allclose(found.energy.work, 0.5 * crank.value, atol=TOLERANCE)
+    np.testing.assert_allclose(found.energy.kinetic, 0.5 * crank.value, atol=TOLERANCE)
+
+
+def test_five_bar_let_go() -> None:
+    """Two freedoms: both coordinates, speeds and accelerations, and where the bars meet."""
+    rows = ENTRY["expected"]["five_bar"]["rows"]
+    times = [0.0, *(row["time"] for row in rows)]
+    start = dict(zip(("left", "right"), ck.deg([100, 60]), strict=True))
+    found = ck.simulate(five_bar(), start=start, until=times[-1], times=times, tolerance=1e-12)
+    for k, name in enumerate(("left", "right")):
+        own = found.motion.drives[name]
+        assert own.second[0] == pytest.approx(ENTRY["expected"]["five_bar"]["initial_accelerations"][k], rel=TOLERANCE)
+        np.testing.assert_allclose(own.value[1:], [row[f"{name}_rad"] for row in rows], atol=TOLERANCE)
+        np.testing.assert_allclose(own.rate[1:], [row[f"{name}_speed"] for row in rows], rtol=TOLERANCE)
+        np.testing.assert_allclose(own.second[1:], [row[f"{name}_acceleration"] for row in rows], rtol=TOLERANCE)
+        assert np.max(np.abs(found.forces.drives[name].effort)) < 1e-10
+    np.testing.assert_allclose(found.motion.points["Q"].position.xy[1:], [row["Q"] for row in rows], atol=TOLERANCE)
+
+
+def test_dead_point_is_passed_by_another_coordinate() -> None:
+    """Driven by the piston, the crank takes its place at the dead point: the same motion as by the crank."""
+    by_crank = ck.simulate(slider_crank(), start={"crank": ck.deg(60)}, until=0.6, tolerance=1e-11)
+    height = float(by_crank.motion.points["B"].y[0])
+    by_piston = ck.simulate(slider_crank(ck.drive("piston")), start={"piston": height}, until=0.6,
+                            times=by_crank.times, tolerance=1e-11)  # fmt: skip
+    assert [event.name for event in by_piston.events] == ["coordinate"]
+    np.testing.assert_allclose(
+        by_piston.motion.points["B"].position.xy, by_crank.motion.points["B"].position.xy, atol=1e-9
+    )
+    np.testing.assert_allclose(
+        by_piston.motion.points["A"].position.xy, by_crank.motion.points["A"].position.xy, atol=1e-8
+    )
+    assert by_piston.motion.assembled.all()
+    assert by_piston.energy.worst < 1e-9
+
+
+def test_one_driver_prescribed_and_one_free() -> None:
+    """A pendulum on a support that is shaken: Kapitza's equation of motion, integrated by itself."""
+    from scipy.integrate import solve_ivp
+
+    length, sway, pace = 0.5, 0.1, 9.0
+    shaken = ck.Mechanism(
+        "Pendulum on a sliding support",
+        ck.link("frame", O=(0, 0)),
+        ck.link("block", P=(0, 0)),
+        ck.link("bar", P=(0, 0), G=(length, 0)),
+        ck.slide("block", on="frame", at="P", through="O", angle=0, name="way"),
+        ck.drive("block"),
+        ck.drive("bar", on="block"),
+        ck.mass("bar", 2.0, at="G"),
+        ck.mass("block", 1.0),
+        ck.gravity(0, -9.81),
+        units=SI,
+    )
+    found = ck.simulate(shaken, start={"bar": (-1.0, 0.3)}, prescribed={"block": lambda t: sway * np.sin(pace * t)},
+                        until=2.0, tolerance=1e-11)  # fmt: skip
+
+    def grown(t: float, y: np.ndarray) -> list[float]:
+        support = -sway * pace**2 * np.sin(pace * t)
+        return [y[1], (support * np.sin(y[0]) - 9.81 * np.cos(y[0])) / length]
+
+    known = solve_ivp(grown, (0, 2), [-1.0, 0.3], "DOP853", found.times, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(found.motion.drives["bar"].value, known.y[0], atol=1e-8)
+    assert found.energy.worst < 1e-8
+    assert np.max(np.abs(found.forces.drives["bar"].effort)) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "told"),
+    [
+        ({"start": {"piston": 1.0}}, UnknownName, "start.piston"),
+        ({"start": {"crank": "x"}}, InvalidInput, "start.crank"),
+        ({"prescribed": {"crank": 1.0}}, InvalidInput, "prescribed too"),
+        ({"prescribed": {"crank": 1.0}, "start": None}, InvalidInput, "all drivers are prescribed"),
+        ({"until": 0.0}, InvalidInput, "until"),
+        ({"times": [0.0, 5.0]}, InvalidInput, "times"),
+        ({"tolerance": 0.0}, InvalidInput, "tolerance"),
+    ],
+)
+def test_what_cannot_be_simulated(given: dict[str, object], error: type[Exception], told: str) -> None:
+    """The message names what is wrong."""
+    with pytest.raises(error, match=told):
+        ck.simulate(slider_crank(), **{"start": 1.0, "until": 0.1, **given})
+
+
+def test_a_driver_that_moves_no_mass_is_named() -> None:
+    """So it is where all masses are on other links."""
+    arm = ck.Mechanism("Arm", ck.link("frame", A=0), ck.link("upper", A=0, B=2), ck.link("fore", B=0, P=1),
+                       ck.drive("upper"), ck.drive("fore", on="upper"), ck.mass("upper", 1.0, at="B"),
+                       units=SI)  # fmt: skip
+    with pytest.raises(InvalidInput, match="this driver moves no mass"):
+        ck.simulate(arm, start={"upper": 0.0, "fore": 0.0}, until=1.0)
