@@ -27,7 +27,7 @@ import compoundkin as ck
 from tests.benchmarks import four_bar, six_bar
 from tests.benchmarks.measure import Times, commands, interleaved, ratio
 
-MANY, FEW, LOOPED, VARIANTS = 36_000, 361, 300, 1_000_000
+MANY, FEW, LOOPED, VARIANTS, DESIGNS = 36_000, 361, 300, 1_000_000, 4096
 
 
 def hand_and_loop() -> None:
@@ -67,6 +67,26 @@ def pylinkage() -> None:
         times = interleaved({"pylinkage": lambda k=kernel: k(MANY), "asked": asked}, 20)
         row(f"pylinkage to {what}", median(times["pylinkage"]) / MANY, "")
         row("solved and asked", median(times["asked"]) / MANY, f"{ratio(times, 'pylinkage', 'asked'):.1f} x faster")
+
+
+def forces() -> None:
+    """Reactions in all pairs of the six-bar, beside the cost of its motion."""
+    crank, plan = np.linspace(0.0, 2 * np.pi, MANY), six_bar.loaded()
+    motion = ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)
+    heading(f"six-bar with masses and loads, {MANY:,} poses, forces in all pairs")
+    times = interleaved(
+        {
+            "solved": lambda: ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED),
+            "forces": lambda: ck.force_analysis(motion),
+        },
+        40,
+    )
+    row("solved", median(times["solved"]) / MANY, "")
+    row("forces", median(times["forces"]) / MANY, f"{ratio(times, 'forces', 'solved'):.2f} x the motion")
+    lengths = np.linspace(26.0, 30.0, DESIGNS)[:, None]
+    sweep = six_bar.loaded(rocker=lengths, plate=lengths + 11.0)
+    solved = ck.solve(sweep, {"crank": np.linspace(0.0, 2 * np.pi, FEW)}, speed=six_bar.SPEED)
+    task(f"{DESIGNS:,} designs of {FEW} poses", DESIGNS * FEW, lambda: ck.force_analysis(solved).motion)
 
 
 def small() -> None:
@@ -131,5 +151,5 @@ def row(label: str, seconds: float, note: str) -> None:
 
 
 if __name__ == "__main__":
-    for part in (hand_and_loop, pylinkage, small, large):
+    for part in (hand_and_loop, pylinkage, forces, small, large):
         part()

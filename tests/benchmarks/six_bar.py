@@ -38,6 +38,25 @@ def mechanism(rocker: Any = AB, plate: Any = DA) -> ck.Mechanism:
     )
 
 
+# Mass, mass centre in the link's frame, inertia about it.
+MASSES = {
+    "crank": (0.05, (5, 0), 2.0),
+    "plate": (0.08, (18, 4), 15.0),
+    "rocker": (0.04, (14, 0), 4.0),
+    "bar": (0.06, (27.5, 0), 20.0),
+    "block": (0.02, (0, 0), 1.0),
+}
+
+
+def loaded(rocker: Any = AB, plate: Any = DA) -> ck.Mechanism:
+    """The six-bar with masses on all links, weights, a force and a torque, as in `tests/reference/forces.json`."""
+    plan = mechanism(rocker, plate)
+    masses = (ck.mass(name, mass, at=at, inertia=inertia) for name, (mass, at, inertia) in MASSES.items())
+    loads = ck.gravity(0, -9.81), ck.force("bar", (-3, -5), at="G"), ck.torque("rocker", 20.0)
+    units = {"length": "mm", "mass": "kg", "force": "N"}
+    return ck.Mechanism(plan.title, *plan.items, *masses, *loads, units=units)
+
+
 def asked(motion: ck.results.Motion) -> Answer:
     """Everything the other two compute, asked of a motion."""
     found: Answer = {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from statistics import median
 
 import numpy as np
@@ -80,6 +81,32 @@ def test_small_tasks() -> None:
     assert min(times["it"]) < 1e-3
     starts = commands({"numpy": ["-c", "import numpy"], "ours": ["-c", "import compoundkin"]}, 7)
     assert median(b - a for a, b in zip(starts["numpy"], starts["ours"], strict=True)) < 0.2 * NOISE
+
+
+def test_forces_beside_the_motion() -> None:
+    plan = six_bar.loaded()
+    motion = ck.solve(plan, {"crank": TURN}, speed=six_bar.SPEED)
+    times = interleaved(
+        {
+            "solved": lambda: ck.solve(plan, {"crank": TURN}, speed=six_bar.SPEED),
+            "forces": lambda: ck.force_analysis(motion),
+        },
+        25,
+    )
+    assert ratio(times, "forces", "solved") < 2.5 * NOISE
+
+
+def test_forces_of_many_designs_need_little_memory() -> None:
+    """4,096 designs of 361 poses: less than 2 GB beyond the motion, at any time and for what is kept."""
+    lengths = np.linspace(26.0, 30.0, 4096)[:, None]
+    plan = six_bar.loaded(rocker=lengths, plate=lengths + 11.0)
+    motion = ck.solve(plan, {"crank": np.linspace(0.0, 2 * np.pi, 361)}, speed=six_bar.SPEED)
+    tracemalloc.start()
+    forces = ck.force_analysis(motion)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert forces.shape == (4096, 361)
+    assert peak < 2e9
 
 
 def test_solve(benchmark) -> None:  # type: ignore[no-untyped-def]
