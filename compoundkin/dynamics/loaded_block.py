@@ -13,7 +13,7 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block, blocks
 from compoundkin.kinematics.extremes import given_over
-from compoundkin.kinematics.inputs import fit, rectangle
+from compoundkin.kinematics.inputs import fit, mapped, rectangle
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import FRAME, Load, Mass
 from compoundkin.model.pairs import Pair
@@ -61,15 +61,21 @@ class LoadedBlock:
         """Return the free coordinate of a pair or a driver. Angles are counted along the motion."""
         pair, sign = self._meant(name)
         found = pair.coordinate(self._ends(pair), self._poses(pair))
-        is_counted = pair.free_is_angle and pair.name in self.motion.solving_order.pairs
-        value = self._counted(pair.name) if is_counted else found.c[0]
+        value = self._counted(pair) if pair.free_is_angle else found.c[0]
         return Series((value * sign, *(one * sign for one in found.c[1:])))
 
-    def _counted(self, name: str) -> Number:
+    def _counted(self, pair: Pair) -> Number:
         """Return an angle with its turns, which the whole motion tells. It is found once for all blocks."""
-        if name not in self.counted:
-            self.counted[name] = fit(self.motion.shape)(self.motion.pairs[name].value)
-        return self._cut(self.counted[name])
+        if pair.name not in self.counted:
+            self.counted[pair.name] = fit(self.motion.shape)(self._angle(pair))
+        return self._cut(self.counted[pair.name])
+
+    def _angle(self, pair: Pair) -> Number:
+        """Return the angle of a pair, or between two links of a multiple pin that no pair joins."""
+        if pair.name in self.motion.solving_order.pairs:
+            return self.motion.pairs[pair.name].value
+        first, second = (self.motion.links[link].angle for link in pair.members)
+        return second - first
 
     def unit_effort(self, name: str) -> Iterator[tuple[str, Wrench]]:
         """Yield the links of a pair with the wrenches of a unit effort."""
@@ -83,12 +89,18 @@ class LoadedBlock:
         meant = meant_pair(self.motion.mechanism, name)
         if meant is None:
             raise UnknownName(Problem(name, "there is no such pair, pin or driver"))
-        return self.motion.solving_order.pairs.get(meant[0].name, meant[0]), meant[1]
+        pair, sign = meant
+        for own in self.motion.solving_order.pairs.values():
+            if own.letters == pair.letters and set(own.members) == set(pair.members) and own.title == pair.title:
+                return own, sign * (1 if own.members == pair.members else -1)
+        return pair, sign
 
     def _ends(self, pair: Pair) -> Ends:
         """Return the sides of a pair; two links of a multiple pin may have one that no group uses."""
         known = self.block.ends.get(pair.name)
-        return pair.ends(self.motion.mechanism.geometry) if known is None else known
+        if known is not None:
+            return known
+        return tuple(mapped(end, self.fitted) for end in pair.ends(self.motion.mechanism.geometry))
 
     def _poses(self, pair: Pair) -> tuple[Pose, ...]:
         return tuple(self.block.world[name] for name in pair.members)

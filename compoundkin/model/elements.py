@@ -20,7 +20,7 @@ from compoundkin.model.leads import Lead as Lead
 from compoundkin.model.loads import Friction as Friction
 from compoundkin.model.loads import Gravity as Gravity
 from compoundkin.model.loads import Load as Load
-from compoundkin.model.loads import LoadWord
+from compoundkin.model.loads import LoadWord as LoadWord
 from compoundkin.model.loads import Mass as Mass
 from compoundkin.model.loads import Pretension as Pretension
 from compoundkin.model.pairs import Pair

@@ -16,16 +16,16 @@ from compoundkin.base.series import Number
 from compoundkin.model.drawn_poses import told_poses
 from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Lead, Link, Mode
 from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
+from compoundkin.model.load_problems import load_problems, load_warnings
+from compoundkin.model.number_problems import places_wanted
 from compoundkin.model.pairs.profile_contact import as_profiled
 from compoundkin.model.pin_pairs import NamesOfPairs
-from compoundkin.model.units import as_units
+from compoundkin.model.units import given_units
 from compoundkin.model.validation import problems_of
 from compoundkin.model.written import Written
 
-# An error names so many links.
-MOST_NAMED = 12
 # What is written of a mechanism beside its items.
-_ABOUT = ("title", "unit", "source", "description", "outputs", "time", "units")
+_ABOUT = ("title", "source", "description", "outputs", "time", "unit", "units")
 
 
 class Mechanism(Written, ShowsPicture):
@@ -63,16 +63,18 @@ class Mechanism(Written, ShowsPicture):
         units: Any = None,
     ) -> None:
         self.title = title
-        self.units = as_units(units)
+        self.units, problems = given_units(units, unit)
         self.unit = self.units.length if self.units else unit
         self.source = source
         self.description = description
         self.outputs: tuple[str, ...] = (outputs,) if isinstance(outputs, str) else tuple(outputs)
         self.time: Number | None = real("time", time)
         self.items: tuple[Item, ...] = items
-        problems = list(problems_of(self)) or list(self._misfits())
+        problems += problems_of(self)
+        problems += load_problems(self, self.names, units is not None) or ([] if problems else self._misfits())
         if problems:
             raise InvalidMechanism(problems, heading=f"{title!r} cannot be built")
+        load_warnings(self)
 
     def _misfits(self) -> Iterator[Problem]:
         """Find dimensions of pairs that do not fit, where nothing else is wrong and all points have places."""
@@ -86,7 +88,7 @@ class Mechanism(Written, ShowsPicture):
         Raises InvalidInput where points have neither coordinates nor a place in the drawing.
         """
         if self.unplaced:
-            raise InvalidInput(_places_wanted(self.unplaced), heading=f"{self.title!r} has no dimensions yet")
+            raise InvalidInput(places_wanted(self.unplaced), heading=f"{self.title!r} has no dimensions yet")
         points: dict[str, Mapping[str, Number]] = {}
         poses: dict[str, Pose] = {}
         fixed = self.links[FRAME].points
@@ -144,16 +146,19 @@ class Mechanism(Written, ShowsPicture):
         """
         keys = {_identity(item): item for item in items}
         kept = [keys.pop(_identity(item), item) for item in self.items]
-        words = {k: getattr(self, k) for k in _ABOUT[1:] if k != "unit" or self.units is None}
+        words = {**{k: getattr(self, k) for k in _ABOUT[1:-2]}, **({} if "units" in changes else self.unit_words)}
         title = changes.pop("title", self.title)
         return Mechanism(title, *kept, *keys.values(), **{**words, **changes})
 
     def without_leads(self) -> Mechanism:
         """Return the mechanism itself, without what leads its points and turns its links."""
         gone = (Lead, Expectation)
-        return Mechanism(
-            self.title, *(item for item in self.items if not isinstance(item, gone)), unit=self.unit, units=self.units
-        )
+        return Mechanism(self.title, *(item for item in self.items if not isinstance(item, gone)), **self.unit_words)
+
+    @property
+    def unit_words(self) -> dict[str, Any]:
+        """What is said of its units where another mechanism is made of it."""
+        return {"unit": self.unit} if self.units is None else {"units": self.units}
 
     def link(self, name: str) -> Link:
         """Return the link of a name; raises UnknownName."""
@@ -179,18 +184,6 @@ class Mechanism(Written, ShowsPicture):
 
     def __repr__(self) -> str:
         return f"Mechanism({self.title!r}: {self.in_numbers}, {counted(len(self.drives), 'driver')})"
-
-
-def _places_wanted(unplaced: Mapping[str, tuple[str, ...]]) -> Iterator[Problem]:
-    """Name links whose points have no place, and say how to give them one."""
-    for number, (name, letters) in enumerate(unplaced.items()):
-        if number == MOST_NAMED:
-            yield Problem("links", f"{len(unplaced) - number} more links have points without a place")
-            return
-        what = f"{'the point' if len(letters) == 1 else 'the points'} {', '.join(letters)}"
-        what += f" of {name!r} {'has' if len(letters) == 1 else 'have'} no place"
-        remedy = f"give all coordinates as {letters[0]} = (x, y), or a place in the drawing; the structure needs none"
-        yield Problem(f"links.{name}.points", what, "" if number else remedy)
 
 
 def _identity(item: Item) -> tuple[Any, ...]:

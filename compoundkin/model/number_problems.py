@@ -24,6 +24,8 @@ DRIVEN = ("values", *RATES)
 
 # What is no array, and is looked at without NumPy: most mechanisms hold nothing else.
 _NUMBERS = (complex, float, int)
+# An error names so many links.
+MOST_NAMED = 12
 # A direction in which points of a drawing hardly ever lie one behind the other.
 _OBLIQUE = cmath.rect(1.0, 1.0)
 
@@ -201,3 +203,15 @@ def shape_problems(mechanism: Written) -> Iterator[Problem]:
                 f"shape {shape} does not broadcast with {total}",
                 "give a new axis to designs: the last axis is the motion",
             )
+
+
+def places_wanted(unplaced: Mapping[str, tuple[str, ...]]) -> Iterator[Problem]:
+    """Name links whose points have no place, and say how to give them one."""
+    for number, (name, letters) in enumerate(unplaced.items()):
+        if number == MOST_NAMED:
+            yield Problem("links", f"{len(unplaced) - number} more links have points without a place")
+            return
+        what = f"{'the point' if len(letters) == 1 else 'the points'} {', '.join(letters)}"
+        what += f" of {name!r} {'has' if len(letters) == 1 else 'have'} no place"
+        remedy = f"give all coordinates as {letters[0]} = (x, y), or a place in the drawing; the structure needs none"
+        yield Problem(f"links.{name}.points", what, "" if number else remedy)

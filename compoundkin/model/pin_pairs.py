@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import permutations
+from itertools import combinations, permutations
 
 from compoundkin.model.elements import Drive
 from compoundkin.model.pairs import Pair, Revolute
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable
+from compoundkin.model.pairs.revolute import SEPARATORS
 from compoundkin.model.written import Written
-
-# The first that occurs in no name of the pin's links joins two of them, so that pair names are unique.
-_SEPARATORS = ("-", "/", ":", " to ", " - ")
 
 
 @dataclass(frozen=True)
@@ -32,7 +30,11 @@ class Pins:
         """
         if len(self.mechanism.pins[letter]) == 2 and letter not in self._written:
             return Revolute(letter, letter, first, second)
-        return Revolute(f"{letter}({first}{self._separators[letter]}{second})", letter, first, second)
+        return Revolute(self.full_name(letter, first, second), letter, first, second)
+
+    def full_name(self, letter: str, first: str, second: str) -> str:
+        """Return the name of the pair of two links at a pin, from the first to the second."""
+        return f"{letter}({first}{self._separators[letter]}{second})"
 
     def named(self, name: str) -> Revolute | None:
         """Return the pin between two links by its letter or its full name."""
@@ -40,8 +42,12 @@ class Pins:
         if len(links) == 2:
             return self.pair(name, *links)
         letter = name.partition("(")[0]
-        both = permutations(self.mechanism.pins.get(letter, ()), 2) if letter != name else ()
-        return next((pair for two in both if (pair := self.pair(letter, *two)).name == name), None)
+        for first, second in permutations(self.mechanism.pins.get(letter, ()), 2) if letter != name else ():
+            if name in (f"{letter}({first}{s}{second})" for s in SEPARATORS):
+                pair = self.pair(letter, first, second)
+                # of two links alone the full name says which comes first
+                return pair if len(self.mechanism.pins[letter]) > 2 else replace(pair, name=name)
+        return None
 
     @cached_property
     def _written(self) -> frozenset[str]:
@@ -50,9 +56,8 @@ class Pins:
     @cached_property
     def _separators(self) -> dict[str, str]:
         return {
-            letter: next((s for s in _SEPARATORS if not any(s in name for name in names)), "-")
+            letter: next((s for s in SEPARATORS if not any(s in name for name in names)), "-")
             for letter, names in self.mechanism.pins.items()
-            if len(names) > 2 or letter in self._written
         }
 
 
@@ -97,6 +102,15 @@ def meant_pair(mechanism: Written, name: str) -> tuple[Pair, int] | None:
     return pair, pair.driven_by(drive.link)
 
 
+def lasting_name(mechanism: Written, name: str) -> str:
+    """Return a name for a driver's pair that means the same coordinate without the driver."""
+    found = meant_pair(mechanism, name)
+    if found is None or found[1] < 0:
+        return name
+    pair = found[0]
+    return Pins(mechanism).full_name(pair.name, *pair.members) if pair.name in mechanism.pins else pair.name
+
+
 @dataclass(frozen=True)
 class NamesOfPairs:
     """What a mechanism has of links, points and pairs, for loads that name them."""
@@ -124,7 +138,18 @@ class NamesOfPairs:
         written = [pair.name for pair in self.mechanism.real_pairs]
         return [*pins, *written, *(drive.name for drive in self.mechanism.drives)]
 
+    def at_pin(self, letter: str) -> list[str]:
+        """Return the names of the pairs at a multiple pin, for each two of its links."""
+        links = self.mechanism.real_pins.get(letter, ())
+        pins = Pins(self.mechanism)
+        return [pins.pair(letter, *two).name for two in combinations(links, 2)] if len(links) > 2 else []
+
     def pair(self, name: str) -> Pair | None:
-        """Return the pair that a name means, or None."""
+        """Return the pair that a name means, or None. Pairs that are only thought take no loads."""
+        pair = self.coordinate(name)
+        return None if pair is None or not self.mechanism.led_links.isdisjoint(pair.members) else pair
+
+    def coordinate(self, name: str) -> Pair | None:
+        """Return the pair of which a name means the coordinate, or None."""
         found = meant_pair(self.mechanism, name)
         return None if found is None else found[0]

@@ -82,6 +82,19 @@ def as_units(given: Any) -> Units | None:
     return Units(given["length"], given["mass"], given["force"])
 
 
+def given_units(given: Any, unit: str) -> tuple[Units | None, list[Problem]]:
+    """Return units as given, and what is wrong with them. A `unit` of length beside them is one too many.
+
+    >>> given_units({"length": "mm", "mass": "kg", "force": "N"}, "mm")[1][0].what
+    'units name the unit of length already'
+    """
+    twice = [Problem("unit", "units name the unit of length already", "leave unit out")] if given and unit else []
+    try:
+        return as_units(given), twice
+    except InvalidMechanism as error:
+        return None, [*twice, *error.problems]
+
+
 def _problems(given: Any) -> Iterator[Problem]:
     if not isinstance(given, Mapping):
         remedy = 'write units={"length": "mm", "mass": "kg", "force": "N"}'

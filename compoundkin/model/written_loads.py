@@ -46,9 +46,14 @@ class WrittenLoads:
     @cached_property
     def frictions(self) -> dict[str, Friction]:
         """The frictions by their pairs. The letter of a multiple pin stands for all its pairs."""
-        return {item.pair: item for item in self.items if isinstance(item, Friction)}
+        return {self._pair_meant(item.pair): item for item in self.items if isinstance(item, Friction)}
 
     @cached_property
     def pretensions(self) -> dict[str, Pretension]:
         """The pretensions by their belts."""
-        return {item.pair: item for item in self.items if isinstance(item, Pretension)}
+        return {self._pair_meant(item.pair): item for item in self.items if isinstance(item, Pretension)}
+
+    def _pair_meant(self, name: str) -> str:
+        """Return the name of the pair that a name means, be it that of its driver."""
+        pair = self.names.pair(name)
+        return name if pair is None else pair.name

@@ -29,6 +29,7 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.pairs.optional_answers import as_drivable
+from compoundkin.model.pin_pairs import lasting_name
 from compoundkin.synthesis.chains.joints import Joints
 
 # What the old frame is called while another link is the frame.
@@ -55,7 +56,7 @@ class UncheckedMechanism(Mechanism):
     def __init__(self, title: str, items: tuple[Item, ...]) -> None:
         self.title, self.items = title, items
         self.unit = self.source = self.description = ""
-        self.outputs, self.time = (), None
+        self.outputs, self.time, self.units = (), None, None
 
     @classmethod
     def of(cls, mechanism: Mechanism, frame: str) -> UncheckedMechanism:
@@ -104,6 +105,11 @@ def is_driver(item: Item, drive: Drive | None) -> bool:
     return drive.name in item.drivers.values() if isinstance(item, Lead) else item.name == drive.name
 
 
+def is_mass_of(item: Item, link: str) -> bool:
+    """Return whether a word is the mass of a link."""
+    return isinstance(item, Mass) and item.link == link
+
+
 def driver_at(names: Mapping[str, str], place: DriverPlace) -> Drive:
     """Return the driver at a place, its links renamed for another frame."""
     link, on = (names.get(name, name) for name in (place.link, place.on))
@@ -135,14 +141,9 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
         return replace(item, name=names.get(item.name, item.name))
     if isinstance(item, Drive | Lead):
         return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
-    if isinstance(item, Mass | Load):
-        links = {key: names.get(getattr(item, key), getattr(item, key)) for key in item.link_keys}
-        return replace(item, **links)
-    return (
-        item
-        if isinstance(item, Mode | Drawn | Expectation | Gravity | Friction | Pretension)
-        else renamed_pair(item, names)
-    )
+    if isinstance(item, Mass | Load | Friction | Pretension):
+        return item.renamed(names)
+    return item if isinstance(item, Mode | Drawn | Expectation | Gravity) else renamed_pair(item, names)
 
 
 def renamed_pair(pair: Joint, names: Mapping[str, str]) -> Joint:
@@ -157,3 +158,17 @@ def renamed_pair(pair: Joint, names: Mapping[str, str]) -> Joint:
     changed = {field: names[name] for field, name in told.items() if name in pair.members and name in names}
     renamed: Joint = replace(pair, **changed)  # type: ignore[arg-type]
     return renamed
+
+
+def without_driver(item: Item, mechanism: Mechanism, drive: Drive | None) -> Item:
+    """Return a word that named a driver by the pair that it drives: one that stays without it.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.model.loads import effort
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank"))
+    >>> without_driver(effort("crank", 2.0), crank, crank.drives[0]).pair
+    'A(frame-crank)'
+    """
+    if drive is None or not isinstance(item, Load | Friction):
+        return item
+    return item.renamed({}, {drive.name: lasting_name(mechanism, drive.name)})

@@ -70,9 +70,10 @@ def driven_forward(motion: Motion, *drivers: str | Drive) -> Mechanism:
     if not any(item.is_drawn for item in mechanism.links.values()):
         kept = [item for item in kept if not isinstance(item, Drawn)]
         kept.append(drawn(**_places(motion, asked)))
-    told = {key: getattr(mechanism, key) for key in ("unit", "source", "description")}
+    told = {key: getattr(mechanism, key) for key in ("source", "description")}
     title = f"{mechanism.title}, driven forward"
-    return Mechanism(title, *kept, *driven, outputs=_outputs(mechanism, driven), time=motion.time, **told)
+    return Mechanism(title, *kept, *driven, outputs=_outputs(mechanism, driven), time=motion.time, **told,
+                     **mechanism.unit_words)  # fmt: skip
 
 
 def _driver(mechanism: Mechanism, link: str, on: str = FRAME, pair: str = "") -> Drive:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -15,7 +15,8 @@ from compoundkin.base.series import Number, Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import value_key
 from compoundkin.model.loads.amounts import Amount, as_amount, needs_rates, value_of
-from compoundkin.model.loads.contract import Load, LoadedPoses, WrittenNames
+from compoundkin.model.loads.contract import NO_NAMES, Load, LoadedPoses, WrittenNames
+from compoundkin.model.pairs.revolute import SEPARATORS
 
 # What functions of a load along a pair may take.
 VARIABLES = ("coordinate", "rate", "time")
@@ -25,6 +26,20 @@ FORWARD, BACK = "forward", "back"
 def rate_of(series: Series) -> Number:
     """Return the rate of a coordinate; none of a motion without velocities."""
     return series.c[1] if len(series.c) > 1 else 0.0
+
+
+def name_between(name: str, links: Mapping[str, str]) -> str:
+    """Return the name of a pair at a multiple pin, ``J(crank-rod)``, with its links renamed.
+
+    >>> name_between("J(crank-rod)", {"crank": "frame"}), name_between("stroke", {})
+    ('J(frame-rod)', 'stroke')
+    """
+    letter, _, inside = name.removesuffix(")").partition("(")
+    for separator in SEPARATORS if inside else ():
+        first, found, second = inside.partition(separator)
+        if found and not links.keys().isdisjoint((first, second)):
+            return f"{letter}({links.get(first, first)}{separator}{links.get(second, second)})"
+    return name
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,6 +62,11 @@ class AlongPair(Load):
         """The two links of its pair, which the mechanism tells it."""
         return self.members
 
+    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
+        """Return it along a pair of another name."""
+        own = replace(super().renamed(links, coordinates), pair=coordinates.get(self.pair, self.pair))
+        return replace(own, pair=name_between(own.pair, links))
+
     def completed(self, written: WrittenNames) -> Load:
         """Return the load with the links of its pair."""
         pair = written.pair(self.pair)
@@ -59,7 +79,10 @@ class AlongPair(Load):
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
         """Find an unknown pair, or one without such a coordinate."""
         pair = written.pair(self.pair)
-        if pair is None:
+        if pair is None and (several := written.at_pin(self.pair)):
+            what = f"the pin {self.pair!r} joins more than two links"
+            yield Problem(f"{where}.pair", what, f"name two of them: {', '.join(several[:6])}")
+        elif pair is None:
             what = f"there is no pair, pin or driver {self.pair!r}"
             yield Problem(f"{where}.pair", what, nearest(self.pair, written.pairs))
         elif Effort.title not in pair.takes:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Protocol
+from types import MappingProxyType
+from typing import Any, ClassVar, Protocol, Self
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import Problem
@@ -15,6 +16,8 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import DeclaredKeys, NameWording, link_fields, name_problems, only_points, value_key
 from compoundkin.model.pairs.contract import Pair
 from compoundkin.model.units import Units
+
+NO_NAMES: Mapping[str, str] = MappingProxyType({})
 
 
 class LoadedPoses(Protocol):
@@ -62,8 +65,22 @@ class WrittenNames(Protocol):
     def pairs(self) -> list[str]:
         """The names by which pairs may be meant."""
 
+    def at_pin(self, letter: str) -> list[str]:
+        """Return the names of the pairs at a multiple pin."""
+
     def pair(self, name: str) -> Pair | None:
         """Return the pair that a name means, or None."""
+
+    def coordinate(self, name: str) -> Pair | None:
+        """Return the pair of which a name means the coordinate, or None."""
+
+
+def with_names(amount: Any, coordinates: Mapping[str, str]) -> Any:
+    """Return an amount whose tables are over coordinates of other names."""
+    if isinstance(amount, tuple):
+        return tuple(with_names(part, coordinates) for part in amount)
+    over = getattr(amount, "over", None)
+    return replace(amount, over=coordinates[over]) if over in coordinates else amount
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -105,7 +122,7 @@ class Load(PrintsShort, ABC):
     @property
     def links(self) -> tuple[str, ...]:
         """The links it acts on."""
-        return tuple(getattr(self, key) for key in self.link_keys)
+        return tuple(getattr(self, key) for key in link_fields(type(self)))
 
     @property
     def needs_rates(self) -> bool:
@@ -120,6 +137,12 @@ class Load(PrintsShort, ABC):
         """Return the load with what its words leave open; itself without any."""
         found = only_points(self, written.letters)
         return replace(self, **found) if found else self
+
+    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
+        """Return it on links of other names, over coordinates of other names; its own stays."""
+        told = {key: links.get(getattr(self, key), getattr(self, key)) for key in self.link_keys}
+        held = {key: with_names(getattr(self, key), coordinates) for key in self.amounts if coordinates}
+        return replace(self, **told, **held)
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
         """Find what is wrong with it as written."""

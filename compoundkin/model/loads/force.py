@@ -55,6 +55,11 @@ class Force(Load):
         """Whether it acts only while its point moves one way."""
         return self.while_moving is not None
 
+    @property
+    def link_keys(self) -> tuple[str, ...]:
+        """The fields that name links, with the one whose axes it keeps."""
+        return ("link", "fixed_in")
+
     def completed(self, written: WrittenNames) -> Load:
         """Return the force on a link, where a point is named."""
         own = written.carriers.get(self.link, ())

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from compoundkin.base.errors import Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.model.fields import DeclaredKeys, value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.contract import WrittenNames
+from compoundkin.model.loads.along_pair import name_between
+from compoundkin.model.loads.contract import NO_NAMES, WrittenNames
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -38,9 +39,14 @@ class Friction(PrintsShort):
         """The name of its pair."""
         return self.pair
 
+    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
+        """Return it in a pair of another name."""
+        return replace(self, pair=name_between(coordinates.get(self.pair, self.pair), links))
+
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
         """Find an unknown pair, a pin without a radius, and what is negative."""
-        pair = written.pair(self.pair)
+        several = written.at_pin(self.pair)
+        pair = written.pair(several[0] if several else self.pair)
         if pair is None:
             yield Problem(f"{where}.pair", f"there is no pair {self.pair!r}", nearest(self.pair, written.pairs))
         elif self.title not in pair.takes:

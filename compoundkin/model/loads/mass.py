@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number
 from compoundkin.model.fields import DeclaredKeys, NameWording, link_key, name_problems, spot_key, value_key
 from compoundkin.model.geometry import FRAME, real, vector
-from compoundkin.model.loads.uniform_bodies import UniformBody, uniform_body
+from compoundkin.model.loads.contract import NO_NAMES, WrittenNames
+from compoundkin.model.loads.uniform_bodies import uniform_body
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -55,6 +56,10 @@ class Mass(PrintsShort):
         """The fields that name links."""
         return ("link",)
 
+    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
+        """Return it on a link of another name."""
+        return replace(self, link=links.get(self.link, self.link))
+
     @property
     def is_complete(self) -> bool:
         """Whether nothing of it is left out."""
@@ -77,20 +82,16 @@ class Mass(PrintsShort):
             assumed=f"{left_out} of a {body.kind} {'-'.join(points)}",
         )
 
-    def body(self, points: Mapping[str, Number]) -> UniformBody:
-        """Return the uniform body through the link's points."""
-        return uniform_body(list(points.values()))
-
-    def problems(self, letters: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
+    def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
         """Find unknown links and points, and numbers that no mass has."""
         if self.link == FRAME:
             yield Problem(f"{where}.link", "the frame does not move: its mass does nothing", "name a link that moves")
             return
-        yield from name_problems(self, letters, where, NameWording(verb="weigh"))
+        yield from name_problems(self, written.letters, where, NameWording(verb="weigh"))
         if (self.mass is None) == (self.density is None):
             what = "neither mass nor density is given" if self.mass is None else "mass and density are both given"
             yield Problem(where, what, "give one of them")
-        if self.density is not None and len(letters.get(self.link, ())) == 1:
+        if self.density is not None and len(written.letters.get(self.link, ())) == 1:
             yield Problem(f"{where}.density", "a link of one point has no length", "give its mass")
         for key, value in (("mass", self.mass), ("density", self.density)):
             if value is not None and not np.all(np.asarray(value) > 0.0):

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from compoundkin.base.errors import Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.model.fields import DeclaredKeys, value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.contract import WrittenNames
+from compoundkin.model.loads.along_pair import name_between
+from compoundkin.model.loads.contract import NO_NAMES, WrittenNames
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -32,6 +33,10 @@ class Pretension(PrintsShort):
     def name(self) -> str:
         """The name of its belt."""
         return self.pair
+
+    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
+        """Return it in a pair of another name."""
+        return replace(self, pair=name_between(coordinates.get(self.pair, self.pair), links))
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
         """Find an unknown pair, or one without strands; a belt that pushes."""

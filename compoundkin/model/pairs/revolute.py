@@ -19,6 +19,9 @@ from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.optional_answers import Drivable
 from compoundkin.model.pairs.symbols import Mark, Pin
 
+# At a multiple pin the first that occurs in no name of its links joins two of them, so that pair names are unique.
+SEPARATORS = ("-", "/", ":", " to ", " - ")
+
 
 @dataclass(frozen=True)
 class Revolute(RubbingPin, Drivable):
