@@ -76,9 +76,9 @@ def _no_numbers(where: str, item: Weighed) -> Iterator[Problem]:
         elif isinstance(item, Mass | Friction) and np.ndim(value) and np.shape(value)[-1] > 1:
             what = f"it holds {np.shape(value)[-1]} numbers along the motion, in which it cannot change"
             yield Problem(f"{where}.{key}", what, "give one number, or one for each design: [[1.0], [2.0]]")
-    for key in item.keys:
-        if key.required and key.kind in _NUMBERS and getattr(item, key.name) is None:
-            yield Problem(f"{where}.{key.name}", "it is missing", key.doc)
+    for needed in item.keys:
+        if needed.required and needed.kind in _NUMBERS and getattr(item, needed.name) is None:
+            yield Problem(f"{where}.{needed.name}", "it is missing", needed.doc)
 
 
 def _unknown_tables(where: str, item: Weighed, names: WrittenNames) -> Iterator[Problem]:
@@ -129,7 +129,7 @@ def _shapes(mechanism: Written) -> Iterator[Problem]:
 
 
 def load_warnings(mechanism: Any) -> None:
-    """Warn of inertias that are far too small for their links, where all points have places."""
+    """Warn of inertias that are far too small for their links."""
     told = [item for item in mechanism.items if isinstance(item, Mass) and item.inertia is not None]
     for item in told if not mechanism.unplaced else ():
         points = list(mechanism.geometry.points[item.link].values())

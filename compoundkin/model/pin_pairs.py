@@ -33,7 +33,7 @@ class Pins:
         return Revolute(self.full_name(letter, first, second), letter, first, second)
 
     def full_name(self, letter: str, first: str, second: str) -> str:
-        """Return the name of the pair of two links at a pin, from the first to the second."""
+        """Return the name of the pair from one link to another at a pin."""
         return f"{letter}({first}{self._separators[letter]}{second})"
 
     def named(self, name: str) -> Revolute | None:
@@ -103,7 +103,7 @@ def meant_pair(mechanism: Written, name: str) -> tuple[Pair, int] | None:
 
 
 def lasting_name(mechanism: Written, name: str) -> str:
-    """Return a name for a driver's pair that means the same coordinate without the driver."""
+    """Return a name of a driver's coordinate that lasts without the driver."""
     found = meant_pair(mechanism, name)
     if found is None or found[1] < 0:
         return name
@@ -139,7 +139,7 @@ class NamesOfPairs:
         return [*pins, *written, *(drive.name for drive in self.mechanism.drives)]
 
     def at_pin(self, letter: str) -> list[str]:
-        """Return the names of the pairs at a multiple pin, for each two of its links."""
+        """Return the names of the pairs at a multiple pin."""
         links = self.mechanism.real_pins.get(letter, ())
         pins = Pins(self.mechanism)
         return [pins.pair(letter, *two).name for two in combinations(links, 2)] if len(links) > 2 else []

@@ -105,9 +105,12 @@ def is_driver(item: Item, drive: Drive | None) -> bool:
     return drive.name in item.drivers.values() if isinstance(item, Lead) else item.name == drive.name
 
 
-def is_mass_of(item: Item, link: str) -> bool:
-    """Return whether a word is the mass of a link."""
-    return isinstance(item, Mass) and item.link == link
+def stays(item: Item, link: str) -> bool:
+    """Return whether a word stays where a link becomes the frame.
+
+    The link's mass does not, nor modes, a drawing and published numbers.
+    """
+    return not isinstance(item, Mode | Drawn | Expectation) and not (isinstance(item, Mass) and item.link == link)
 
 
 def driver_at(names: Mapping[str, str], place: DriverPlace) -> Drive:
@@ -161,7 +164,7 @@ def renamed_pair(pair: Joint, names: Mapping[str, str]) -> Joint:
 
 
 def without_driver(item: Item, mechanism: Mechanism, drive: Drive | None) -> Item:
-    """Return a word that named a driver by the pair that it drives: one that stays without it.
+    """Return a word that names the pair of a driver in its place.
 
     >>> from compoundkin.model.elements import drive, link
     >>> from compoundkin.model.loads import effort

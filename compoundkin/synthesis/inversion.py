@@ -21,12 +21,12 @@ from compoundkin.kinematics.approach import column
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
-from compoundkin.synthesis.driver_places import is_driver, is_mass_of, renamed, without_driver
+from compoundkin.synthesis.driver_places import is_driver, renamed, stays, without_driver
 
 OLD_FRAME = "old frame"
 # Which of the poses is drawn, as a part of them: links are often in line, and modes meet, at the ends or half way.
 WITHIN = 0.382
-# Points that keep the old frame's axes where it was given as drawn: its origin, and one on its x axis.
+# Points that keep the axes of an old frame given as drawn: its origin, and one on its x axis.
 _AXES = {"old origin": 0j, "old x": 1 + 0j}
 
 
@@ -34,10 +34,8 @@ _AXES = {"old origin": 0j, "old x": 1 + 0j}
 def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
     """Return the inversion of a mechanism in which `link` is the frame. The frame moves as the link "old frame".
 
-    Dimensions, drivers and thus all relative motions are kept, and the assembly: modes chosen by sign are replaced by
-    a drawing. Published numbers are left out, and the mass of the new frame, which does not move any more. The world's
-    axes, those of gravity among them, are those of the new frame; forces with directions fixed in the frame turn with
-    the old one.
+    Dimensions, drivers and thus all relative motions are kept, and the assembly: a drawing replaces modes. Published
+    numbers and the mass of the new frame are left out. The world's axes, also for gravity, are those of the new frame.
 
     Raises UnknownName for a link that there is not.
 
@@ -54,8 +52,7 @@ def with_frame(mechanism: Mechanism, link: str) -> Mechanism:
     points = _seen_from(mechanism, link)
     words = mechanism.items if link in mechanism.rigid_links else mechanism.parts
     items = [item if isinstance(item, Drive) and item.link in mechanism.cylinders else renamed(item, names)
-             for item in words
-             if not (isinstance(item, Mode | Drawn | Expectation) or is_mass_of(item, link))]  # fmt: skip
+             for item in words if stays(item, link)]  # fmt: skip
     items = [_with_axes(mechanism, item) if isinstance(item, Link) and item.name == names[FRAME] else item
              for item in items]  # fmt: skip
     if points:
@@ -92,16 +89,15 @@ def with_driver(
     new = drive(link, on=on, pair=pair, **words)
     for name in [name for name in (link, on) if name not in mechanism.cylinders and isinstance(new, Drive)]:
         mechanism.link(name)
-    kept = [without_driver(item, mechanism, old) for item in mechanism.items
-            if not (isinstance(item, Mode | Expectation) or is_driver(item, old))]  # fmt: skip
+    kept = [without_driver(item, mechanism, old) for item in mechanism.items if not is_driver(item, old)]
+    kept = [item for item in kept if not isinstance(item, Mode | Expectation)]
     if not any(item.is_drawn for item in mechanism.links.values()):
         kept = [item for item in kept if not isinstance(item, Drawn)]
         if points := _assembled(mechanism):
             kept.append(drawn(**points))
     known = [*mechanism.carriers, *mechanism.links, *(p.name for p in mechanism.written_pairs)]
     drives = [item.name for item in kept if isinstance(item, Drive)]
-    owners = [name.split("(")[0].split(".")[0] for name in mechanism.outputs]
-    outputs = [name for name, owner in zip(mechanism.outputs, owners, strict=True) if owner in (*known, *drives)]
+    outputs = [name for name in mechanism.outputs if name.split("(")[0].split(".")[0] in (*known, *drives)]
     made = _written(mechanism, f"{mechanism.title}, {link} driven", [*kept, new], outputs)
     return _standing(made, new) if isinstance(new, Drive) and new.values is None and new.law is None else made
 
@@ -137,8 +133,8 @@ def _standing(mechanism: Mechanism, new: Drive) -> Mechanism:
 
 
 def _written(mechanism: Mechanism, title: str, items: list[Item], outputs: list[str]) -> Mechanism:
-    told = {key: getattr(mechanism, key) for key in ("source", "description", "time")}
-    return Mechanism(title, *items, outputs=outputs, **told, **mechanism.unit_words)
+    told = {key: getattr(mechanism, key) for key in ("source", "description", "time")} | mechanism.unit_words
+    return Mechanism(title, *items, outputs=outputs, **told)
 
 
 def _renamed(mechanism: Mechanism, link: str) -> dict[str, str]:

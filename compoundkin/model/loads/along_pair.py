@@ -29,7 +29,7 @@ def rate_of(series: Series) -> Number:
 
 
 def name_between(name: str, links: Mapping[str, str]) -> str:
-    """Return the name of a pair at a multiple pin, ``J(crank-rod)``, with its links renamed.
+    """Return the name of a pair at a multiple pin with its links renamed.
 
     >>> name_between("J(crank-rod)", {"crank": "frame"}), name_between("stroke", {})
     ('J(frame-rod)', 'stroke')

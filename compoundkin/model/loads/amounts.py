@@ -147,15 +147,14 @@ def value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables =
     nothing else.
     """
     if isinstance(amount, LoadFunction):
-        asked = [*variables.values(), lambda: time_of(where, at)]
+        asked: list[Callable[[], Number]] = [*variables.values(), lambda: time_of(where, at)]
         return amount.value(where, tuple(variable() for variable in asked[: amount.count]))
     if isinstance(amount, LoadTable):
         if amount.over == TIME:
             return amount.value(where, time_of(where, at))
         if amount.over:
             return amount.value(where, at.coordinate(amount.over).c[0])
-        own: Callable[[], Number] = next(iter(variables.values()))
-        return amount.value(where, own())
+        return amount.value(where, next(iter(variables.values()))())
     return at.fitted(amount, where)
 
 

@@ -79,7 +79,7 @@ def with_names(amount: Any, coordinates: Mapping[str, str]) -> Any:
     """Return an amount whose tables are over coordinates of other names."""
     if isinstance(amount, tuple):
         return tuple(with_names(part, coordinates) for part in amount)
-    over = getattr(amount, "over", None)
+    over = str(getattr(amount, "over", ""))
     return replace(amount, over=coordinates[over]) if over in coordinates else amount
 
 
@@ -139,7 +139,7 @@ class Load(PrintsShort, ABC):
         return replace(self, **found) if found else self
 
     def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
-        """Return it on links of other names, over coordinates of other names; its own stays."""
+        """Return it on links and over coordinates of other names. Its own name stays."""
         told = {key: links.get(getattr(self, key), getattr(self, key)) for key in self.link_keys}
         held = {key: with_names(getattr(self, key), coordinates) for key in self.amounts if coordinates}
         return replace(self, **told, **held)

@@ -27,14 +27,14 @@ class Mass(PrintsShort):
     """
 
     link: str = field(metadata=link_key("The link whose mass it is."))
-    mass: Number | None = field(default=None, metadata=value_key("length", "The mass."))
+    mass: Number = field(default=None, metadata=value_key("length", "The mass."))
     at: Any = field(
         default=None,
         metadata=spot_key(
             "link", "The mass centre: a point, or a place in the link's frame; of a uniform bar or plate."
         ),
     )
-    inertia: Number | None = field(
+    inertia: Number = field(
         default=None, metadata=value_key("length", "Inertia about the mass centre; that of a uniform bar or plate.")
     )
     density: Number | None = field(

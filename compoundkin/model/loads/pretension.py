@@ -46,7 +46,7 @@ class Pretension(PrintsShort):
         elif self.title not in pair.takes:
             yield Problem(f"{where}.pair", f"{self.pair!r} is a {pair.title}, which has no strands", "name a belt")
         if np.any(np.asarray(self.force) < 0.0):
-            yield Problem(f"{where}.force", "a belt does not push", "give a force above zero")
+            yield Problem(f"{where}.{self.keys[1].name}", "a belt does not push", "give a force above zero")
 
 
 @checked
@@ -56,4 +56,4 @@ def pretension(pair: str, force: Any) -> Pretension:
     >>> pretension("belt", 150).force
     150.0
     """
-    return Pretension(pair, real(f"pretensions.{pair}.force", force))
+    return Pretension(pair, real(f"pretensions.{pair}", force))

@@ -19,7 +19,7 @@ from compoundkin.model.pairs.contract import Ends, Pair, Poses
 class Drivable(Pair):
     """A pair that a driver may prescribe: nothing but its coordinate is free."""
 
-    takes: ClassVar[tuple[str, ...]] = ("effort",)
+    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
 
     @abstractmethod
     def placed(self, ends: Ends, free: Series) -> Pose:

@@ -41,7 +41,6 @@ class Revolute(RubbingPin, Drivable):
     free: ClassVar[tuple[str, ...]] = ("angle",)
     free_is_angle: ClassVar[bool] = True
     is_simple: ClassVar[bool] = True
-    takes: ClassVar[tuple[str, ...]] = ("effort", "friction")
 
     @property
     def members(self) -> tuple[str, ...]:

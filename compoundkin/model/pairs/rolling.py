@@ -66,6 +66,7 @@ class Rolling(OnLine, Drivable):
     title: ClassVar[str] = "rolling pair"
     held: ClassVar[int] = 2
     table: ClassVar[str] = "rollings"
+    takes: ClassVar[tuple[str, ...]] = ("effort",)
 
     @property
     def members(self) -> tuple[str, ...]:

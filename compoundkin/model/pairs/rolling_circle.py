@@ -27,12 +27,11 @@ from compoundkin.model.pairs.wheel_sizes import radius_problems
 class RollingOnCircle(TurnCounting, Drivable):
     """A wheel that rolls without slip on a circle.
 
-    The wheel is the link `link`, about its point `at`; the circle is one of the link `on`.
-
-    The circle is that of radius `circle` about the point `centre_at` of `on`; the wheel rolls outside it, or `inside`
-    where it is a ring. With the direction of the line of centres and the wheel's angle both taken from `on`,
-    ``angle = k * direction + phase`` where k is ``1 + circle / radius`` outside, ``1 - circle / radius`` inside;
-    `phase` is read off a drawing that shows both links, or zero.
+    The wheel is the link `link`, about its point `at`; the circle is one of the link `on`. The circle is that of radius
+    `circle` about the point `centre_at` of `on`; the wheel rolls outside it, or `inside` where it is a ring. With the
+    direction of the line of centres and the wheel's angle both taken from `on`, ``angle = k * direction + phase`` where
+    k is ``1 + circle / radius`` outside, ``1 - circle / radius`` inside; `phase` is read off a drawing that shows both
+    links, or zero.
 
     Held: the gap, in x and y, between the wheel's middle and where its angle puts it. Free: the direction of the line
     of centres. Points of the wheel run on epi- and hypocycloids: e.g. E. A. Lockwood, A Book of Curves, chapter 17.
@@ -62,6 +61,7 @@ class RollingOnCircle(TurnCounting, Drivable):
     free: ClassVar[tuple[str, ...]] = ("direction",)
     free_is_angle: ClassVar[bool] = True
     table: ClassVar[str] = "circular_rollings"
+    takes: ClassVar[tuple[str, ...]] = ("effort",)
 
     @property
     def members(self) -> tuple[str, ...]:
