@@ -14,6 +14,7 @@ from compoundkin.base.series import Number
 from compoundkin.dynamics.driver_state import DriverState, Rates
 from compoundkin.dynamics.linear_angle import LinearAngle, by_drivers
 from compoundkin.dynamics.moving_masses import free_fall, moving_masses
+from compoundkin.dynamics.simulated_energy import sorted_loads
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.contract import equations_of
@@ -45,6 +46,7 @@ class DriverChart:
         self.mechanism = self.start.mechanism
         self.order = self.start.solving_order
         self.masses, self.gravity = moving_masses(self.mechanism), free_fall(self.mechanism)
+        self.loads = sorted_loads(self.start)
         self._ends = self.start.inputs.cut(slice(0, 1), slice(0, 1)).ends
         self.signs = {s.index: float(self.start.sign(s.index, 0)) for s in self.order.solvers if not s.is_numbered}
         self.states, self.near, self.turned = {}, {}, {}

@@ -10,11 +10,12 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.dynamics.linear_angle import LinearAngle, by_drivers
-from compoundkin.dynamics.loaded_state import LoadedState
+from compoundkin.dynamics.loaded_state import LoadedState, loaded_state
 from compoundkin.dynamics.moving_masses import InertiaTerms, MovingMass, inertia_terms
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.elements import Load
 from compoundkin.model.pairs import Pair
 
 
@@ -27,6 +28,7 @@ class StateChart(Protocol):
     order: SolvingOrder
     masses: tuple[MovingMass, ...]
     gravity: complex
+    loads: tuple[tuple[Load, ...], tuple[Load, ...]]  # those that have a potential, and the others
 
     def turns_of(self, pair: str, angle: float, values: Number) -> float:
         """Return an angle of a pair with its full turns, at values of the drivers."""
@@ -58,8 +60,7 @@ class DriverState:
     @cached_property
     def loaded(self) -> LoadedState:
         """What loads are asked at."""
-        start, ends = self.chart.start, self.block.ends
-        return LoadedState(start, self.block.world, ends, self.time, len(self.values), self._turned)
+        return loaded_state(self.chart.start, self.block, self.time, len(self.values), self._turned)
 
     def _turned(self, pair: str, angle: float) -> float:
         return self.chart.turns_of(pair, angle, self.values)
@@ -77,8 +78,9 @@ class DriverState:
 
     @cached_property
     def forces(self) -> tuple[Number, Number]:
-        """The forces along the drivers' coordinates: those of weights, and of all loads."""
-        return self.terms.weight, self.loaded.generalised()
+        """The forces along the drivers' coordinates. Those that have a potential, and the others."""
+        stored, others = (self.loaded.along(loads) for loads in self.chart.loads)
+        return self.terms.weight + stored, others
 
     @property
     def push(self) -> Number:

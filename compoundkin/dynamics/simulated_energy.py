@@ -9,9 +9,11 @@ import numpy as np
 from compoundkin.base.arrays import dot
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
+from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.mass_motion import mass_motions
 from compoundkin.dynamics.moving_masses import free_fall, units_of
 from compoundkin.kinematics.motion import Motion
+from compoundkin.model.elements import Load
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -55,4 +57,15 @@ def simulated_energy(motion: Motion, work: Number) -> SimulatedEnergy:
     for own in mass_motions(motion):
         kinetic += np.ravel(own.product(1, own, 1)) * (factor / 2.0)
         potential -= np.ravel(dot(fall, own.centre[0]) * own.mass) * factor
+    for loaded in loaded_blocks(motion):
+        for load in sorted_loads(motion)[0]:
+            potential[loaded.poses] += np.ravel(load.energy(loaded))
     return SimulatedEnergy(kinetic, potential, work)
+
+
+def sorted_loads(motion: Motion) -> tuple[tuple[Load, ...], tuple[Load, ...]]:
+    """Return the loads that have a potential, and the others."""
+    first = next(iter(loaded_blocks(motion)))
+    loads = motion.mechanism.loads.values()
+    stored = [load for load in loads if load.energy(first) is not None]
+    return tuple(stored), tuple(load for load in loads if load not in stored)

@@ -28,7 +28,7 @@ def slider_crank(driver: Any = None) -> ck.Mechanism:
         ck.drawn(O=(0, 0), A=(own["OA"], 0), B=(0, 0.335)),
         driver or ck.drive("crank"),
         *bodies,
-        ck.mass("piston", own["piston"]["mass"], at="B"),
+        ck.mass("piston", own["piston"]["mass"], at="B", inertia=0.0),
         ck.gravity(*own["gravity"]),
         units=SI,
     )

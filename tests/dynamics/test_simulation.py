@@ -89,8 +89,8 @@ def test_one_driver_prescribed_and_one_free() -> None:
         ck.slide("block", on="frame", at="P", through="O", angle=0, name="way"),
         ck.drive("block"),
         ck.drive("bar", on="block"),
-        ck.mass("bar", 2.0, at="G"),
-        ck.mass("block", 1.0),
+        ck.mass("bar", 2.0, at="G", inertia=0.0),
+        ck.mass("block", 1.0, at="P", inertia=0.0),
         ck.gravity(0, -9.81),
         units=SI,
     )
