@@ -69,6 +69,7 @@ KEYS_OF_PROBLEMS = {
     "dynamics/driver_course.py: .power",
     "dynamics/power.py: .power",
     "model/loads/force.py: .force",
+    "model/loads/pretension.py: .force",
     "model/pairs/cylinder.py: .stroke",
     "model/pairs/wheel_sizes.py: .pressure_angle",
     "model/validation.py: .value",

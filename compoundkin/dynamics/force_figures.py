@@ -6,9 +6,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from compoundkin.base.series import Number
+from compoundkin.dynamics.force_parts import parts_of
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.kinematics.derived.contract import Figure, Lack
 from compoundkin.model.attributes import (
@@ -40,9 +39,16 @@ def _only_of_frame(motion: Any, name: str) -> Lack | None:
     return None if name == FRAME else Lack("only the frame is shaken", f"take {FRAME}.{SHAKING_FORCE}")
 
 
-def _in_groups(motion: Any, name: str) -> Lack | None:
-    """Return why there is no force in a pair. Those that are thought only pass nothing on."""
-    return None
+def _part(word: str) -> tuple[str, Figure]:
+    """Return a part of forces that only some kinds of pairs have."""
+
+    def lack(motion: Any, name: str) -> Lack | None:
+        pair = motion.solving_order.pairs[name]
+        known = parts_of(pair)
+        there = ", ".join((FORCE, MOMENT, *known))
+        return None if word in known else Lack(f"a {pair.title} has none", f"it has {there}")
+
+    return _row("pairs", word, lambda forces, name: forces.pairs[name].part(word), lack)
 
 
 def _effort_unit(forces: FoundForces, name: str) -> str:
@@ -52,16 +58,17 @@ def _effort_unit(forces: FoundForces, name: str) -> str:
 def unit_of_force(forces: FoundForces, dimension: Dimension, name: str = "") -> str:
     """Return the unit of forces, moments or powers. Numbers have none."""
     units = forces.units
-    return {"force": units.force, "moment": units.moment, "power": units.power}.get(dimension, "")
+    return {"force": units.force, "moment": units.moment, "power": units.power, "length": units.length}.get(
+        dimension, ""
+    )
 
 
-def scale_of_force(forces: FoundForces, dimension: Dimension, name: str = "") -> float:
+def scale_of_force(forces: FoundForces, dimension: Dimension) -> float:
     """Return what the rounding of forces is relative to: the largest of all."""
-    largest = 0.0
-    for wrench in forces.wrenches.values():
-        size = np.abs(wrench.force)
-        largest = max(largest, float(np.max(size, initial=0.0, where=np.isfinite(size))))
-    return largest * (1.0 if dimension == "force" else forces.motion.size)
+    of_lengths = 1.0 if dimension == "number" else forces.motion.size
+    return {"force": forces.largest, "moment": forces.largest * of_lengths, "power": forces.largest * of_lengths}.get(
+        dimension, of_lengths
+    )
 
 
 def _row(kind: Kind, word: str, values: Values, lack: Any = _always, unit: Any = None) -> tuple[str, Figure]:
@@ -90,6 +97,7 @@ _FIGURES: Mapping[Kind, Mapping[str, Figure]] = {
         (
             _row("pairs", FORCE, lambda forces, name: forces.pairs[name].force),
             _row("pairs", MOMENT, lambda forces, name: forces.pairs[name].moment),
+            *map(_part, list(FORCES["pairs"])[2:]),
         )
     ),
     "drives": dict(

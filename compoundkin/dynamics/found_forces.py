@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from compoundkin.base.arrays import Number
 from compoundkin.base.copies import CopiesFields
 from compoundkin.base.poses import Pose
@@ -54,6 +56,13 @@ class FoundForces(CopiesFields):
         units = self.mechanism.units
         assert units is not None
         return units
+
+    @cached_property
+    def largest(self) -> float:
+        """The largest force in any pair, beside which others are rounding."""
+        sizes = (np.abs(wrench.force) for wrench in self.wrenches.values())
+        found = (float(np.max(size, initial=0.0, where=np.isfinite(size))) for size in sizes)
+        return max(found, default=0.0)
 
     @property
     def relaxed(self) -> tuple[Dropped, ...]:

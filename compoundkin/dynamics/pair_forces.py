@@ -12,6 +12,7 @@ from compoundkin.base.arrays import Number, Vectors
 from compoundkin.base.errors import Problem, UnknownName
 from compoundkin.base.poses import Pose
 from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.force_parts import ForceParts
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.link_wrench import PAIR, LinkWrench
 from compoundkin.kinematics.results import told
@@ -20,7 +21,7 @@ from compoundkin.model.pairs.contract import Ends
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PairForce:
+class PairForce(ForceParts):
     """The force in a pair, on its second link from its first one.
 
     Of the other side where that is asked for. Arrays are of the motion's shape, in the mechanism's units, NaN where
@@ -61,11 +62,15 @@ class PairForce:
     @cached_property
     def acting(self) -> LinkWrench:
         """It as one of all that acts on its link."""
-        found = self.forces.wrenches[self.pair.name]
-        wrench = found if self.side else -found
+        wrench = self.own if self.side else -self.own
         attack = self.pair.acting_place(self.ends, self.poses)
         left = self.forces.left_open([(self.name, 1.0)], attack)
         return LinkWrench(self.forces.motion, PAIR, self.name, self.link, self.by, self.at, wrench, attack, left)
+
+    @property
+    def own(self) -> Wrench:
+        """The wrench on the second link, (designs, poses)."""
+        return self.forces.wrenches[self.pair.name]
 
     @property
     def wrench(self) -> Wrench:

@@ -64,7 +64,13 @@ _TRANSMISSION = _catalogue(("transmission_angle", "μ", 0, "angle"), ("transmiss
 _GUIDES = _catalogue(("pressure_angle", "φ", 0, "angle"), ("coriolis", "a_cor", 2, "length"))
 # What forces have beside motions. It takes accelerations, those of the masses.
 _ON_FRAME = _catalogue(("shaking_force", "F_s", 2, "force"), ("shaking_moment", "M_s", 2, "moment"))
-_IN_PAIRS = _catalogue(("force", "F", 2, "force"), ("moment", "M", 2, "moment"))
+_IN_PAIRS = _catalogue(
+    ("force", "F", 2, "force"), ("moment", "M", 2, "moment"),
+    # by the kind of pair: what presses across it and where, what teeth, strands and rolling wheels pass on
+    ("normal", "N", 2, "force"), ("eccentricity", "e_N", 2, "length"), ("tangential", "F_t", 2, "force"),
+    ("needed_friction", "μ_0", 2, "number"), ("separating", "F_r", 2, "force"), ("tooth_force", "F_z", 2, "force"),
+    ("flank", "s", 2, "number"), ("first_pull", "S_1", 2, "force"), ("second_pull", "S_2", 2, "force"),
+)  # fmt: skip
 _OF_DRIVERS = _catalogue(("effort", "T", 2, "force"), ("power", "P", 2, "power"))
 FORCES: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
     {"points": {}, "links": _ON_FRAME, "pairs": _IN_PAIRS, "drives": _OF_DRIVERS}
@@ -75,7 +81,8 @@ DERIVED: Mapping[Kind, Mapping[str, Attribute]] = MappingProxyType(
         **{"pairs": {**_GUIDES, **_RATIOS, **_IN_PAIRS}, "drives": {**_RATIOS, **_OF_DRIVERS}},
     }
 )
-FORCE, MOMENT = _IN_PAIRS
+FORCE, MOMENT, NORMAL, ECCENTRICITY, TANGENTIAL, NEEDED_FRICTION, *_OF_WHEELS = _IN_PAIRS
+SEPARATING, TOOTH_FORCE, FLANK, FIRST_PULL, SECOND_PULL = _OF_WHEELS
 EFFORT, POWER = _OF_DRIVERS
 SHAKING_FORCE, SHAKING_MOMENT = _ON_FRAME
 VELOCITY_RATIO, ADVANTAGE = _RATIOS

@@ -15,14 +15,14 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Poses
+from compoundkin.model.pairs.force_answers import Strapped
 from compoundkin.model.pairs.geared import Geared
-from compoundkin.model.pairs.optional_answers import Accompanied
 from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, strap_line
 from compoundkin.model.pairs.wheel_lines import axes_of, line_of_action
 
 
 @dataclass(frozen=True, eq=False)
-class Belt(Geared, Accompanied):
+class Belt(Geared, Strapped):
     """Two pulleys or sprockets with a belt, chain or cable that does not slip.
 
     An open belt turns them alike, a `crossed` one does not. See `Geared` for the rest.

@@ -9,6 +9,7 @@ from compoundkin.base.arrays import joined
 from compoundkin.base.curves import Curve
 from compoundkin.base.series import Number, Series
 from compoundkin.base.wrenches import Wrench
+from compoundkin.model.attributes import NORMAL
 from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, table
 from compoundkin.model.pairs.optional_answers import Replaceable
 
@@ -28,6 +29,7 @@ class Contact(Replaceable):
     """A higher pair that holds one distance, along the common normal. The link with the profile comes first."""
 
     held: ClassVar[int] = 1
+    force_words: ClassVar[tuple[str, ...]] = (NORMAL,)
 
     link: str
     on: str
@@ -66,6 +68,15 @@ class Contact(Replaceable):
         place, normal, _ = (series.c[0] for series in self.touch(ends, poses))
         x, y, turn = self.sliding(ends, poses)[3:]
         return Wrench.at(place, normal), Wrench.at(poses[1].z.c[0], joined(x, y), turn)
+
+    @property
+    def acts_at(self) -> str:
+        """The contact."""
+        return "contact"
+
+    def acting_place(self, ends: Ends, poses: Poses) -> Number:
+        """Return the place of contact."""
+        return self.touch(ends, poses).place.c[0]
 
     def centre(self, ends: Ends, poses: Poses) -> Line:
         """Return the common normal as the line of the centre."""

@@ -1,7 +1,6 @@
 """What every kind of kinematic pair answers; each kind lives in one file of this folder.
 
-A pair reports the relative coordinates between its links. The first `held` of them must stay zero (the
-constraint); the others are free, and are what a drive may prescribe.
+A pair reports the relative coordinates between its links: the first `held` of them stay zero, the others are free.
 """
 
 from __future__ import annotations
@@ -68,6 +67,7 @@ class Pair(ABC):
     free_is_angle: ClassVar[bool]  # whether the coordinate is an angle (else a length)
     takes: ClassVar[tuple[str, ...]] = ()  # which of "effort", "friction", "pretension" may be written of it
     is_simple: ClassVar[bool] = False  # whether its coordinate only turns a member about a point, or only shifts it
+    force_words: ClassVar[tuple[str, ...]] = ()  # what components of its force along its unit wrenches are called
     table: ClassVar[str] = ""  # its table in a mechanism file; "" for pairs that are not written out
     wording: ClassVar[NameWording] = NameWording()  # how it says what is wrong with its names
     keys = DeclaredKeys()  # the keys of its table in a mechanism file, by its fields

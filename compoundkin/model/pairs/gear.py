@@ -12,6 +12,7 @@ from compoundkin.base.arrays import dot
 from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number
 from compoundkin.base.wrenches import Wrench
+from compoundkin.model.attributes import TANGENTIAL
 from compoundkin.model.fields import value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Poses
@@ -58,6 +59,7 @@ class Gear(Geared, Accompanied):
 
     code: ClassVar[str] = "G"
     title: ClassVar[str] = "gear pair"
+    force_words: ClassVar[tuple[str, ...]] = (TANGENTIAL,)
     table: ClassVar[str] = "gears"
 
     @property
@@ -114,6 +116,15 @@ class Gear(Geared, Accompanied):
         """
         place, across = self.mesh(ends, poses)
         return Wrench.at(place, 1j * across), Wrench()
+
+    @property
+    def acts_at(self) -> str:
+        """The pitch point."""
+        return "pitch point"
+
+    def acting_place(self, ends: Ends, poses: Poses) -> Number:
+        """Return the pitch point."""
+        return self.mesh(ends, poses)[0]
 
     def transmitted(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
         """Return the tangential force on the second wheel."""

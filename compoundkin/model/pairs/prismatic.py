@@ -13,6 +13,7 @@ from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.base.wrenches import Wrench
+from compoundkin.model.attributes import NORMAL
 from compoundkin.model.fields import NameWording, link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
@@ -28,10 +29,9 @@ from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended):
     """The link `link` slides on the link `on`. Its point `at` runs along a guide.
 
-    The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x
-    axis of `on`) or toward the point `toward`, moved `offset` to the left of that direction. The x axis of
-    the block is turned by `turn` from the guide. Where both links are given as drawn, `offset` and `turn`
-    are read off the drawing unless they are stated (`turn` only where the block shows two points).
+    The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x axis of
+    `on`) or toward the point `toward`, moved `offset` to the left of it. The x axis of the block is turned by `turn`
+    from the guide. Drawn `offset` and `turn` are read off unless stated (`turn` only of a block with two points).
 
     Held: the distance of `at` from the guide; the sine of the angle between block and guide. Free: the
     displacement from `through` to `at` along the guide.
@@ -72,6 +72,7 @@ class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended):
     free: ClassVar[tuple[str, ...]] = ("displacement",)
     free_is_angle: ClassVar[bool] = False
     is_simple: ClassVar[bool] = True
+    force_words: ClassVar[tuple[str, ...]] = (NORMAL,)
     table: ClassVar[str] = "slides"
     wording: ClassVar[NameWording] = NameWording("slide", "name the link that carries the guide", "the one that slides")
 
@@ -150,8 +151,7 @@ class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended):
         guide, block = poses[0].carry(ends[0]), poses[1].carry(ends[1])
         e = guide.along.c[0]
         gap = (block.point - guide.point).c[0]
-        arm0 = (poses[0].u * ends[0].point).c[0]
-        arm1 = (poses[1].u * ends[1].point).c[0]
+        arm0, arm1 = ((pose.u * end.point).c[0] for pose, end in zip(poses, ends, strict=True))
         # d(gap)/d(theta of the guide) = -i arm0, d(e)/d(theta of the guide) = i e
         across = cross(1j * e, gap) + cross(e, -1j * arm0)
         along = dot(1j * e, gap) + dot(e, -1j * arm0)

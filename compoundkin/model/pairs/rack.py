@@ -12,6 +12,7 @@ from compoundkin.base.arrays import dot, first_entry
 from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number, Series
 from compoundkin.base.wrenches import Wrench
+from compoundkin.model.attributes import TANGENTIAL
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Pair, Poses, table
 from compoundkin.model.pairs.gear import STANDARD, UNCOUNTED
@@ -75,6 +76,7 @@ class Rack(OnLine, Accompanied):
     code: ClassVar[str] = "K"
     title: ClassVar[str] = "rack pair"
     held: ClassVar[int] = 1
+    force_words: ClassVar[tuple[str, ...]] = (TANGENTIAL,)
     table: ClassVar[str] = "racks"
 
     @property
@@ -118,6 +120,15 @@ class Rack(OnLine, Accompanied):
         """Return forces along the pitch line. At the pitch point, and at the axis."""
         place, e = self.pitch_point(ends, poses)
         return Wrench.at(place, e), Wrench.at(poses[1].at(ends[1].point).c[0], e)
+
+    @property
+    def acts_at(self) -> str:
+        """The pitch point."""
+        return "pitch point"
+
+    def acting_place(self, ends: Ends, poses: Poses) -> Number:
+        """Return the pitch point."""
+        return self.pitch_point(ends, poses)[0]
 
     def transmitted(self, ends: Ends, poses: Poses, wrench: Wrench) -> Number:
         """Return the force along the pitch line on the pinion."""

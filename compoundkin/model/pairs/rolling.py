@@ -15,6 +15,7 @@ from compoundkin.base.series import Number, Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.pairs.contract import Ends, Poses, table
+from compoundkin.model.pairs.force_answers import Rolls
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
 from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
 from compoundkin.model.pairs.optional_answers import Drivable
@@ -23,7 +24,7 @@ from compoundkin.model.pairs.wheel_sizes import radius_problems
 
 
 @dataclass(frozen=True, eq=False)
-class Rolling(OnLine, Drivable):
+class Rolling(Rolls, OnLine, Drivable):
     """A wheel that rolls without slip along a straight line.
 
     The wheel is the link `link`, about its point `at`; the line is one of the link `on`.
@@ -91,14 +92,18 @@ class Rolling(OnLine, Drivable):
         """Return the rows of distance, slip and displacement."""
         return table(*self.rows(ends, poses))
 
+    def contact(self, ends: Ends, poses: Poses) -> tuple[Number, Number]:
+        """Return where the wheel touches the line, and the normal into the wheel."""
+        place, e = self.pitch_point(ends, poses)
+        return place, 1j * e * np.sign(ends[1].measure)
+
     def wrenches(self, ends: Ends, poses: Poses) -> tuple[Wrench, ...]:
         """Return a force that presses at the contact, and two along the line.
 
         One of these is at the contact, that of an effort at the axis.
         """
-        place, e = self.pitch_point(ends, poses)
-        axis = poses[1].at(ends[1].point).c[0]
-        return Wrench.at(place, 1j * e * np.sign(ends[1].measure)), Wrench.at(place, e), Wrench.at(axis, e)
+        (place, normal), e = self.contact(ends, poses), self.pitch_point(ends, poses)[1]
+        return Wrench.at(place, normal), Wrench.at(place, e), Wrench.at(poses[1].at(ends[1].point).c[0], e)
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
         """Return the way along the line and out to the wheel's middle."""

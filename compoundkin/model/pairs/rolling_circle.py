@@ -16,6 +16,7 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
+from compoundkin.model.pairs.force_answers import Rolls
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
 from compoundkin.model.pairs.loop_vectors import Sum, Unknown, Vector, angle_of, difference, direction
 from compoundkin.model.pairs.optional_answers import DrawnPair, Drivable, TurnCounting
@@ -24,7 +25,7 @@ from compoundkin.model.pairs.wheel_sizes import radius_problems
 
 
 @dataclass(frozen=True, eq=False)
-class RollingOnCircle(TurnCounting, Drivable):
+class RollingOnCircle(Rolls, TurnCounting, Drivable):
     """A wheel that rolls without slip on a circle.
 
     The wheel is the link `link`, about its point `at`; the circle is one of the link `on`. The circle is that of radius
@@ -211,9 +212,8 @@ class RollingOnCircle(TurnCounting, Drivable):
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return the circle, a ring around a wheel inside, and the wheel."""
-        distance, turns = float(abs(ends[0].along.c[0])), float(ends[1].measure)
-        # turns = 1 + circle / radius, negative radius inside; the distance is their sum
-        radius = distance / turns
+        distance = float(abs(ends[0].along.c[0]))
+        radius = distance / float(ends[1].measure)  # negative inside
         return Wheel(0, ends[0].point, distance - radius, 0, self.inside), Wheel(1, ends[1].point, abs(radius))
 
 
