@@ -20,9 +20,11 @@ from compoundkin.base.errors import (
     Problem,
     UnassembledPoses,
     UnknownName,
+    WedgedPoses,
 )
 
 __all__ = [
     "ChangePointWarning", "CompoundkinError", "DrawnBeyondEnd", "FewDigits", "InvalidInput", "InvalidMechanism",
     "LikelySlip", "NotAssembled", "NotDetermined", "Problem", "UnassembledPoses", "UnknownName",
+    "WedgedPoses",
 ]  # fmt: skip

@@ -16,6 +16,9 @@ from compoundkin.configurations.reached_region import Workspace
 from compoundkin.dynamics.driver_efforts import DriverEffort
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.frame_forces import ShakingForce
+from compoundkin.dynamics.friction.efficiency import Efficiency
+from compoundkin.dynamics.friction.friction_forces import FrictionForces, PairFriction, Wedged
+from compoundkin.dynamics.friction.pose_stretches import PoseStretch
 from compoundkin.dynamics.link_forces import LinkForces
 from compoundkin.dynamics.link_wrench import LinkWrench
 from compoundkin.dynamics.pair_forces import PairForce
@@ -50,8 +53,10 @@ __all__ = [
     "Configuration",
     "Configurations",
     "DriverEffort",
+    "Efficiency",
     "Finding",
     "Forces",
+    "FrictionForces",
     "Gap",
     "Group",
     "GroupMode",
@@ -64,11 +69,13 @@ __all__ = [
     "Motion",
     "Page",
     "PairForce",
+    "PairFriction",
     "PairMotion",
     "Picture",
     "PinForces",
     "Plot",
     "PointMotion",
+    "PoseStretch",
     "Powers",
     "Quantity",
     "Report",
@@ -79,5 +86,6 @@ __all__ = [
     "Structure",
     "Table",
     "Undetermined",
+    "Wedged",
     "Workspace",
 ]  # fmt: skip

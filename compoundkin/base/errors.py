@@ -92,6 +92,10 @@ class FewDigits(UserWarning):
     """Some rates have fewer than three digits, next to a limit position."""
 
 
+class WedgedPoses(UserWarning):
+    """At some poses of a motion friction has no forces, or several; they are NaN, named and explained."""
+
+
 class LikelySlip(UserWarning):
     """A value that can be meant but is most often a slip."""
 

@@ -36,7 +36,7 @@ class DriverEffort:
     def effort(self) -> Number:
         """The torque or thrust on the driven link. Positive where it drives the coordinate up."""
         pair = self.driven.pair
-        return self.forces.motion.grid.known(self.along * pair.driven_by(self.driven.drive.link))
+        return self.forces.friction.known(self.along * pair.driven_by(self.driven.drive.link))
 
     @property
     def interval(self) -> tuple[Number, Number]:
@@ -48,14 +48,14 @@ class DriverEffort:
         ends = friction.intervals.get(self.name)
         if ends is None:
             return effort, effort
-        low, high = (np.where(friction.at_rest, self.forces.grid.known(end), effort) for end in ends)
+        low, high = (np.where(friction.at_rest, friction.known(end), effort) for end in ends)
         return low, high
 
     @property
     def backward(self) -> Number:
         """The effort if all moves the other way, under the same loads."""
         found = self.forces.friction.backward.get(self.name)
-        return self.effort if found is None else self.forces.grid.known(found)
+        return self.effort if found is None else self.forces.friction.known(found)
 
     @property
     def along(self) -> Number:

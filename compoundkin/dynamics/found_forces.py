@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -42,10 +42,10 @@ class FoundForces(CopiesFields):
     assumed: bool = False
     rubbed: FrictionForces | None = None
 
-    @property
+    @cached_property
     def friction(self) -> FrictionForces:
         """The frictions in pairs, and where the mechanism is wedged by them."""
-        return no_friction(self.motion) if self.rubbed is None else self.rubbed
+        return no_friction(self.motion) if self.rubbed is None else replace(self.rubbed, assumed=self.assumed)
 
     @property
     def units(self) -> Units:
@@ -79,7 +79,8 @@ class FoundForces(CopiesFields):
         """Return what equilibrium leaves open of a sum of wrenches. Its moment is about a place."""
         if not self.relaxed or self.assumed:
             return None
-        return self.self_stress.open(parts, place)
+        found, all_open = self.self_stress.open(parts, place), self.friction.left_open
+        return Open(found.force | all_open, found.moment | all_open, np.where(all_open, np.nan, found.line))
 
     @property
     def mechanism(self) -> Mechanism:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -63,6 +64,14 @@ def test_slider_crank_of_the_reference() -> None:
         assert np.max(np.abs(forces.on(link).moment_about("O"))) < 1e-12
 
 
+def analysed(motion: Any, wedged: bool) -> Any:
+    """The forces of a motion, which is wedged or not."""
+    if not wedged:
+        return ck.force_analysis(motion)
+    with pytest.warns(ck.errors.WedgedPoses, match="wedged in .*; forces are NaN there"):
+        return ck.force_analysis(motion)
+
+
 def wedge(tangent: Any, floor: float, slope: float, wall: float, load: float = -1000.0) -> ck.Mechanism:
     """A wedge driven along the floor under a ram in a wall."""
     return ck.Mechanism(
@@ -111,7 +120,7 @@ def test_wedge_locks_itself_and_is_wedged() -> None:
         wedged = np.tan((np.pi / 2 - angle) / 2)
         for mu, stuck in ((0.999 * wedged, False), (1.001 * wedged, True)):
             motion = ck.solve(wedge(np.tan(angle), mu, mu, mu), {"wedge": [1.0]}, speed=speed)
-            forces = ck.force_analysis(motion)
+            forces = analysed(motion, stuck)
             told = forces.friction.wedged
             assert bool(told) == np.isnan(forces.drives["wedge"].effort[0]) == stuck
             if told:
@@ -178,7 +187,7 @@ def test_drawer_that_jams(offset: float, stuck: bool) -> None:
         ck.friction("guide", 0.25, length=1.0),
         units=SI,
     )
-    forces = ck.force_analysis(ck.solve(drawer, {"hand": [0.5, 1.0, 1.5]}))
+    forces = analysed(ck.solve(drawer, {"hand": [0.5, 1.0, 1.5]}), stuck)
     push = forces.drives["hand"].effort
     if stuck:
         assert np.isnan(push).all()
@@ -190,8 +199,15 @@ def test_drawer_that_jams(offset: float, stuck: bool) -> None:
         assert push == pytest.approx(10.0 / (1.0 - 0.5 * offset), rel=1e-9)
         assert not forces.friction.wedged
     # pulled by its load it may follow, or jam: two sets of forces
-    (both,) = ck.force_analysis(ck.solve(drawer, {"hand": [0.5]}, speed=-1.0)).friction.wedged if stuck else (None,)
-    assert both is None or "more than one" in both.reason
+    back = analysed(ck.solve(drawer, {"hand": [0.5]}, speed=-1.0), stuck).friction.wedged
+    assert ["more than one" in one.reason for one in back] == [True] * stuck
+
+
+def named(motion: Any) -> Any:
+    """The forces of a motion that may be wedged, which is looked at by name."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ck.errors.WedgedPoses)
+        return ck.force_analysis(motion)
 
 
 # --- all equations at once ----------------------------------------------------------------------------------
@@ -295,7 +311,7 @@ def test_random_mechanisms_by_all_equations_at_once() -> None:
             continue
         values = {name: [value] for name, value in drawn_values(mechanism).items()}
         motion = ck.solve(mechanism, values, speed=1.3)
-        forces = ck.force_analysis(motion)
+        forces = named(motion)
         effort, (sizes, residual) = by_all_equations(motion)
         if forces.friction.wedged or residual > 1e-9:
             continue
@@ -331,7 +347,7 @@ def loaded(plain: ck.Mechanism, size: float, coefficient: float, rng: np.random.
 def test_powers_of_shipped_mechanisms(name: str) -> None:
     """Friction takes power only, as Coulomb's law has it; all powers add up to nothing."""
     plain = ck.catalog.load_named(name)
-    forces = ck.force_analysis(ck.solve(loaded(plain, ck.solve(plain).size, 0.05, np.random.default_rng(3))))
+    forces = named(ck.solve(loaded(plain, ck.solve(plain).size, 0.05, np.random.default_rng(3))))
     good = np.isfinite(forces.friction.power)
     assert np.mean(good) > 0.7
     rounding = 1e-12 * np.max(np.abs(forces.power.kinetic_rate[good]))
@@ -354,7 +370,7 @@ def test_friction_takes_power(seed: int, coefficient: float) -> None:
     if not well_conditioned(plain, 30.0, 0.1):
         return
     values = {name: value + np.linspace(-0.1, 0.1, 7) for name, value in drawn_values(plain).items()}
-    forces = ck.force_analysis(ck.solve(loaded(plain, 3.0, coefficient, rng), values, speed=rng.normal()))
+    forces = named(ck.solve(loaded(plain, 3.0, coefficient, rng), values, speed=rng.normal()))
     good = ~np.isnan(forces.friction.power)
     powers = forces.power
     largest = np.max(np.abs([powers.kinetic_rate, powers.gravity, *powers.drives.values()]), axis=0, initial=0.0)[good]
@@ -378,3 +394,40 @@ def test_little_friction_is_proportional() -> None:
     assert np.max(np.abs(slopes[1] - slopes[0])) < 2e-3 * np.max(np.abs(slopes[0]))
     assert np.max(np.abs(none - ck.force_analysis(ck.solve(slider_crank(load, sizes=sizes), {"crank": angles}))
                          .frictionless.drives["crank"].effort)) < 1e-11  # fmt: skip
+
+
+def test_friction_that_equilibrium_leaves_open() -> None:
+    """What presses in a third crank is open, so that its friction is, and the torque with it; not that of others."""
+    plain = ck.catalog.load_named("parallelogram-third-crank")
+    load, angles = ck.force("coupler", (-20.0, -100.0), at="B"), {"crank": np.deg2rad([50.0, 120.0])}
+
+    def forces(*frictions: Any) -> Any:
+        return ck.force_analysis(ck.solve(ck.Mechanism("m", *plain.items, load, *frictions, units=SI), angles))
+
+    rubbed = forces(ck.friction("C", 0.1, radius=0.01))
+    assert rubbed.friction.undetermined == ("C",)
+    assert "leaves open what presses in C" in rubbed.friction.remarks[0]
+    for value in (rubbed.drives["crank"].effort, rubbed.pairs["C"].friction, rubbed.pairs["A"].force):
+        assert np.isnan(value).all()
+    none = forces().drives["crank"].effort
+    assert rubbed.frictionless.drives["crank"].effort == pytest.approx(none)
+    # under the assumption that says which part is free, all is told; friction takes work
+    assumed = rubbed.assuming_freed
+    assert np.all(assumed.drives["crank"].effort > none)
+    assert np.all(assumed.pairs["C"].friction_power < 0.0)
+
+
+def test_multiple_pins_and_sides() -> None:
+    """The letter of a multiple pin is friction in each of its pairs; what one link feels the other feels too."""
+    plain = ck.catalog.load_named("toggle-press")
+    (letter,) = (letter for letter, links in plain.pins.items() if len(links) == 3)
+    items = ck.friction(letter, 0.1, radius=0.02), ck.force("slide", (0.0, 1e4), at="D")
+    mechanism = ck.Mechanism("m", *plain.items, *items, units=SI)
+    forces = ck.force_analysis(ck.solve(mechanism, {"crank": np.deg2rad([45.0, 100.0])}))
+    names = [pair.name for pair in forces.friction.pairs.values()]
+    assert len(names) == 2 and all(name.startswith(f"{letter}(") for name in names)
+    for name in names:
+        found, (one, other) = forces.pairs[name], forces.pairs[name].pair.members
+        assert np.array_equal(found.on(one).friction, -found.on(other).friction)
+        assert np.abs(found.friction) == pytest.approx(0.1 * 0.02 * np.abs(found.force))
+    assert np.max(np.abs(forces.power.sum)) < 1e-9

@@ -41,7 +41,9 @@ class FrictionForces(CopiesFields):
 
     `sizes` are those by pairs, for a press of one, toward a growing coordinate of the pair; `state` tells how many
     solutions there are, `worst` the pair that is wedged first. `backward` are the drivers' efforts if all moves the
-    other way, `intervals` the least and greatest ones that hold where all rests.
+    other way, `intervals` the least and greatest ones that hold where all rests. `undetermined` are the pairs whose
+    friction equilibrium leaves open, as it does what presses there; with it all forces are at the poses `left_open`,
+    unless one of many possible distributions is `assumed`.
     """
 
     motion: Motion
@@ -54,6 +56,8 @@ class FrictionForces(CopiesFields):
     backward: Mapping[str, Number]
     intervals: Mapping[str, tuple[Number, Number]]
     undetermined: tuple[str, ...] = ()
+    left_open: Number = False
+    assumed: bool = False
 
     @cached_property
     def pairs(self) -> Mapping[str, PairFriction]:
@@ -65,6 +69,20 @@ class FrictionForces(CopiesFields):
     def power(self) -> Number:
         """The power of all frictions, never positive."""
         return sum((one.power for one in self.pairs.values()), np.zeros(self.motion.shape))
+
+    def known(self, value: Number) -> Number:
+        """Return a value in the motion's shape. NaN where not assembled, and where frictions leave it open."""
+        return self.motion.grid.known(value if self.assumed else np.where(self.left_open, np.nan, value))
+
+    @cached_property
+    def remarks(self) -> tuple[str, ...]:
+        """What is to be said of it. Where it is wedged, what is left open, what rests."""
+        found = [str(one) for one in self.wedged]
+        told = "equilibrium leaves open what presses in {}, and with its friction the drivers' efforts"
+        found += [told.format(name) for name in self.undetermined]
+        if self.rubs and np.any(self.resting):
+            found.append("where no driver moves, efforts are intervals; pairs are shown without friction")
+        return tuple(found)
 
     @property
     def at_rest(self) -> Number:
@@ -109,7 +127,7 @@ class PairFriction:
         """The force, or in a pin the moment, positive toward a growing coordinate."""
         unit = self.forces.units[self.name]
         size = unit.moment if self.is_moment else np.abs(unit.force)
-        return self.forces.motion.grid.known(self.forces.sizes[self.name] * size)
+        return self.forces.known(self.forces.sizes[self.name] * size)
 
     @property
     def wrench(self) -> Wrench:
@@ -121,7 +139,7 @@ class PairFriction:
         """Its power, never positive."""
         poses = self.forces.motion.poses
         first, second = (poses[name] for name in self.rub.pair.members[:2])
-        return self.forces.motion.grid.known(self.wrench.power(second) - self.wrench.power(first))
+        return self.forces.known(self.wrench.power(second) - self.wrench.power(first))
 
     def __repr__(self) -> str:
         return f"PairFriction({self.name}: {'moment' if self.is_moment else 'force'})"

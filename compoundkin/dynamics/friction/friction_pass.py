@@ -17,6 +17,7 @@ from compoundkin.dynamics.friction.coulomb_equations import NONE, frictions
 from compoundkin.dynamics.friction.press_influence import PressInfluence
 from compoundkin.dynamics.friction.rubs import Rub, flat, senses
 from compoundkin.dynamics.loaded_block import LoadedBlock
+from compoundkin.dynamics.redundant_reactions import own_wrenches
 from compoundkin.dynamics.reverse_pass import Reactions, reverse_pass
 
 
@@ -81,9 +82,18 @@ def rubbed_block(at: LoadedBlock, rubs: tuple[Rub, ...], known: Mapping[str, Wre
 def _influence(at: LoadedBlock, rubs: tuple[Rub, ...], dry: Reactions, alone: tuple[Reactions, ...]) -> PressInfluence:
     """Return how the pairs that rub are pressed without friction, and by a unit of each."""
     own, by, starts = list[Number](), [list[Number]() for _ in rubs], list[int]()
+    unrubbed, *each = (_of_pairs(at, reactions) for reactions in (dry, *alone))
     for rub in rubs:
         starts.append(len(own))
-        own += [flat(press, at) for press in rub.presses(at, dry.pairs[rub.name])]
-        for column, reactions in zip(by, alone, strict=True):
-            column += [flat(press, at) for press in rub.presses(at, reactions.pairs[rub.name])]
+        own += [flat(press, at) for press in rub.presses(at, unrubbed[rub.name])]
+        for column, wrenches in zip(by, each, strict=True):
+            column += [flat(press, at) for press in rub.presses(at, wrenches[rub.name])]
     return PressInfluence(np.array(own, dtype=complex), np.array(by, dtype=complex), np.array(starts))
+
+
+def _of_pairs(at: LoadedBlock, reactions: Reactions) -> Mapping[str, Wrench]:
+    """Return the wrenches of the mechanism's own pairs. Of one held by too much, parts of some are left free."""
+    structure = at.motion.structure
+    if structure.relaxation is None:
+        return reactions.pairs
+    return own_wrenches(structure, reactions.pairs, at.motion.failed[at.designs, at.poses].shape)

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
+from compoundkin.base.errors import WedgedPoses, warn
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.coulomb_equations import NONE, SEVERAL, Frictions, frictions
 from compoundkin.dynamics.friction.friction_forces import FrictionForces
 from compoundkin.dynamics.friction.friction_pass import RubbedBlock, rubbed_block
-from compoundkin.dynamics.friction.rubs import flat, resting, rubs_of, senses
+from compoundkin.dynamics.friction.rubs import Rub, flat, resting, rubs_of, senses
 from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.link_wrench import FRICTION, LinkWrench
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
+from compoundkin.dynamics.redundant_reactions import own_wrenches
 from compoundkin.dynamics.reverse_pass import Reactions
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.unit_rates import moved_alone
@@ -88,10 +91,29 @@ def with_friction(dry: Forces) -> Forces:
         for at, reactions in rubbed.blocks(dry.inertia):
             for name, wrench in {**reactions.pairs, FRAME: reactions.on_frame}.items():
                 store.take(name, wrench, at.designs, at.poses)
-    found, frictions_found = store.wrenches(), rubbed.found()
+    found = store.wrenches()
+    with np.errstate(all="ignore"):
+        all_frictions = replace(rubbed.found(), **_left_open(dry, rubbed.rubs))
+    if motion.structure.relaxation is not None:
+        found.update(own_wrenches(motion.structure, found, motion.failed.shape))
+    for wedged in all_frictions.wedged:
+        warn(f"{wedged}; forces are NaN there", WedgedPoses)
     wrenches = {name: found[name] for name in dry.wrenches}
-    more = (*dry.more, *_acting(frictions_found))
-    return replace(dry, wrenches=wrenches, on_frame=found[FRAME], more=more, rubbed=frictions_found, dry=dry)
+    more = (*dry.more, *_acting(all_frictions))
+    return replace(dry, wrenches=wrenches, on_frame=found[FRAME], more=more, rubbed=all_frictions, dry=dry)
+
+
+def _left_open(dry: Forces, rubs: tuple[Rub, ...]) -> dict[str, Any]:
+    """Return which frictions are open, as equilibrium leaves open what presses there; and at which poses."""
+    names, poses = list[str](), np.zeros(dry.motion.failed.shape, dtype=bool)
+    for rub in rubs if dry.relaxed else ():
+        place = dry.motion.poses[rub.pair.members[1]].at(dry.motion.inputs.ends[rub.name][1].point).c[0]
+        found = dry.self_stress.open([(rub.name, 1.0)], place)
+        here = found.force | found.moment if rub.friction.length is not None else found.force
+        if np.any(here) and np.any(np.asarray(rub.friction.coefficient) > 0.0):
+            names.append(rub.name)
+            poses = poses | here
+    return {"undetermined": tuple(names), "left_open": poses}
 
 
 def _acting(found: FrictionForces) -> Iterator[LinkWrench]:
