@@ -377,8 +377,8 @@ def test_friction_takes_power(seed: int, coefficient: float) -> None:
     assert np.all(forces.friction.power[good] <= 1e-14 * largest)
     assert np.all(np.abs(powers.sum[good]) <= 1e-10 * largest)
     # wedged poses are named, the others have forces
-    named = sum(one.stretch.last - one.stretch.first + 1 for one in forces.friction.wedged)
-    assert named == np.count_nonzero(~good)
+    wedged = sum(one.stretch.last - one.stretch.first + 1 for one in forces.friction.wedged)
+    assert wedged == np.count_nonzero(~good)
 
 
 def test_little_friction_is_proportional() -> None:
@@ -397,37 +397,38 @@ def test_little_friction_is_proportional() -> None:
 
 
 def test_friction_that_equilibrium_leaves_open() -> None:
-    """What presses in a third crank is open, so that its friction is, and the torque with it; not that of others."""
+    """What presses in a third crank and its like is open: so is their friction, and the torque with it."""
     plain = ck.catalog.load_named("parallelogram-third-crank")
     load, angles = ck.force("coupler", (-20.0, -100.0), at="B"), {"crank": np.deg2rad([50.0, 120.0])}
 
     def forces(*frictions: Any) -> Any:
         return ck.force_analysis(ck.solve(ck.Mechanism("m", *plain.items, load, *frictions, units=SI), angles))
 
-    rubbed = forces(ck.friction("C", 0.1, radius=0.01))
-    assert rubbed.friction.undetermined == ("C",)
-    assert "leaves open what presses in C" in rubbed.friction.remarks[0]
-    for value in (rubbed.drives["crank"].effort, rubbed.pairs["C"].friction, rubbed.pairs["A"].force):
+    rubbed = forces(ck.friction("A", 0.1, radius=0.01))
+    assert rubbed.friction.undetermined == ("A",)
+    assert "leaves open what presses in A" in rubbed.friction.remarks[0]
+    for value in (rubbed.drives["crank"].effort, rubbed.pairs["A"].friction, rubbed.pairs["B"].force):
         assert np.isnan(value).all()
     none = forces().drives["crank"].effort
     assert rubbed.frictionless.drives["crank"].effort == pytest.approx(none)
     # under the assumption that says which part is free, all is told; friction takes work
     assumed = rubbed.assuming_freed
     assert np.all(assumed.drives["crank"].effort > none)
-    assert np.all(assumed.pairs["C"].friction_power < 0.0)
+    assert np.all(assumed.pairs["A"].friction_power < 0.0)
 
 
 def test_multiple_pins_and_sides() -> None:
     """The letter of a multiple pin is friction in each of its pairs; what one link feels the other feels too."""
     plain = ck.catalog.load_named("toggle-press")
     (letter,) = (letter for letter, links in plain.pins.items() if len(links) == 3)
-    items = ck.friction(letter, 0.1, radius=0.02), ck.force("slide", (0.0, 1e4), at="D")
+    items = ck.friction(letter, 0.1, radius=0.02), ck.force("slider", (-1e4, 0.0), at="D")
     mechanism = ck.Mechanism("m", *plain.items, *items, units=SI)
     forces = ck.force_analysis(ck.solve(mechanism, {"crank": np.deg2rad([45.0, 100.0])}))
     names = [pair.name for pair in forces.friction.pairs.values()]
-    assert len(names) == 2 and all(name.startswith(f"{letter}(") for name in names)
+    assert len(names) == 2
+    assert all(name.startswith(f"{letter}(") for name in names)
     for name in names:
         found, (one, other) = forces.pairs[name], forces.pairs[name].pair.members
         assert np.array_equal(found.on(one).friction, -found.on(other).friction)
         assert np.abs(found.friction) == pytest.approx(0.1 * 0.02 * np.abs(found.force))
-    assert np.max(np.abs(forces.power.sum)) < 1e-9
+    assert np.max(np.abs(forces.power.sum)) < 1e-13 * np.max(np.abs(forces.power.drives["crank"]))
