@@ -93,7 +93,7 @@ class FewDigits(UserWarning):
 
 
 class WedgedPoses(UserWarning):
-    """At some poses of a motion friction has no forces, or several; they are NaN, named and explained."""
+    """Friction has no forces at some poses, or several. They are NaN, named and explained."""
 
 
 class LikelySlip(UserWarning):

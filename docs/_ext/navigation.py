@@ -15,7 +15,7 @@ CONTENTS: dict[str, tuple[str, ...]] = {
         *("pairs", "cams", "laws", "circuits", "composing", "pictures", "animation", "plots", "page"),
         *("cli", "file-format"),
     ),
-    "Understand it": ("theory", "notation"),
+    "Understand it": ("theory", "friction", "notation"),
     "Examples": ("gallery/index", "catalog"),
     "Refer to it": ("api/index",),
     "Add to it": ("adding", "architecture", "modules"),
