@@ -44,23 +44,13 @@ def force_extremes(forces: Forces, figures: tuple[ForceFigure, ...]) -> tuple[Ex
 
 
 def largest_of(forces: Forces) -> float:
-    """Return the largest force in any pair, beside which others are rounding."""
-    found = [np.abs(np.asarray(value)) for wrench in forces.wrenches.values() for value in (wrench.force,)]
-    return max((float(np.max(one, initial=0.0, where=np.isfinite(one))) for one in found), default=0.0)
+    """Return the largest force in any pair, beside which others are rounding.
 
-
-def is_known_between(forces: Forces) -> bool:
-    """Tell whether the loads are known between poses.
-
-    Single numbers are, arrays over the motion are not.
+    It is that of an ordinary pose: next to singular ones forces grow without limit.
     """
-    mechanism = forces.motion.mechanism
-    values = [vars(one).values() for one in (*mechanism.masses.values(), *mechanism.loads.values())]
-    return (
-        forces.motion.inputs.designs == 1
-        and forces.motion.inputs.poses > 1
-        and not any(np.ndim(v) for row in values for v in row)
-    )
+    sizes = [np.broadcast_to(np.abs(one.force), forces.motion.failed.shape) for one in forces.wrenches.values()]
+    at_poses = np.max([np.where(np.isfinite(one), one, 0.0) for one in sizes] or [np.zeros(1)], axis=0)
+    return float(np.median(at_poses)) or float(np.max(at_poses))
 
 
 def mean(forces: Forces, values: Any, design: int) -> float:

@@ -16,7 +16,6 @@ from compoundkin.view.report.force_measures import (
     ROUNDING,
     ForceFigure,
     force_extremes,
-    is_known_between,
     largest_of,
     mean,
 )
@@ -63,8 +62,12 @@ def reactions_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     figures = reaction_figures(forces)
     if not figures:
         return
-    between = " They are solved for between the poses too." if is_known_between(forces) else ""
-    yield Paragraph(f"Reactions, the force on the second link of each pair.{between} Least and greatest:")
+    if sample.poses == 1:
+        yield Paragraph("Reactions, the force on the second link of each pair, its size, and its moment there:")
+        yield _at_one_pose(sample, forces)
+        return
+    told = "Reactions, the force on the second link of each pair, between the poses too"
+    yield Paragraph(f"{told}. Least and greatest:")
     rows = []
     for figure, row in zip(figures, extremes_rows(sample, forces, figures), strict=True):
         (pair, _, on), _, what = figure.name.partition("|")[0].partition(", on "), "", figure.name.partition("|")[2]
@@ -73,10 +76,23 @@ def reactions_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     yield TableBlock(columns, tuple(rows), keys=1)
 
 
+def _at_one_pose(sample: Sample, forces: Forces) -> TableBlock:
+    """The forces themselves."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in forces.pairs.items():
+        force, moment = complex(sample.of(one.force)[0]), float(sample.of(one.moment)[0])
+        rows.append((name, one.pair.members[1], (force.real, force.imag), abs(force), moment))
+    floor = ROUNDING * largest_of(forces)
+    units = forces.units
+    numbers = (Column("force", units.force, "each", floor), Column("size", units.force, "each", floor),
+               Column("moment", units.moment, "each", floor * forces.motion.size))  # fmt: skip
+    return TableBlock((Column("pair"), Column("on"), *numbers), tuple(rows), keys=1)
+
+
 def extremes_rows(sample: Sample, forces: Forces, figures: Sequence[ForceFigure]) -> list[tuple[Cell, ...]]:
     """Return the extremes of figures with their places; at a single pose its value."""
     floor = ROUNDING * largest_of(forces)
-    if is_known_between(forces):
+    if sample.poses > 1:
         found: tuple[Extremes, ...] = force_extremes(forces, tuple(figures))
         return [extremes_row(sample, one, sample.design, floor) for one in found]
     return [_at_poses(sample, np.asarray(sample.of(figure.of(forces)))) for figure in figures]

@@ -6,29 +6,24 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from compoundkin.analysis.checks import verify
 from compoundkin.base.arrays import degrees, first_entry
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.loaded_motions import loaded_forces
-from compoundkin.kinematics import Motion
+from compoundkin.view.report.findings_table import findings_table
 from compoundkin.view.report.force_tables import (
     drives_blocks,
     reactions_blocks,
     shaking_blocks,
 )
 from compoundkin.view.report.load_tables import loads_table, masses_table
-from compoundkin.view.report.report_data import Block, Outcome, Paragraph, Section
+from compoundkin.view.report.report_data import Alert, Block, Outcome, Paragraph, Section
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.wording import listed, number
 
+BALANCES = "balances written anew by Newton and Euler, and virtual work"
 # Speeds that differ by less than this part of the greatest are constant.
 STEADY = 1e-9
-
-
-def forces_sections(motion: Motion, design: int = 0) -> tuple[Section, ...]:
-    """Return the section on the forces of a motion. None without masses and loads."""
-    forces = loaded_forces(motion)
-    return () if forces is None else (forces_section(forces, design),)
 
 
 def forces_section(forces: Forces, design: int = 0) -> Section:
@@ -38,8 +33,10 @@ def forces_section(forces: Forces, design: int = 0) -> Section:
 
 def forces_report(forces: Forces, design: int = 0) -> Report:
     """Report forces alone."""
-    motion = forces.motion
-    outcome = Outcome(True, int(motion.failed.size), int(np.count_nonzero(motion.failed == 0)), 0, 0, 0, 0)
+    motion, check = forces.motion, verify(forces)
+    poses, closed, count = motion.failed.size, np.count_nonzero(motion.failed == 0), len(check.findings)
+    passed = count - len(check.failed)
+    outcome = Outcome(True, int(poses), int(closed), count, passed, 0, 0, check.passed, check.verdict)
     return Report(motion.mechanism.title, (forces_section(forces, design),), outcome, motion, design=design)
 
 
@@ -49,12 +46,24 @@ def _blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     if mechanism.masses:
         yield Paragraph("Masses, each mass centre in its link's own frame:")
         yield masses_table(forces)
+        yield from _assumed_masses(forces)
     if mechanism.loads:
         yield Paragraph("Loads:")
         yield loads_table(forces)
+    yield from _undetermined(forces)
     yield from reactions_blocks(sample, forces)
     yield from drives_blocks(sample, forces)
     yield from shaking_blocks(sample, forces)
+    yield Paragraph(f"Checks of the forces, {BALANCES}:")
+    yield findings_table(sample, verify(forces))
+
+
+def force_checks_sections(sample: Sample, forces: Forces | None) -> tuple[Section, ...]:
+    """Return the findings about forces as a section; none without forces."""
+    if forces is None:
+        return ()
+    blocks = Paragraph(f"By {BALANCES}."), findings_table(sample, verify(forces))
+    return (Section("force-checks", "Checks of forces", blocks),)
 
 
 def assumptions(sample: Sample, forces: Forces) -> Iterator[str]:
@@ -70,6 +79,23 @@ def assumptions(sample: Sample, forces: Forces) -> Iterator[str]:
     yield "accelerations cause inertia forces" if forces.inertia else "statics: no inertia"
     yield from _speeds(sample)
     yield "no friction"
+
+
+def _assumed_masses(forces: Forces) -> Iterator[Block]:
+    """What of masses was left out, and is that of uniform bodies."""
+    told = [f"{one.link}: {one.assumed}" for one in forces.mechanism.masses.values() if one.assumed]
+    if told:
+        yield Paragraph(f"Assumed, for it was left out: {'; '.join(told)}.")
+
+
+def _undetermined(forces: Forces) -> Iterator[Block]:
+    """What equilibrium leaves open."""
+    found = forces.undetermined
+    if found:
+        told = listed(f"{one.part} in {one.pair}" for one in found)
+        freed = dict.fromkeys(str(dropped) for one in found for dropped in one.freed)
+        remedy = f"they would be determined were {listed(freed)} left free" if freed else ""
+        yield Alert(f"Equilibrium does not determine {told}: they balance each other.", remedy)
 
 
 def _speeds(sample: Sample) -> Iterator[str]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from collections.abc import Mapping
+from dataclasses import Field, fields
 from typing import Any
 
 import numpy as np
@@ -31,22 +32,25 @@ def loads_table(forces: Forces) -> TableBlock:
 
 
 def _told(load: Load) -> str:
-    """The numbers of a load, by what they are called."""
-    names = [f.name for f in fields(load) if f.name not in ("name", *load.link_keys)]
-    values = {name: _value(getattr(load, name)) for name in names}
-    return ", ".join(f"{name} {value}" for name, value in values.items() if value)
+    """The numbers of a load that are not as where nothing is said, by what they are called."""
+    own = [field for field in fields(load) if field.name not in ("name", *load.link_keys)]
+    values = {field.name: _value(value) for field in own if not _is_usual(value := getattr(load, field.name), field)}
+    return ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in values.items() if value)
+
+
+def _is_usual(value: Any, field: Field[Any]) -> bool:
+    return not np.ndim(value) and isinstance(value, type(field.default)) and bool(value == field.default)
 
 
 def _value(value: Any) -> str:
     if value is None or isinstance(value, bool | str):
         return str(value or "")
-    if callable(value):
+    if callable(value) or isinstance(value, Mapping):
         return "a function"
-    values = np.ravel(np.asarray(value))
-    if np.iscomplexobj(values):
-        parts = [_range(values.real), _range(values.imag)]
-        return f"({', '.join(parts)})"
-    return _range(values)
+    table = getattr(value, "over", None)
+    values = np.ravel(np.asarray(value if table is None else value.values))
+    said = f"({_range(values.real)}, {_range(values.imag)})" if np.iscomplexobj(values) else _range(values)
+    return said if table is None else f"{said}, a table over {table}"
 
 
 def _range(values: Number) -> str:

@@ -9,29 +9,27 @@ import numpy as np
 
 from compoundkin.analysis.characteristics.characteristics_of_motion import characteristics
 from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
-from compoundkin.analysis.checks import Check, Finding, verify
+from compoundkin.analysis.checks import Check, verify
+from compoundkin.dynamics.loaded_motions import loaded_forces
 from compoundkin.kinematics import Motion
-from compoundkin.structure import Structure
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections
-from compoundkin.view.report.forces_section import forces_sections
+from compoundkin.view.report.findings_table import finding_sentence, findings_table, with_forces
+from compoundkin.view.report.forces_section import force_checks_sections, forces_section
 from compoundkin.view.report.gaps_section import gaps_of, gaps_section
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.outputs_section import equivalent_section, moving_sections
 from compoundkin.view.report.performance_section import performance_section
 from compoundkin.view.report.published_section import Comparison, comparisons, published_section
-from compoundkin.view.report.report_data import Alert, Column, Outcome, Paragraph, Section, TableBlock
+from compoundkin.view.report.report_data import Alert, Outcome, Paragraph, Section
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.structure_sections import about_section, counted_sections, structure_in_short
-from compoundkin.view.report.wording import brief, counted, number
+from compoundkin.view.report.wording import counted
 
 
 def checks_section(sample: Sample, check: Check) -> Section:
     """Return all findings of the checks, each with its worst value's place."""
-    columns = (Column("check"), Column("worst", style="brief"), Column("limit", style="brief"), Column("at"),
-               Column("", style="passed"))  # fmt: skip
-    rows = tuple((f.name, f.value, f.limit, finding_place(sample, f.pair, f.pose), f.passed) for f in check.findings)
     text = (
         "None of these uses the formulas that solved the motion: residuals of the pairs' own equations, velocities from"
         " instant centres, differences of positions; relative to the mechanism's size and its fastest link. Continuity"
@@ -45,19 +43,7 @@ def checks_section(sample: Sample, check: Check) -> Section:
         text += f" Rates have fewer than three digits, by rounding next to a limit position, at {few}."
     if not check.poses:
         return Section("checks", "Checks", (Alert("No pose is assembled: there is nothing to check."),))
-    return Section("checks", "Checks", (Paragraph(text), TableBlock(columns, rows)))
-
-
-def finding_place(sample: Sample, name: str, pose: tuple[int, ...]) -> str:
-    """Return the pair or link and the pose at which a residual is worst. "A, crank 35"."""
-    if not name:
-        return ""
-    motion = sample.motion
-    designs, number_of_pose = motion.inputs.designs, pose[-1] if pose else 0
-    design = int(np.ravel_multi_index(pose[:-1], motion.shape[:-1])) if len(pose) > 1 else 0
-    column, values = Sample(motion, design).places
-    at = f"{column.name} {number(float(values[number_of_pose]))}"
-    return f"{name}, design {design}, {at}" if designs > 1 else f"{name}, {at}"
+    return Section("checks", "Checks", (Paragraph(text), findings_table(sample, check)))
 
 
 def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 0) -> Report:
@@ -68,7 +54,8 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
     chosen = chosen_outputs(motion, outputs)
     moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen, design)
     check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
-    outcome = outcome_of(motion, check, published)
+    forces = loaded_forces(motion)
+    outcome = outcome_of(motion, with_forces(check, forces), published)
     return Report(
         motion.mechanism.title,
         (
@@ -80,7 +67,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
             *assembly_sections(motion, design),
             *moving,
             performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
-            *forces_sections(motion, design),
+            *([forces_section(forces, design)] if forces is not None else []),
             *([gaps_section(sample, missing)] if missing else []),
             checks_section(sample, check),
             *([published_section(structure, published)] if published else []),
@@ -136,12 +123,14 @@ def check_report(motion: Motion) -> Report:
 
     It also says where its first design is not assembled.
     """
-    sample, check = Sample(motion), verify(motion)
-    outcome = outcome_of(motion, check)
-    alerts = tuple(Alert(f"{finding_sentence(sample, f)}.") for f in check.findings if not f.passed)
+    sample, check, forces = Sample(motion), verify(motion), loaded_forces(motion)
+    both = with_forces(check, forces)
+    outcome = outcome_of(motion, both)
+    alerts = tuple(Alert(f"{finding_sentence(sample, f)}.") for f in both.findings if not f.passed)
     failed = (Section("failed", "What failed", alerts),) if alerts else ()
     about = Section("about", "", (Paragraph(motion_in_short(outcome)),))
-    sections = (about, *_missing(sample), checks_section(sample, check), *failed)
+    of_forces = force_checks_sections(sample, forces)
+    sections = (about, *_missing(sample), checks_section(sample, check), *of_forces, *failed)
     return Report(motion.mechanism.title, sections, outcome, motion)
 
 
@@ -158,19 +147,3 @@ def centres_report(motion: Motion, design: int = 0) -> Report:
 def _missing(sample: Sample) -> tuple[Section, ...]:
     missing = gaps_of(sample)
     return (gaps_section(sample, missing),) if missing else ()
-
-
-def finding_sentence(sample: Sample, finding: Finding) -> str:
-    """Return a finding in words. What, how far, and the pair or link, the pose and the group."""
-    where = finding_place(sample, finding.pair, finding.pose)
-    place = ", ".join(part for part in (where, _group(sample.motion.structure, finding.pair)) if part)
-    said = f"{finding.name}: {brief(finding.value)}, above its limit {brief(finding.limit)}"
-    return f"{said}, at {place}" if place else said
-
-
-def _group(structure: Structure, name: str) -> str:
-    """The group that solves a pair or a link, in words; "" for one of the frame and its driven links."""
-    for group in structure.groups:
-        if name in group.links or name in [pair.name for pair in (*group.inner, *group.outer)]:
-            return f"in the {group.name} group of {' and '.join(group.links)}"
-    return ""

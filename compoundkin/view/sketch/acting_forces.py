@@ -41,6 +41,7 @@ class ShownForce:
     force: complex
     moment: float
     is_effort: bool = False
+    is_open: bool = False
 
 
 def forces_in(forces: Forces, scene: Scene) -> Forces:
@@ -97,11 +98,14 @@ def is_shown_once(one: ShownForce, legend: Mapping[str, int]) -> bool:
 
 def largest(found: Mapping[str, tuple[ShownForce, ...]]) -> float:
     """Return the largest force that acts anywhere."""
-    return max((abs(one.force) for own in found.values() for one in own), default=0.0)
+    sizes = [abs(one.force) for own in found.values() for one in own]
+    return max((size for size in sizes if np.isfinite(size)), default=0.0)
 
 
 def _cleaned(one: ShownForce, force: float, moment: float) -> ShownForce:
-    """Rounding as zero."""
+    """Rounding as zero; what equilibrium leaves open is told, and not drawn."""
+    if not np.isfinite(one.force) or not np.isfinite(one.moment):
+        return replace(one, force=0j, moment=0.0, is_open=True)
     return replace(
         one, force=0j if abs(one.force) <= force else one.force, moment=0.0 if abs(one.moment) <= moment else one.moment
     )

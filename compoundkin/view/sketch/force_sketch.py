@@ -58,7 +58,7 @@ class ForcesAtPose:
                          for sizes in ([one.force for one in found], [one.moment for one in found]))  # fmt: skip
         kept = (replace(one, force=one.force if abs(one.force) >= force else 0j,
                         moment=one.moment if abs(one.moment) >= moment else 0.0) for one in found)  # fmt: skip
-        return [one for one in kept if one.force or one.moment]
+        return [one for one in kept if one.force or one.moment or one.is_open]
 
     def middle(self, one: ShownForce) -> complex:
         """Return the middle of the link on which a force acts, in the plane."""
@@ -180,6 +180,9 @@ def _units(known: ForcesAtPose, shown: Sequence[ShownForce], scale: VectorScale 
         yield "statics"
     if any(one.moment for one in shown):
         yield f"moments in {units.moment}, arcs not to scale"
+    unknown = dict.fromkeys(one.name for one in shown if one.is_open)
+    if unknown:
+        yield f"not determined by equilibrium: {', '.join(unknown)}"
     small = [one for one in shown if one.force and scale is not None and abs(one.force) * scale.per_unit < SHORTEST]
     if small:
         yield f"not drawn: {', '.join(f'{one.name} {written(abs(one.force))}' for one in small)}"
