@@ -51,7 +51,9 @@ ROOMS = (
     ("cli",),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(ROOMS) for room in rooms}
-ALLOWED_BETWEEN_SISTERS: set[tuple[str, str]] = {}
+ALLOWED_BETWEEN_SISTERS: set[tuple[str, str]] = {
+    ("dynamics", "analysis"),  # a mechanical advantage as a ratio of forces is held against that of velocities
+}
 # `__init__`, `__main__` and the named modules of the public face, such as `laws`: no rooms, and nobody imports them.
 FACE = sorted(path for path in FILES if path.parent == PACKAGE)
 # Files that play the same part in sister folders.
@@ -91,7 +93,7 @@ NO_VERB = """
 """
 NO_VERBS = set(NO_VERB.split())
 
-LINES_OF_FUNCTIONS, LINES_OF_MODULES, FILES_AT_MOST, NAMES_AT_MOST, ROOMS_AT_MOST, LEVELS = 30, 220, 290, 60, 14, 10
+LINES_OF_FUNCTIONS, LINES_OF_MODULES, FILES_AT_MOST, NAMES_AT_MOST, ROOMS_AT_MOST, LEVELS = 30, 220, 290, 60, 14, 11
 
 
 def only_shrinks(found: Iterable[str], still: Iterable[str] = ()) -> None:

@@ -15,6 +15,7 @@ from compoundkin.view.report.force_tables import (
     reactions_blocks,
     shaking_blocks,
 )
+from compoundkin.view.report.friction_blocks import friction_blocks, friction_words
 from compoundkin.view.report.load_tables import loads_table, masses_table
 from compoundkin.view.report.report_data import Alert, Block, Outcome, Paragraph, Section
 from compoundkin.view.report.report_forms import Report
@@ -54,6 +55,7 @@ def _blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     yield from reactions_blocks(sample, forces)
     yield from drives_blocks(sample, forces)
     yield from shaking_blocks(sample, forces)
+    yield from friction_blocks(sample, forces)
     yield Paragraph(f"Checks of the forces, {BALANCES}:")
     yield findings_table(sample, verify(forces))
 
@@ -78,7 +80,7 @@ def assumptions(sample: Sample, forces: Forces) -> Iterator[str]:
         yield f"no mass on {listed(massless)}"
     yield "accelerations cause inertia forces" if forces.inertia else "statics: no inertia"
     yield from _speeds(sample)
-    yield "no friction"
+    yield friction_words(forces)
 
 
 def _assumed_masses(forces: Forces) -> Iterator[Block]:

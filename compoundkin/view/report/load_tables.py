@@ -21,7 +21,10 @@ def masses_table(forces: Forces) -> TableBlock:
     units, mechanism = forces.units, forces.motion.mechanism
     columns = (Column("link"), Column("mass", units.mass, "each"), Column("mass centre"),
                Column("inertia about it", f"{units.mass} {units.length}^2", "each"))  # fmt: skip
-    rows = [(one.link, _first(one.mass), _place(one.at), _first(one.inertia)) for one in mechanism.masses.values()]
+    rows = [
+        (one.link, first_number(one.mass), _place(one.at), first_number(one.inertia))
+        for one in mechanism.masses.values()
+    ]
     return TableBlock(columns, tuple(rows))
 
 
@@ -61,9 +64,10 @@ def _range(values: Number) -> str:
 def _place(at: Any) -> str:
     if isinstance(at, str):
         return at
-    place = complex(_first(at))
+    place = complex(first_number(at))
     return f"({number(place.real)}, {number(place.imag)})"
 
 
-def _first(value: Any) -> Any:
+def first_number(value: Any) -> Any:
+    """Return the first number of an array, or the number."""
     return first_entry(value) if np.ndim(value) else value

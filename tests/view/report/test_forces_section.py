@@ -65,3 +65,31 @@ def test_a_mechanism_without_loads_has_no_such_section() -> None:
     found = ck.report(crank())
     assert found.section("forces") is not None
     assert [section.key for section in found.sections].index("forces") < [s.key for s in found.sections].index("checks")
+
+
+def test_checks_of_forces_are_part_of_the_outcome_and_fail_it() -> None:
+    from compoundkin.view.report.motion_report import check_report
+
+    made = check_report(crank_forces().motion)
+    section = made.section("force-checks")
+    assert section is not None
+    assert made.outcome.checks > len(section.blocks[1].rows) >= 5
+    assert made.outcome.verified
+
+
+def test_what_equilibrium_leaves_open_and_friction_are_told() -> None:
+    bare = ck.catalog.load_named("parallelogram-third-crank")
+    held = ck.Mechanism("Held", *bare.items, ck.force("coupler", (100, -300), at="P"), units=UNITS)
+    told = forces_report(ck.force_analysis(ck.solve(held, {"crank": ck.deg([60, 90])}))).text(200)
+    assert "Equilibrium does not determine the force along A B of crank in A" in told
+    link, slide = ck.link("block", A=(0, 0)), ck.slide("block", name="guide", on="frame", at="A", through="O")
+    items = ck.link("frame", O=(0, 0)), link, slide, ck.drive("block", values=[0.0, 1.0], speed=2.0)
+    block = ck.Mechanism("Block", *items, ck.mass("block", 1.0, at="A"), ck.gravity(0, -10), ck.friction("guide", 0.2),
+                         units={"length": "m", "mass": "kg", "force": "N"})  # fmt: skip
+    told = forces_report(ck.force_analysis(ck.solve(block))).text(200)
+    said = told.replace("\n", " ")
+    # a block on the level: the driver pushes 0.2 of its weight, all of which is lost
+    assert "Coulomb friction against the motion, coupled to the reactions: guide 0.2; none elsewhere" in said
+    rows = [line.split() for line in told.splitlines() if line.startswith("guide")]
+    assert ["guide", "force", "N", "-2", "-2", "always", "-2", "always"] in rows
+    assert ["guide", "power", "W", "-4", "-4", "always", "-4", "always"] in rows
