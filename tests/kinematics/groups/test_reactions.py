@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+import compoundkin as ck
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.files.shipped_mechanisms import load_named
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import DYADS, DyadSolver
 from compoundkin.kinematics.groups.equilibrium import reactions_of
@@ -18,6 +21,7 @@ from compoundkin.model.pairs import Pair, Prismatic, Revolute
 from compoundkin.structure.assur_groups import named_group
 from compoundkin.structure.parts import Body
 from tests.kinematics.groups.test_contract import SEEDS, Case, closable, conditioned
+from tests.kinematics.groups.test_solvers import SHOWN
 from tests.support import random_planar, random_pose
 
 DESIGNS, POSES = 6, 40
@@ -92,7 +96,7 @@ def test_closed_forms_and_the_transposed_jacobian_agree(kind: type[DyadSolver], 
     solver = kind.of(0, group, 1.0, block.ends)
     assert solver is not None
     given_loads = loads(rng)
-    found, expected = solver.reactions(block, given_loads), reactions_of(group, block, given_loads)
+    found, expected = solver.reactions(block, given_loads), reactions_of(group, block, given_loads, bars=False)
     assert found.keys() == expected.keys() == {"P0", "P1", "P2"}
     scale = sum(np.abs(w.force) + np.abs(w.moment) for w in expected.values()) + 1e-300
     for name, wrench in expected.items():
@@ -107,3 +111,28 @@ def test_singular_denominators_raise_nothing(kind: type[DyadSolver]) -> None:
     with np.errstate(all="ignore"):
         found = kind.first_reaction(side, side, side, (load, load))
     assert not (np.isfinite(found.force) and np.isfinite(found.moment))
+
+
+@pytest.mark.parametrize("kind", SHOWN)
+def test_every_way_agrees_with_the_transposed_jacobian(kind: str) -> None:
+    """Bars left out, closed forms, teeth: all groups of whole motions, against all equations of all bodies."""
+    for name in SHOWN[kind]:
+        motion, rng = ck.solve(load_named(name)), np.random.default_rng(8)
+        (at, *_) = loaded_blocks(motion)
+        for solver in motion.solving_order.solvers:
+            given_loads = {
+                link: Wrench(complex(*rng.standard_normal(2)), rng.standard_normal() * motion.size)
+                for link in solver.group.links
+            }
+            with np.errstate(all="ignore"):
+                found = solver.reactions(at.block, given_loads)
+                expected = reactions_of(solver.group, at.block, given_loads, bars=False)
+            forces = [np.broadcast_to(np.abs(w.force), at.block.shape) for w in expected.values()]
+            # near limit positions forces grow, and lose as many digits; beyond this there may be none
+            fit = (np.max(forces, axis=0) < 1e3 * motion.size) & motion.regular
+            assert fit.any()
+            for pair, wrench in expected.items():
+                scale = np.where(fit, np.max(forces, axis=0), np.inf)
+                assert np.max(np.abs(np.where(fit, found[pair].force - wrench.force, 0.0)) / scale) < 1e-12
+                off = np.where(fit, found[pair].moment - wrench.moment, 0.0)
+                assert np.max(np.abs(off) / scale) < 1e-12 * motion.size
