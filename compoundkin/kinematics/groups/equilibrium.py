@@ -94,7 +94,7 @@ class Strut(NamedTuple):
         return _opposite(self.pins, self.units)
 
     def wrenches(self, amount: Number) -> dict[str, Wrench]:
-        """Return the wrenches on the second members of its pins, for a force along it."""
+        """Return the wrenches on second members of its pins. A force is along it."""
         parts = zip(self.pins, self.known, self.units, strict=True)
         on_bar = [(pin, known + unit.times(amount)) for pin, known, unit in parts]
         return {pin.pair.name: wrench if pin.own else -wrench for pin, wrench in on_bar}
