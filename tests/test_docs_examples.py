@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,12 +14,20 @@ import compoundkin as ck
 DOCS = Path(__file__).parents[1] / "docs"
 
 
-@pytest.mark.parametrize("page", ["pictures.md", "circuits.md", "press-drive.md"])
+@pytest.mark.parametrize("page", ["pictures.md", "circuits.md", "press-drive.md", "machine.md"])
 def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     lines = [line[4:] for line in (DOCS / page).read_text("utf-8").splitlines() if line.startswith("    ")]
     assert len(lines) > 10
     exec("\n".join(line for line in lines if not line.startswith("compoundkin ")), {})
+
+
+def test_the_page_on_machines_prints_what_it_shows() -> None:
+    page = (DOCS / "machine.md").read_text("utf-8")
+    lines = [line[4:] for line in page.splitlines() if line.startswith("    ")]
+    names: dict[str, Any] = {}
+    exec("\n".join(lines[: lines.index("print(balance.text())")]), names)
+    assert names["balance"].text() in page
 
 
 def test_the_words_for_profiles_are_named_with_their_module() -> None:

@@ -62,7 +62,8 @@ class ForceBalance(PrintsShort):
         rows = [head]
         for old, new in zip(self.before, self.after, strict=True):
             for word, a, b in (("greatest", old.greatest, new.greatest), ("rms", old.rms, new.rms)):
-                rows.append(f"{f'{old.name}, {word} [{old.unit}]':<44}{a:>14.6g}{b:>14.6g}")
+                rest = b if b > BALANCED * a else 0.0
+                rows.append(f"{f'{old.name}, {word} [{old.unit}]':<44}{a:>14.6g}{rest:>14.6g}")
         return tuple(rows)
 
     def __repr__(self) -> str:

@@ -14,6 +14,7 @@ from compoundkin.dynamics.course_quadrature import integrals, smooth_pieces
 from compoundkin.dynamics.driver_course import DriverCourse, course_of
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.mass_motion import units_of_masses
+from compoundkin.dynamics.speed_fluctuation import SpeedFluctuation
 from compoundkin.kinematics.extremes import Places, between, zeros
 
 # Where the driver goes no further over a cycle than this part of its values' range, it only goes to and fro.
@@ -27,7 +28,9 @@ class Flywheel(PrintsShort):
     `mean` is the mean effort, `speed` the mean speed, `fluctuation` the greatest fluctuation of energy, `inertia` the
     flywheel's own for the `coefficient` of fluctuation, in units of mass and length (of a slide its mass). The surplus,
     mean effort less effort, changes its sign at the places `crossings`, with the energy `energies` there from the
-    beginning of the cycle on: arrays (n,).
+    beginning of the cycle on: arrays (n,). `without` and `achieved` are the coefficients of fluctuation without and
+    with the flywheel by the energy of all that moves, with the parts' own inertia, which the rule leaves out; infinite
+    where the machine would stop.
     """
 
     driver: str
@@ -38,6 +41,8 @@ class Flywheel(PrintsShort):
     inertia: Number
     crossings: Places
     energies: Number
+    without: Number
+    achieved: Number
 
 
 @checked
@@ -69,7 +74,9 @@ def flywheel(forces: Forces, fluctuation: float, *, driver: str | None = None) -
     places, energies = _energies(course, mean, crossings)
     lent = np.array([np.ptp(np.append(energies[places.design == k], 0.0)) for k in range(course.motion.inputs.designs)])
     inertia = lent / (fluctuation * speed**2) / units_of_masses(course.motion).inertia
-    return Flywheel(course.driver, fluctuation, speed, mean, lent, inertia, places, energies)
+    known = (SpeedFluctuation(course, k, mean[k], speed[k]) for k in range(len(mean)))
+    both = np.array([[one.coefficient(0.0), one.coefficient(own)] for one, own in zip(known, inertia, strict=True)])
+    return Flywheel(course.driver, fluctuation, speed, mean, lent, inertia, places, energies, *both.T)
 
 
 def _hold(fluctuation: float) -> None:

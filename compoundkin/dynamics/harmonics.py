@@ -28,9 +28,9 @@ TURN = 2.0 * np.pi
 class Harmonics(PrintsShort):
     """The harmonics of a quantity; arrays (designs, orders + 1).
 
-    The mean is first. A number is the sum of amplitude x cos(order x angle + phase). A vector is the sum of `forward` x exp(i order angle)
-    and `backward` x exp(-i order angle), vectors that turn with the cycle and against it. The angle is the driver's
-    where the cycle is its full turn, else a full turn from the beginning to the end of the cycle.
+    The mean is first. A number is the sum of amplitude x cos(order x angle + phase). A vector is the sum of `forward` x
+    exp(i order angle) and `backward` x exp(-i order angle), vectors that turn with the cycle and against it. The angle
+    is the driver's where the cycle is its full turn, else a full turn from the beginning to the end of the cycle.
     """
 
     name: str
@@ -73,9 +73,10 @@ class Harmonics(PrintsShort):
 def harmonics(of: Forces | Motion, name: str = SHAKING, *, orders: int = 6, driver: str | None = None) -> Harmonics:
     """Return the harmonics of a quantity over a closed cycle.
 
-    That is the shaking force without a name. The cycle is sampled at places equally spaced by the time, or by the driver, which are solved again; ever more of
-    them, until nothing changes. Of the only driver without a name. Names are those of `quantity`. Raises InvalidInput
-    for what is no closed cycle and for a driver that does not go on throughout, UnknownName for unknown names.
+    That is the shaking force without a name. The cycle is sampled at places equally spaced by the time, or by the
+    driver, which are solved again; ever more of them, until nothing changes. Of the only driver without a name. Names
+    are those of `quantity`. Raises InvalidInput for what is no closed cycle and for a driver that does not go on
+    throughout, UnknownName for unknown names.
 
     Source: e.g. J. P. Den Hartog, Mechanical Vibrations, 4th ed., McGraw-Hill 1956, chapter 5.
 

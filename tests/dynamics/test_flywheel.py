@@ -53,6 +53,18 @@ def test_parts_that_move_lend_energy_too() -> None:
     inertia = ck.machine.equivalent_inertia(motion).inertia
     np.testing.assert_allclose(found.mean, 0.0, atol=1e-11)
     np.testing.assert_allclose(found.fluctuation, np.ptp(inertia) * 150**2 / 2, rtol=1e-4)
+    # J w^2 is the same throughout: the piston's alone would let the crank leap at its dead points
+    assert np.isinf(found.without)
+    heavy = mechanism.replace(ck.mass("crank", 1.0, at="O", inertia=2e-3))
+    moved = ck.solve(heavy, TURN, speed=150)
+    fine = ck.solve(heavy, np.linspace(0.0, 2.0 * np.pi, 5000), order=1)
+    sizes = np.sqrt(ck.machine.equivalent_inertia(fine).inertia)
+    ends = 1.0 / sizes.max(), 1.0 / sizes.min()
+    alone = ck.machine.flywheel(ck.force_analysis(moved), 0.1)
+    np.testing.assert_allclose(alone.without, 2.0 * (ends[1] - ends[0]) / sum(ends), rtol=1e-6)
+    np.testing.assert_allclose(
+        ck.machine.flywheel(ck.force_analysis(moved, inertia=False), 0.1).without, alone.without, rtol=1e-9
+    )
     statics = ck.machine.drive_figures(ck.force_analysis(motion, inertia=False))
     np.testing.assert_allclose(statics.peak_effort, 0.0, atol=1e-12)
 
@@ -60,11 +72,13 @@ def test_parts_that_move_lend_energy_too() -> None:
 def test_units_are_converted_not_reinterpreted() -> None:
     """The arm of 2 kg at 1 m of the example, in mm: 2 m g r / (Cs w^2) = 8 kg m^2."""
     parts = ck.link("frame", A=0), ck.link("arm", A=0, B=1000), ck.drive("arm")
-    loads = ck.mass("arm", 2.0, at="B"), ck.gravity(0, -10)
+    loads = ck.mass("arm", 2.0, at="B", inertia=0), ck.gravity(0, -10)
     arm = ck.Mechanism("Arm", *parts, *loads, units={"length": "mm", "mass": "kg", "force": "N"})
     found = ck.machine.flywheel(ck.force_analysis(ck.solve(arm, TURN, speed=10)), 0.05)
     np.testing.assert_allclose(found.inertia, 8e6, rtol=1e-12)
     np.testing.assert_allclose(found.fluctuation, 40e3, rtol=1e-12)
+    # 2 m g r = J (fastest^2 - slowest^2) / 2, of the arm alone 2 kg m^2, with the flywheel 10 kg m^2
+    np.testing.assert_allclose([found.without, found.achieved], [[0.2], [0.04]], rtol=1e-9)
 
 
 def test_figures_of_a_drive_in_time_are_means_over_the_time() -> None:
