@@ -27,6 +27,7 @@ from compoundkin.dynamics.power import Powers
 from compoundkin.dynamics.simulated_energy import SimulatedEnergy
 from compoundkin.dynamics.simulation import Simulation
 from compoundkin.dynamics.simulation_events import SimulationEvent
+from compoundkin.dynamics.singular_poses import SingularPose
 from compoundkin.dynamics.undetermined import Undetermined
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.kinematics.chosen_modes import GroupMode
@@ -83,6 +84,7 @@ __all__ = [
     "SimulatedEnergy",
     "Simulation",
     "SimulationEvent",
+    "SingularPose",
     "Structure",
     "Table",
     "Undetermined",

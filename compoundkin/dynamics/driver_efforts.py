@@ -61,7 +61,12 @@ class DriverEffort:
     def along(self) -> Number:
         """The effort along the pair's own coordinate, (designs, poses)."""
         found = PairForce(self.forces, self.driven.pair)
-        return self.driven.pair.effort(found.ends, found.poses, self.forces.wrenches[found.name])
+        effort = self.driven.pair.effort(found.ends, found.poses, self.forces.wrenches[found.name])
+        if not self.forces.singular:
+            return effort
+        # at change points it is determined though reactions may have no limit
+        by_work = self.forces.efforts_by_work[self.name] * self.driven.pair.driven_by(self.driven.drive.link)
+        return np.where(np.isfinite(effort), effort, by_work)
 
     @property
     def wrench(self) -> Wrench:

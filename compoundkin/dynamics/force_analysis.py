@@ -8,12 +8,14 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.rubbed_motion import with_friction
 from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.redundant_reactions import own_wrenches
 from compoundkin.dynamics.reverse_pass import found_reactions
+from compoundkin.dynamics.singular_poses import at_singular_poses
 from compoundkin.kinematics.motion import Motion
 
 # What the mechanism does to its frame, among the wrenches by pairs.
@@ -28,6 +30,19 @@ def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
     a motion without accelerations where masses move.
     """
     _hold(motion, inertia)
+    found = _wrenches(motion, inertia)
+    singular = at_singular_poses(motion, found, lambda other: _wrenches(other, inertia))
+    on_frame, told = found.pop(ON_FRAME), replace(motion, loading={"inertia": inertia})
+    forces = Forces(told, inertia, found, on_frame, singular=singular)
+    if motion.mechanism.frictions:
+        forces = with_friction(forces)
+    # quantities of forces are read from their motion, which need not find them again
+    vars(told)["forces"] = forces
+    return forces
+
+
+def _wrenches(motion: Motion, inertia: bool) -> dict[str, Wrench]:
+    """Return the wrenches in all pairs by their names, and that on the frame."""
     store: JoinedWrenches[str] = JoinedWrenches(motion.failed.shape)
     with np.errstate(all="ignore"):
         for loaded in loaded_blocks(motion):
@@ -39,13 +54,7 @@ def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
         found.update(own_wrenches(motion.structure, found, motion.failed.shape))
     own = {pair.name for pair in motion.structure.pairs}
     wrenches = {name: found[name] for name in motion.solving_order.pairs if name in found and name in own}
-    told = replace(motion, loading={"inertia": inertia})
-    forces = Forces(told, inertia, wrenches, found[ON_FRAME])
-    if motion.mechanism.frictions:
-        forces = with_friction(forces)
-    # quantities of forces are read from their motion, which need not find them again
-    vars(told)["forces"] = forces
-    return forces
+    return {**wrenches, ON_FRAME: found[ON_FRAME]}
 
 
 def _hold(motion: Motion, inertia: bool) -> None:

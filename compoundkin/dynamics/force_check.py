@@ -21,7 +21,7 @@ from compoundkin.dynamics.newton_euler import (
 )
 from compoundkin.dynamics.pair_check import strays
 from compoundkin.dynamics.power import powers_of
-from compoundkin.dynamics.virtual_work import virtual_efforts
+from compoundkin.dynamics.singular_poses import FINITE
 from compoundkin.kinematics.finding import Check, Finding, worst
 from compoundkin.kinematics.motion import Motion
 
@@ -40,7 +40,10 @@ def check_of(forces: FoundForces) -> Check:
     """
     # of forces that equilibrium leaves open those of the named assumption must balance like any others
     forces, motion = replace(forces, assumed=True), forces.motion
-    regular = motion.regular if motion.order else motion.failed == 0
+    regular = np.array(motion.regular if motion.order else motion.failed == 0)
+    for one in forces.singular:
+        # what has no limit is not there to be checked
+        regular.reshape(motion.shape)[one.pose] &= one.forces == FINITE
     closed = int(np.count_nonzero(motion.failed == 0))
     if not closed:
         return Check((), 0, 0)
@@ -60,8 +63,7 @@ def _findings(forces: FoundForces, regular: Number) -> Iterator[Finding]:
     if motion.structure.driven and motion.order:
         yield _finding(motion, "efforts by virtual work", _by_work(forces), greatest, regular)
         power = powers_of(forces)
-        parts = (*power.drives.values(), *power.loads.values(), power.gravity, power.friction, power.kinetic_rate)
-        most = _held_up([np.reshape(part, motion.failed.shape) for part in parts], regular)
+        most = greatest * _held_up(list(_speeds(motion)), regular)
         yield _finding(motion, "balance of power", {"": np.reshape(power.sum, motion.failed.shape)}, most, regular)
 
 
@@ -81,7 +83,7 @@ def _of(motion: Motion, balances: Iterable[tuple[str, Wrench]]) -> dict[str, Num
 def _by_work(forces: FoundForces) -> dict[str, Number]:
     """Return how far efforts are from those by virtual work. Torques are as forces at the mechanism's size."""
     motion, found = forces.motion, {}
-    for name, effort in virtual_efforts(motion, forces.inertia, forces.more).items():
+    for name, effort in forces.efforts_by_work.items():
         drive = DriverEffort(forces, motion.structure.driven[name])
         gap = np.reshape(drive.effort, motion.failed.shape) - effort
         found[name] = gap / (motion.size if drive.is_angle else 1.0)
@@ -98,6 +100,13 @@ def _greatest(forces: FoundForces, regular: Number) -> Number:
         parts += [wrench.force, wrench.about(motion.poses[link].z.c[0]) / motion.size]
     parts += [resistance(forces, mass).force for mass in motion.mechanism.masses.values()]
     return _held_up(parts, regular)
+
+
+def _speeds(motion: Motion) -> Iterator[Number]:
+    """Yield the speeds of all links. Those of turning are at the mechanism's size."""
+    for pose in motion.poses.values():
+        yield pose.z.derivative(1)
+        yield pose.u.derivative(1) * motion.size
 
 
 def _held_up(parts: Sequence[Number], regular: Number) -> Number:

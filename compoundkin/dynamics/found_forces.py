@@ -15,6 +15,8 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.friction_forces import FrictionForces, no_friction
 from compoundkin.dynamics.link_wrench import LinkWrench
 from compoundkin.dynamics.self_stresses import Open, SelfStress, self_stress
+from compoundkin.dynamics.singular_poses import SingularPose
+from compoundkin.dynamics.virtual_work import virtual_efforts
 from compoundkin.kinematics.inputs import Inputs, PoseGrid
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import LinkMotion, PointMotion
@@ -32,6 +34,7 @@ class FoundForces(CopiesFields):
     `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction; `rubbed` are the
     frictions of a mechanism that has some. Of a mechanism held by too much they are those with what the structure's
     `relaxation` names left free: one of many possible, which is told only where that is `assumed`.
+    At poses that are `singular` they are told where they have a limit.
     """
 
     motion: Motion
@@ -40,6 +43,7 @@ class FoundForces(CopiesFields):
     on_frame: Wrench
     more: tuple[LinkWrench, ...] = ()
     assumed: bool = False
+    singular: tuple[SingularPose, ...] = ()
     rubbed: FrictionForces | None = None
 
     @cached_property
@@ -81,6 +85,11 @@ class FoundForces(CopiesFields):
             return None
         found, all_open = self.self_stress.open(parts, place), self.friction.left_open
         return Open(found.force | all_open, found.moment | all_open, np.where(all_open, np.nan, found.line))
+
+    @cached_property
+    def efforts_by_work(self) -> Mapping[str, Number]:
+        """The effort of every driver by virtual work, (designs, poses)."""
+        return virtual_efforts(self.motion, self.inertia, self.more)
 
     @property
     def mechanism(self) -> Mechanism:

@@ -50,6 +50,9 @@ class ShakingForce:
     @property
     def whole(self) -> Wrench:
         """All that the mechanism does to the frame, about the world's origin, (designs, poses)."""
+        if self.forces.singular:
+            # where single forces have no limit their sum may have one
+            return self.forces.on_frame - _sum(self.external)
         return _sum(one for one in self.parts if one.by)
 
     @property

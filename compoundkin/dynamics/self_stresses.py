@@ -60,14 +60,17 @@ class SelfStress:
             whole = Wrench()
             for name, sign in parts:
                 whole = whole + state[name].times(sign)
-            forces.append(whole.force / greatest)
-            moments.append(whole.about(place) / (greatest * self.motion.size))
+            with np.errstate(all="ignore"):
+                forces.append(whole.force / greatest)
+                moments.append(whole.about(place) / (greatest * self.motion.size))
         size = np.sqrt(sum(np.abs(force) ** 2 for force in forces))
         squares = sum(force**2 for force in forces)
         is_line = (size > 0.0) & (np.abs(squares) > (1.0 - ALIGNED) * size**2)
         with np.errstate(all="ignore"):
             line = np.sqrt(squares) / np.where(is_line, size, np.nan)
-        return Open(size > PART, np.max(np.abs(moments), axis=0) > PART, line)
+        # so is what is not known of a pose at which the states themselves are singular
+        closed = self.motion.failed == 0
+        return Open(closed & ~(size <= PART), closed & ~(np.max(np.abs(moments), axis=0) <= PART), line)
 
     def sharing(self, pair: str) -> tuple[tuple[str, ...], tuple[Dropped, ...]]:
         """Return the other pairs in the states of a pair. With them, what was left out there."""
