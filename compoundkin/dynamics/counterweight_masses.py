@@ -130,6 +130,7 @@ def with_counterweights(motion: Motion, counterweights: Sequence[Counterweight])
             centre = complex(np.ravel(place_of(motion, known))[0])
         both = mass + one.mass
         at = (mass * centre + one.mass * one.at) / both
-        spread = mass * abs(centre - at) ** 2 + one.mass * abs(one.at - at) ** 2
+        # of one mass alone it is zero, not what rounding leaves
+        spread = mass * one.mass / both * abs(centre - one.at) ** 2
         changed.append(mass_of(one.link, both, at=at, inertia=inertia + one.inertia + spread))
     return motion.mechanism.replace(*changed)

@@ -41,30 +41,32 @@ def force_ratio(motion: Motion, output: Port, driver: str | None = None) -> Numb
     [3.572]
     """
     name = driver_named(motion, driver)
-    mechanical_advantage(motion, output, name)  # says what is wrong with an output
+    by_rates = mechanical_advantage(motion, output, name)
+    # against the output's motion; at a toggle position, where it rests, any load needs no effort
+    load = -np.where(by_rates.velocity_ratio * np.sign(motion.drives[name].rate) < 0.0, -1.0, 1.0)
     mechanism = motion.mechanism
     items = [item for item in mechanism.items if not isinstance(item, Mass | Gravity | Load | Pretension | Expectation)]
-    loaded = Mechanism(mechanism.title, *items, *_resisting(motion, output), units=mechanism.units or ANY_UNITS)
+    loaded = Mechanism(mechanism.title, *items, *_resisting(motion, output, load), units=mechanism.units or ANY_UNITS)
     forces = force_analysis(replace(motion, structure=replace(motion.structure, mechanism=loaded)), inertia=False)
     with np.errstate(divide="ignore"):
-        return 1.0 / np.asarray(forces.drives[name].effort)
+        return -load / np.asarray(forces.drives[name].effort)
 
 
-def _resisting(motion: Motion, output: Port) -> Iterator[Item]:
-    """Yield a unit load against an output, and its opposite on the link against which it acts."""
+def _resisting(motion: Motion, output: Port, load: Number) -> Iterator[Item]:
+    """Yield a load at an output, and its opposite on the link against which it acts."""
     if isinstance(output, str):
         is_link = output in motion.links and output not in motion.structure.translating_links
-        yield torque(output, -1.0) if is_link else effort(output, -1.0)
+        yield torque(output, load) if is_link else effort(output, load)
     elif isinstance(output, TorquePort):
-        yield torque(output.link, -1.0)
+        yield torque(output.link, load)
         if output.on != FRAME:
-            yield torque(output.on, 1.0, name="opposite")
+            yield torque(output.on, -load, name="opposite")
     else:
-        yield from _resisting_force(output)
+        yield from _resisting_force(output, load)
 
 
-def _resisting_force(output: ForcePort) -> Iterator[Item]:
+def _resisting_force(output: ForcePort, load: Number) -> Iterator[Item]:
     if output.on != FRAME:
         remedy = "take a pair between the two links, or the frame"
         raise InvalidInput(Problem("output.on", "a force against a moving link has no fixed point on it", remedy))
-    yield force(output.link, -np.exp(1j * np.asarray(output.angle, dtype=float))[()], at=output.point)
+    yield force(output.link, load * np.exp(1j * np.asarray(output.angle, dtype=float)), at=output.point)

@@ -54,3 +54,13 @@ def test_forces_without_friction_are_in_the_inverse_ratio_of_rates() -> None:
         for output in outputs:
             by_rates = ck.advantage.mechanical_advantage(motion, output, next(iter(motion.drives))).advantage
             np.testing.assert_allclose(ck.machine.force_ratio(motion, output), by_rates, rtol=1e-9)
+
+
+def test_friction_takes_its_share_of_the_ratio_of_forces() -> None:
+    """In the guide of a slider-crank 1 - mu tan of the rod's angle, whichever way the piston goes; weights are none."""
+    rubbed = slider_crank(ck.friction("cylinder", 0.2), ck.mass("piston", 3.0), ck.gravity(0, -9.81))
+    for speed in (2.0, -2.0):
+        motion = ck.solve(rubbed, np.deg2rad(np.arange(15.0, 360.0, 30.0)), speed=speed)
+        by_rates = ck.advantage.mechanical_advantage(motion, "cylinder", "crank").advantage
+        share = 1.0 - 0.2 * np.abs(np.tan(motion.links["rod"].angle))
+        np.testing.assert_allclose(ck.machine.force_ratio(motion, "cylinder"), by_rates * share, rtol=1e-9)
