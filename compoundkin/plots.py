@@ -1,4 +1,4 @@
-"""Plots beside `plot`: phase plots, hodographs, polar plots, coupler curves, centrodes, circuits, workspaces, timing.
+"""Plots beside `plot`: phase and polar plots, hodographs, bearing loads, coupler curves, centrodes, circuits, timing.
 
 >>> import compoundkin as ck
 >>> motion = ck.solve(ck.catalog.load_named("crank-rocker"))
@@ -8,6 +8,26 @@ True
 
 from __future__ import annotations
 
-from compoundkin.view.plot import centrodes, circuits, hodograph, paths, phase, polar, timing_chart, workspace
+from compoundkin.view.plot import (
+    bearing_loads,
+    centrodes,
+    circuits,
+    hodograph,
+    paths,
+    phase,
+    polar,
+    timing_chart,
+    workspace,
+)
 
-__all__ = ["centrodes", "circuits", "hodograph", "paths", "phase", "polar", "timing_chart", "workspace"]
+__all__ = [
+    "bearing_loads",
+    "centrodes",
+    "circuits",
+    "hodograph",
+    "paths",
+    "phase",
+    "polar",
+    "timing_chart",
+    "workspace",
+]

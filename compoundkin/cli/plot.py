@@ -58,6 +58,8 @@ Examples:
 @click.option("--phase", "kinds", flag_value="phase", multiple=True, help="The quantity against its rate.")
 @click.option("--polar", "kinds", flag_value="polar", multiple=True, help="Radii over the driver's angle.")
 @click.option("--hodograph", "kinds", flag_value="hodograph", multiple=True, help="The curve of a vector's tip.")
+@click.option("--bearing", "kinds", flag_value="bearing_loads", multiple=True,
+              help="Polar diagrams of the forces in pairs: QUANTITY is the name of a pair.")  # fmt: skip
 @click.option("--path", "kinds", flag_value="paths", multiple=True, help="The paths of points: coupler curves.")
 @click.option("--centrodes", nargs=2, metavar="LINK ON", help="Fixed and moving centrode of a link seen from another.")
 @click.option(
@@ -116,7 +118,7 @@ def _fitting(asked: Mapping[str, Any]) -> None:
     """Raise InvalidInput for options that do not go together."""
     from compoundkin.base.errors import InvalidInput, Problem
 
-    called = {"paths": "path", "timing_chart": "timing"}
+    called = {"paths": "path", "timing_chart": "timing", "bearing_loads": "bearing"}
     kinds = [f"--{called.get(kind, kind)}" for kind in asked["kinds"]] + ["--centrodes"] * bool(asked["centrodes"])
     if len(kinds) > 1:
         raise InvalidInput(Problem(" ".join(kinds), "a plot is of one kind", "leave all but one out"))

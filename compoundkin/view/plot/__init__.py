@@ -1,5 +1,6 @@
 """Plots of motions, drawn with Matplotlib, which is loaded when the first one is drawn."""
 
+from compoundkin.view.plot.bearing_loads import bearing_loads
 from compoundkin.view.plot.circuit_plot import circuits
 from compoundkin.view.plot.curve_plots import hodograph, phase, polar
 from compoundkin.view.plot.path_plots import centrodes, paths
@@ -8,4 +9,16 @@ from compoundkin.view.plot.quantity_plot import plot
 from compoundkin.view.plot.timing_chart import timing_chart
 from compoundkin.view.plot.workspace_plot import workspace
 
-__all__ = ["Plot", "centrodes", "circuits", "hodograph", "paths", "phase", "plot", "polar", "timing_chart", "workspace"]
+__all__ = [
+    "Plot",
+    "bearing_loads",
+    "centrodes",
+    "circuits",
+    "hodograph",
+    "paths",
+    "phase",
+    "plot",
+    "polar",
+    "timing_chart",
+    "workspace",
+]

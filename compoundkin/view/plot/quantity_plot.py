@@ -10,25 +10,20 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Number
 from compoundkin.dynamics.forces import Forces, moved
 from compoundkin.kinematics import Motion
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.marked_places import Events, at, events
+from compoundkin.view.plot.mean_lines import mean_lines
 from compoundkin.view.plot.plot_style import Plot
 from compoundkin.view.plot.plotted_rows import Plotted, all_of, along
 from compoundkin.view.plot.point_labels import PointLabel, number
 from compoundkin.view.plot.solved_courses import PlottedCourse, PlottedExtreme, plotted_extremes
+from compoundkin.view.plot.vertical_ranges import set_range
 
 FIRST, EACH = 2.0, 2.0
 # More curves than this in a panel, and values beside their extremes would be a crowd.
 MOST_MARKED = 4
-# Beside limit positions rates grow without limit: what exceeds the inner nine tenths of the values this many times
-# would press all else flat, and is cut off. Where a motion has no limit position it may end just before one, or have
-# true peaks, which are cut off only where nothing else could be seen.
-INNER, TALL, TALL_WITHOUT_LIMITS, MARGIN = (5.0, 95.0), 3.0, 50.0, 0.35
-# Free space above and below curves, for the values of extremes; a part of their range.
-HEADROOM = 0.16
 # How high the strip is that shows where single designs cannot be assembled.
 STRIP = 0.1
 
@@ -132,7 +127,8 @@ def _draw(
     designs = len(x.values)
     shades = plot_style.colours(len(panel.curves), designs)
     unbounded = any(curve.has_poles for curve in panel.curves)
-    window = _upwards(axes, panel, unbounded or any(any(blank.limits) for blank in happened.blanks))
+    near = unbounded or any(any(blank.limits) for blank in happened.blanks)
+    window = set_range(axes, panel.curves, panel.title.scale, near)
     found: list[PointLabel] = []
     for k, (curve, d) in enumerate((curve, d) for curve in panel.curves for d in range(designs)):
         name = curve.name.removeprefix(f"{panel.title.name}.") if designs == 1 else f"_design {d}"
@@ -141,23 +137,9 @@ def _draw(
         canvas.ring(axes, x.values[d][beside], curve.values[d][beside], shades[k])
         marked = curve.name in marks and not curve.poles[d].any()
         _mark_extremes(axes, marks[curve.name][d] if marked else (), curve, window, shades[k], found)
+    mean_lines(axes, course, panel.curves, shades)
     # the outermost ones take their places first
     labels.extend(sorted(found, key=lambda label: -label.y * label.towards.imag))
-
-
-def _upwards(axes: Any, panel: Panel, near_limits: bool) -> tuple[float, float] | None:
-    """Set the range of the vertical axis, and return it where values lie outside of it."""
-    values = np.concatenate([curve.values for curve in panel.curves])
-    still, window = canvas.steady(values, panel.title.scale), _window(panel, values, near_limits)
-    if still is not None:
-        axes.set_ylim(*still)
-    elif window is not None:
-        axes.set_ylim(*window)
-        canvas.note(axes, f"cut off: from {number(np.nanmin(values))} to {number(np.nanmax(values))}")
-        return window
-    else:
-        axes.margins(y=HEADROOM)
-    return None
 
 
 def _mark_extremes(
@@ -173,19 +155,6 @@ def _mark_extremes(
             canvas.dot(axes, one.x, one.y, colour)
             towards = 1j if one.is_highest else -1j
             labels.append(PointLabel(axes, one.x, one.y, number(one.y, curve.scale), towards, colour))
-
-
-def _window(panel: Panel, values: Number, near_limits: bool) -> tuple[float, float] | None:
-    """The values to show where rates grow without limit; None for all of them."""
-    known = values[np.isfinite(values)]
-    if not len(known) or not any(curve.is_unbounded for curve in panel.curves):
-        return None
-    low, high = np.percentile(known, INNER)
-    span = high - low
-    if span == 0.0 or np.ptp(known) <= (TALL if near_limits else TALL_WITHOUT_LIMITS) * span:
-        return None
-    edge, far = HEADROOM * span, MARGIN * span
-    return float(max(low - far, known.min() - edge)), float(min(high + far, known.max() + edge))
 
 
 def _mark_events(axes: Any, x: Plotted, happened: Events, is_input: bool) -> None:
