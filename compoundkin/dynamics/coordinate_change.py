@@ -6,7 +6,7 @@ and is regular there: the driver's coordinate is then a smooth function of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -15,16 +15,15 @@ from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.series import Number
 from compoundkin.dynamics.driver_chart import DriverChart
 from compoundkin.dynamics.driver_state import DriverState
+from compoundkin.dynamics.tabulated_chart import TabulatedChart
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
+from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import Drive, Expectation, Item, Mode
+from compoundkin.model.laws import Law
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable
-
-# A pair that moves so many times as fast as a driver (each by its scale) is better to go on with: squares of this enter
-# the equation of motion, and twice as many of its digits are lost.
-FASTER = 30.0
 
 
 class FastPair(NamedTuple):
@@ -68,7 +67,7 @@ def driven_there(chart: DriverChart, state: DriverState, fast: FastPair) -> tupl
     try:
         mechanism = _written(chart.mechanism, items)
         start = solve(mechanism, {one: [value] for one, value in values.items()}, order=1, modes=_here(state, values))
-        found = DriverChart(start, free, chart.laws)
+        found = chart_of(start, free, chart.laws)
     except CompoundkinError:
         return None
     return found, np.array([*(values[one] for one in free), *(speeds[one] for one in free)])
@@ -95,3 +94,8 @@ def as_driven(pair: Pair) -> Drivable:
     found = as_drivable(pair)
     assert found is not None
     return found
+
+
+def chart_of(start: Motion, free: tuple[str, ...], laws: Mapping[str, Law]) -> DriverChart:
+    """Return the chart around a pose. It has a table where a single driver moves everything."""
+    return DriverChart(start, free, laws) if len(free) + len(laws) > 1 else TabulatedChart(start, free, laws)

@@ -47,7 +47,7 @@ class DriverChart:
         self.order = self.start.solving_order
         self.masses, self.gravity = moving_masses(self.mechanism), free_fall(self.mechanism)
         self.loads = sorted_loads(self.start)
-        self._ends = self.start.inputs.cut(slice(0, 1), slice(0, 1)).ends
+        self.ends = self.start.inputs.cut(slice(0, 1), slice(0, 1)).ends
         self.signs = {s.index: float(self.start.sign(s.index, 0)) for s in self.order.solvers if not s.is_numbered}
         self.states, self.near, self.turned = {}, {}, {}
         self.driven = {own.pair.name: (name, own) for name, own in self.start.structure.driven.items()}
@@ -84,6 +84,10 @@ class DriverChart:
     def rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return what a state grows by."""
         return self.state(time, values, speeds).rates
+
+    def is_regular(self, values: Number) -> bool:
+        """Tell whether it is known that no pair moves much faster than a driver."""
+        return False
 
     def accept(self, time: float, values: Number, speeds: Number) -> None:
         """Follow the configuration to a state that is reached."""
@@ -124,7 +128,7 @@ class DriverChart:
         table = np.vstack([np.eye(count), speeds])[:, :, None]
         drives = {name: (values[k : k + 1, None], table[:, k]) for k, name in enumerate(self.names)}
         part = self.start.inputs.driven(drives)
-        block = self.order.start(self._ends, part.series(2), 2, (count + 1, 1))
+        block = self.order.start(self.ends, part.series(2), 2, (count + 1, 1))
         return run(self.order, block, _Held(self, values))
 
 

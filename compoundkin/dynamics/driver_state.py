@@ -31,7 +31,7 @@ class StateChart(Protocol):
     loads: tuple[tuple[Load, ...], tuple[Load, ...]]  # those that have a potential, and the others
 
     def turns_of(self, pair: str, angle: float, values: Number) -> float:
-        """Return an angle of a pair with its full turns, at values of the drivers."""
+        """Return an angle of a pair with its turns. It is at values of the drivers."""
 
 
 class Rates(NamedTuple):

@@ -11,6 +11,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
+from compoundkin.dynamics.coordinate_change import chart_of
 from compoundkin.dynamics.driver_chart import DriverChart
 from compoundkin.dynamics.integration import SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulated_energy import simulated_energy
@@ -32,7 +33,7 @@ def simulate(
     until: float,
     prescribed: Mapping[str, Any] | None = None,
     times: Any = None,
-    tolerance: float = 1e-10,
+    tolerance: float = 1e-11,
     modes: Mapping[str, int] | str | Configuration | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Simulation:
@@ -61,7 +62,7 @@ def simulate(
     """
     _hold(mechanism, until, tolerance)
     begun = simulation_start(mechanism, start, prescribed or {}, modes)
-    chart = DriverChart(begun.motion, tuple(begun.speeds), begun.laws)
+    chart = chart_of(begun.motion, tuple(begun.speeds), begun.laws)
     state = np.array([*(begun.values[name] for name in chart.free), *begun.speeds.values(), 0.0])
     course = SimulatedCourse(float(until), float(tolerance))
     with np.errstate(all="ignore"):

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.dynamics.coordinate_change import FASTER, driven_there, fastest_pair
+from compoundkin.dynamics.coordinate_change import driven_there, fastest_pair
 from compoundkin.dynamics.driver_chart import DriverChart
 from compoundkin.dynamics.simulation_events import SimulationEvent
+from compoundkin.dynamics.tabulated_chart import FASTER
 
 # No step takes a driver farther than this (radians, or parts of the size): configurations are followed, angles counted.
 FARTHEST = 1.0
@@ -105,6 +106,8 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
 def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[DriverChart, Number] | None:
     """Return a chart and its state with which to go on. None where this one is good, or where nothing is better."""
     n = len(chart.free)
+    if chart.is_regular(solver.y[:n]):
+        return None
     here = chart.state(solver.t, solver.y[:n], solver.y[n : 2 * n])
     fast = fastest_pair(chart, here)
     if fast is None or fast.ratio < FASTER:

@@ -15,6 +15,7 @@ from compoundkin.dynamics.loaded_block import LoadedBlock
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import Load
+from compoundkin.model.pairs import Pair
 
 ONLY = slice(0, 1)
 
@@ -77,12 +78,11 @@ class LoadedState(LoadedBlock):
         rates = [np.ravel(c)[: self.count] for c in series.c[1:2]]
         return Series((_number(series.c[0]), *rates))
 
-    def _counted(self, name: str) -> Number:
+    def _counted(self, pair: Pair) -> Number:
         """Return an angle with its turns."""
         assert self.turns is not None
-        pair = self.motion.solving_order.pairs[name]
         found = pair.coordinate(self._ends(pair), self._poses(pair))
-        return self.turns(name, float(np.ravel(found.c[0])[0]))
+        return self.turns(pair.name, float(np.ravel(found.c[0])[0]))
 
 
 def loaded_state(

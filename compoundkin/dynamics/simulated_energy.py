@@ -59,7 +59,8 @@ def simulated_energy(motion: Motion, work: Number) -> SimulatedEnergy:
         potential -= np.ravel(dot(fall, own.centre[0]) * own.mass) * factor
     for loaded in loaded_blocks(motion):
         for load in sorted_loads(motion)[0]:
-            potential[loaded.poses] += np.ravel(load.energy(loaded))
+            energy: Number = load.energy(loaded)
+            potential[loaded.poses] += np.ravel(energy)
     return SimulatedEnergy(kinetic, potential, work)
 
 

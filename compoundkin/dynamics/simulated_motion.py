@@ -113,7 +113,7 @@ def _moved(stretch: ChartStretch) -> dict[str, Moved]:
 def in_time(chart: DriverChart, times: Number, moved: Mapping[str, Moved], first: Configuration | None) -> Motion:
     """Return a motion in time of a chart's mechanism. Its free drivers have a law that goes through what they did."""
     laws = {**chart.laws, **{name: motion_table(times, *one) for name, one in moved.items()}}
-    drives = [replace(item, values=None, law=laws[item.name]) for item in chart.mechanism.items
+    drives = [Drive(item.name, item.link, item.on, item.pair, law=laws[item.name]) for item in chart.mechanism.items
               if isinstance(item, Drive)]  # fmt: skip
     mechanism = chart.mechanism.replace(*drives, time=times)
     return solve(mechanism, time=times, order=ORDER, modes=first)

@@ -10,6 +10,7 @@ import compoundkin as ck
 from tests.dynamics.cases import SI
 from tests.support import reference
 
+SQUEEZER = reference("andrews_squeezer", "forces")
 ENTRY = reference("forward_slider_crank_four_bar_five_bar", "forces")
 
 
@@ -75,3 +76,32 @@ def five_bar() -> ck.Mechanism:
         ck.gravity(*own["gravity"]),
         units=SI,
     )  # fmt: skip
+
+
+def squeezer(torque: bool = True) -> ck.Mechanism:
+    """Andrews' squeezer with its masses and its spring. The torque may be left out."""
+    own = SQUEEZER["dimensions"]
+    places = {
+        "K1": own["ra"],
+        "K2": own["d"] - own["da"],
+        # the distance from B alone matters
+        "K3": 1j * (own["ss"] - abs(complex(own["sa"], own["sb"]))),
+        "K4": 1j * own["ea"],
+        "K5": complex(own["ta"], own["tb"]),
+        "K6": own["zf"] - own["fa"],
+        "K7": complex(own["ua"], -own["ub"]),
+    }
+    masses = [
+        ck.mass(link, own[f"m{k}"], at=at, inertia=own[f"i{k}"]) for k, (link, at) in enumerate(places.items(), 1)
+    ]
+    spring = ck.spring("K3", "D", to="frame", at="C", stiffness=own["c0"], free_length=own["l0"])
+    words = [*masses, spring, *([ck.torque("K1", own["mom"])] if torque else [])]
+    return ck.catalog.load_named("andrews-squeezer").replace(*words, units=SI)
+
+
+def squeezer_angles(motion: Any, k: int = 0) -> list[np.ndarray]:
+    """Return the test set's seven coordinates, or their rates."""
+    word = ("angle", "angular_velocity", "angular_acceleration")[k]
+    angle = {link: getattr(motion.links[link], word) for link in motion.mechanism.links}
+    beta, gamma, delta, epsilon = (angle[link] for link in ("K1", "K3", "K5", "K7"))
+    return [beta, angle["K2"] - beta, gamma, angle["K4"] - delta, delta, angle["K6"] - epsilon, epsilon]

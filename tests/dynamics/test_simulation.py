@@ -8,7 +8,15 @@ import pytest
 import compoundkin as ck
 from compoundkin.errors import InvalidInput, UnknownName
 from tests.dynamics.cases import SI
-from tests.dynamics.moving_cases import ENTRY, five_bar, four_bar, slider_crank
+from tests.dynamics.moving_cases import (
+    ENTRY,
+    SQUEEZER,
+    five_bar,
+    four_bar,
+    slider_crank,
+    squeezer,
+    squeezer_angles,
+)
 
 # The reference is good to about this: quadrature at 30 digits, integration to 1e-10.
 TOLERANCE = 1e-9
@@ -105,6 +113,29 @@ def test_one_driver_prescribed_and_one_free() -> None:
     np.testing.assert_allclose(found.motion.drives["bar"].value, known.y[0], atol=1e-8)
     assert found.energy.worst < 1e-8
     assert np.max(np.abs(found.forces.drives["bar"].effort)) < 1e-6
+
+
+def test_andrews_squeezer() -> None:
+    """The published state after 0.03 s: angles, speeds, accelerations and the forces at P; the energy adds up."""
+    first, last, allowed = (SQUEEZER["expected"][key] for key in ("t=0", "t=0.03", "tolerance"))
+    found = ck.simulate(squeezer(), start=first["beta"], until=0.03, tolerance=1e-12)
+    angles = [one[-1] for one in squeezer_angles(found.motion)]
+    expected = np.array(last["q"])
+    np.testing.assert_allclose(np.exp(1j * np.array(angles)), np.exp(1j * expected), atol=allowed["angles"])
+    assert found.motion.drives["K1"].value[-1] == pytest.approx(expected[0], abs=allowed["angles"])
+    assert found.motion.drives["K1"].value[-1] == pytest.approx(
+        SQUEEZER["expected"]["t=0.03 computed"]["beta"], abs=1e-10
+    )
+    rates, second = ([one[-1] for one in squeezer_angles(found.motion, k)] for k in (1, 2))
+    np.testing.assert_allclose(rates, last["qd"], rtol=allowed["speeds_relative"])
+    np.testing.assert_allclose(second, last["qdd"], rtol=allowed["accelerations_relative"])
+    pin = found.forces.pins["P"]
+    told = [
+        part for link in ("K3", "K4", "K6") for force in (pin.on(link).force[-1],) for part in (force.real, force.imag)
+    ]
+    np.testing.assert_allclose(told, last["multipliers"], rtol=allowed["multipliers_relative"])
+    assert found.energy.worst < 1e-9
+    np.testing.assert_allclose(squeezer_angles(found.motion, 2)[0][0], first["second_derivatives"][0], rtol=1e-9)
 
 
 @pytest.mark.parametrize(
