@@ -84,7 +84,7 @@ class LinkForces(Sequence[LinkWrench]):
 
 def link_forces(forces: FoundForces, link: str) -> LinkForces:
     """Return all that acts on a link."""
-    return LinkForces(forces, link, (*_of_pairs(forces, link), *_known(forces, link)))
+    return LinkForces(forces, link, (*_of_pairs(forces, link), *known_on(forces, link)))
 
 
 def _of_pairs(forces: FoundForces, link: str) -> Iterator[LinkWrench]:
@@ -106,7 +106,7 @@ def _of_pairs(forces: FoundForces, link: str) -> Iterator[LinkWrench]:
     yield from driven
 
 
-def _known(forces: FoundForces, link: str) -> Iterator[LinkWrench]:
+def known_on(forces: FoundForces, link: str) -> Iterator[LinkWrench]:
     """Yield loads, weight, inertia, then what else was found to act."""
     motion = forces.motion
     mass = motion.mechanism.masses.get(link)

@@ -14,6 +14,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.force_parts import ForceParts
 from compoundkin.dynamics.found_forces import FoundForces
+from compoundkin.dynamics.lift_off import LiftOff, lift_off
 from compoundkin.dynamics.link_wrench import PAIR, LinkWrench
 from compoundkin.kinematics.results import told
 from compoundkin.model.pairs import Pair
@@ -122,6 +123,11 @@ class PairForce(ForceParts):
     def poses(self) -> tuple[Pose, ...]:
         """The poses of its members."""
         return tuple(self.forces.motion.poses[name] for name in self.pair.members)
+
+    @property
+    def lift_off(self) -> LiftOff:
+        """Where a contact lets go, from which speed on, which preload keeps it. Raises UnknownName for another pair."""
+        return lift_off(self.forces, self.name)
 
     @property
     def is_angle(self) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from compoundkin.base.errors import Problem, UnknownName
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.found_forces import FoundForces
+from compoundkin.dynamics.link_forces import known_on
 from compoundkin.dynamics.link_wrench import PAIR, LinkWrench, place_in_world
 from compoundkin.dynamics.pair_forces import PairForce
 from compoundkin.kinematics.results import told
@@ -49,6 +50,10 @@ class PinForces:
             if link in pair.members[:2]:
                 whole = whole + PairForce(self.forces, pair).on(link).acting.whole
                 parts.append((pair.name, 1.0 if link == pair.members[1] else -1.0))
+        loads = self.forces.mechanism.loads
+        for one in known_on(self.forces, link):
+            if one.name in loads and loads[one.name].pin == self.letter:
+                whole = whole + one.whole
         place = place_in_world(self.forces.motion, self.links[0], self.letter)
         left = self.forces.left_open(parts, place)
         return LinkWrench(self.forces.motion, PAIR, self.letter, link, self.letter, self.letter, whole, place, left)

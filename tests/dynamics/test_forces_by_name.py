@@ -69,6 +69,19 @@ def test_a_pin_of_three_links() -> None:
         pin.on("crank")
 
 
+def test_a_load_on_a_pin_is_passed_on_to_its_links() -> None:
+    """The pin's forces on its links add up to the load, and do not depend on which of them carries it."""
+    case, load = cases.toggle_press(), 3000.0 - 2000.0j
+    on_pin = ck.force_analysis(ck.solve(case.mechanism.replace(ck.force("B", load)), case.values)).pins["B"]
+    assert np.allclose(sum(on_pin.on(link).force for link in on_pin.links), load)
+    for link in on_pin.links:
+        at = case.mechanism.replace(ck.force(link, load, at="B"))
+        other = ck.force_analysis(ck.solve(at, case.values)).pins["B"]
+        for one in on_pin.links:
+            carried = load if one == link else 0.0
+            assert np.allclose(other.on(one).force + carried, on_pin.on(one).force, rtol=0, atol=1e-8)
+
+
 def test_shaking_force_is_that_of_the_masses() -> None:
     """Sum of weights and loads less that of masses times accelerations; about any point."""
     case = cases.six_bar("dynamic", True)

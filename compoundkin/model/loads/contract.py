@@ -129,6 +129,11 @@ class Load(PrintsShort, ABC):
         """Whether it asks for velocities."""
         return False
 
+    @property
+    def pin(self) -> str:
+        """The letter of the pin that it acts on itself. It is empty where it acts on a link."""
+        return ""
+
     def attack(self, link: str) -> str | Number | None:
         """Return the point of a link at which it acts. It is a letter or a place in the link, None for a couple."""
         return None

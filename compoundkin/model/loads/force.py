@@ -74,6 +74,11 @@ class Force(Load):
             what = f"there is no link {self.fixed_in!r}"
             yield Problem(f"{where}.fixed_in", what, nearest(self.fixed_in, list(written.letters)))
 
+    @property
+    def pin(self) -> str:
+        """The letter of the pin that it acts on itself."""
+        return self.on_pin
+
     def attack(self, link: str) -> str | Number:
         """Return its point."""
         return self.at
