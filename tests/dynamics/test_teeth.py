@@ -154,6 +154,20 @@ def test_pretension_of_several_designs() -> None:
     assert np.allclose(forces.pairs["belt"].force.real[:, 0], -cosine * np.array([600.0, 800.0, 1000.0]))
 
 
+def test_pretension_presses_bearings_that_rub() -> None:
+    """Both bearings carry twice the pretension by the strands' angle, whatever the belt transmits."""
+    plan = pulleys(-60.0, 300.0)
+    rough = (ck.friction(name, 0.1, radius=0.02) for name in ("M", "D"))
+    plan = ck.Mechanism(plan.title, *plan.items, *rough, units=SI)
+    forces = ck.force_analysis(ck.solve(plan, speed=3.0))
+    pressed = forces.pairs["M"].on("motor").force[0], forces.pairs["D"].on("drum").force[0]
+    moments = [0.1 * 0.02 * abs(force) for force in pressed]
+    difference = 200.0 + moments[1] / 0.3
+    assert abs(pressed[1]) == pytest.approx(abs(complex(600.0 * np.sqrt(0.96), 0.2 * difference)), rel=1e-9)
+    # the belt turns both alike, the drum a third as fast: so does its friction count at the motor
+    assert forces.drives["motor"].effort[0] == pytest.approx(20.0 + moments[0] + moments[1] / 3.0, rel=1e-9)
+
+
 def follower(own_roller: bool, inertia: float = 0.0) -> ck.Mechanism:
     """The disc cam of the reference, its roller a point of the follower or a link of its own."""
     own = reference("disc_cam_contact_force", "forces")["dimensions"]

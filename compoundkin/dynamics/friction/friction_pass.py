@@ -18,7 +18,7 @@ from compoundkin.dynamics.friction.press_influence import PressInfluence
 from compoundkin.dynamics.friction.rubs import Rub, flat, senses
 from compoundkin.dynamics.loaded_block import LoadedBlock
 from compoundkin.dynamics.redundant_reactions import own_wrenches
-from compoundkin.dynamics.reverse_pass import Reactions, reverse_pass
+from compoundkin.dynamics.reverse_pass import Reactions, found_reactions, reverse_pass
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class RubbedBlock:
         for k, (rub, unit) in enumerate(zip(self.rubs, self.units, strict=True)):
             for link, wrench in rub.on_links(unit.times(sizes[k].reshape(self.at.block.shape))).items():
                 loads[link] = loads.get(link, Wrench()) + wrench
-        return reverse_pass(self.at.motion.solving_order, self.at.block, loads)
+        return found_reactions(self.at, loads)
 
     def effort(self, driver: str, sizes: Number) -> Number:
         """Return a driver's effort (poses) under frictions of these sizes."""
@@ -71,9 +71,12 @@ class RubbedBlock:
 
 
 def rubbed_block(at: LoadedBlock, rubs: tuple[Rub, ...], known: Mapping[str, Wrench]) -> RubbedBlock:
-    """Return a block with what each friction does alone."""
+    """Return a block with what each friction does alone.
+
+    What parts gears and stretches belts presses pairs as it does without friction; its change is of second order.
+    """
     order, block = at.motion.solving_order, at.block
-    dry = reverse_pass(order, block, known)
+    dry = found_reactions(at, known)
     units = tuple(rub.unit(at) for rub in rubs)
     alone = tuple(reverse_pass(order, block, rub.on_links(unit)) for rub, unit in zip(rubs, units, strict=True))
     return RubbedBlock(at, rubs, known, units, dry, alone, _influence(at, rubs, dry, alone))
