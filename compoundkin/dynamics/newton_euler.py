@@ -98,9 +98,12 @@ def frame_balance(forces: FoundForces) -> Wrench:
 
 
 def of_frame(forces: FoundForces) -> Wrench:
-    """Return what pairs and loads do to the frame. It is as they tell."""
+    """Return what pairs, frictions and loads do to the frame. It is as they tell."""
     found = applied_wrenches(forces).get(FRAME, Wrench())
     for name in forces.wrenches:
         if FRAME in forces.motion.solving_order.pairs[name].members[:2]:
             found = found + reported(forces, name, FRAME)
+    for one in forces.more:
+        if one.on == FRAME:
+            found = found + one.whole
     return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from scipy.optimize import root
 from scipy.optimize._numdiff import approx_derivative
 
 import compoundkin as ck
+from compoundkin.dynamics.friction.coulomb_equations import NONE, ONE, SEVERAL, frictions
+from compoundkin.dynamics.friction.press_influence import PressInfluence
 from tests.support import drawn_values, random_sketch, reference, well_conditioned
 
 SI = {"length": "m", "mass": "kg", "force": "N"}
@@ -59,6 +62,7 @@ def test_slider_crank_of_the_reference() -> None:
     agrees(np.abs(forces.pairs["guide"].friction), 0.1 * np.abs(guide.force.imag), 2000.0)
     # the same loads with the crank turned back are the other row of each angle
     agrees(forces.drives["crank"].backward[::2], -forces.drives["crank"].effort[1::2], 100.0)
+    assert ck.verify(forces).passed
     for link in ("crank", "rod", "piston"):
         assert np.max(np.abs(forces.on(link).force)) < 1e-11
         assert np.max(np.abs(forces.on(link).moment_about("O"))) < 1e-12
@@ -432,3 +436,34 @@ def test_multiple_pins_and_sides() -> None:
         assert np.array_equal(found.on(one).friction, -found.on(other).friction)
         assert np.abs(found.friction) == pytest.approx(0.1 * 0.02 * np.abs(found.force))
     assert np.max(np.abs(forces.power.sum)) < 1e-13 * np.max(np.abs(forces.power.drives["crank"]))
+
+
+def counted(influence: PressInfluence, signs: Any, solutions: Any) -> None:
+    """As many solutions are told as there are."""
+    expected = np.select([solutions == 0, solutions == 1], [NONE, ONE], SEVERAL)
+    assert {NONE, ONE, SEVERAL} == set(expected)
+    assert np.array_equal(frictions(influence, signs).state, expected)
+
+
+def test_how_many_solutions_a_pin_has() -> None:
+    """A pin's friction that adds b to its force a: m = |a - b m|, a quadratic equation."""
+    rng = np.random.default_rng(0)
+    a, b = rng.normal(size=(2, 2000)) + 1j * rng.normal(size=(2, 2000))
+    square, linear, constant = 1.0 - np.abs(b) ** 2, 2.0 * (np.conj(a) * b).real, -(np.abs(a) ** 2)
+    with np.errstate(invalid="ignore"):
+        root_of = np.sqrt(linear**2 - 4.0 * square * constant)
+    roots = [(-linear + sign * root_of) / (2.0 * square) for sign in (1.0, -1.0)]
+    influence = PressInfluence(a[None], b[None, None], np.array([0]))
+    counted(influence, np.ones((1, 2000)), np.sum(np.array(roots) >= 0.0, axis=0))
+
+
+def test_how_many_solutions_contacts_have() -> None:
+    """Forces in three contacts keep their signs: eight linear systems, whose solutions are right or not."""
+    rng, size = np.random.default_rng(1), 2000
+    own, by = rng.normal(size=(3, size)), rng.normal(size=(3, 3, size)) * rng.uniform(0.0, 1.2, size)
+    senses, count = rng.choice([1.0, -1.0], size=(3, size)), np.zeros(size, dtype=int)
+    for signs in product((1.0, -1.0), repeat=3):
+        matrix = np.eye(3) + by.transpose(2, 1, 0) * (senses.T * np.array(signs))[:, None]
+        forces = np.linalg.solve(matrix, own.T[..., None])[..., 0]
+        count += np.all(forces * np.array(signs) >= 0.0, axis=1)
+    counted(PressInfluence(own + 0j, by + 0j, np.arange(3)), senses, count)

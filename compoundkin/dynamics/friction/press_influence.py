@@ -39,6 +39,8 @@ class PressInfluence:
 
     def sums(self, values: Number) -> Number:
         """Return sums over the presses of each friction. The values are (..., presses, poses)."""
+        if len(self.starts) == len(self.own):
+            return values
         return np.add.reduceat(values, self.starts, axis=-2)
 
     def rounding(self, sizes: Number) -> Number:
@@ -67,13 +69,16 @@ class PressInfluence:
             sure[asked] = np.all(weights > 0.0, axis=-1)
         return sure
 
-    def worst(self, signs: Number) -> Number:
-        """Return the friction at each pose that feeds on itself most, by Perron's vector."""
+    def feeding(self, signs: Number) -> Number:
+        """Return how much the frictions feed on each other, (poses, frictions).
+
+        It is Perron's vector of the gains, with 1 for the greatest.
+        """
         gains, vector = self.gains(signs), np.ones(signs.T.shape)
         for _ in range(ROUNDS):
             vector = np.einsum("pij,pj->pi", gains, vector) + SHIFT * vector
             vector = vector / vector.max(axis=-1, keepdims=True)
-        return np.argmax(vector, axis=-1)
+        return vector
 
 
 # Powers of the gains that tell the largest entry of Perron's vector, with a shift against vectors that alternate.

@@ -132,5 +132,5 @@ def _worst(block: RubbedBlock, signs: Number, found: Frictions) -> Number:
     worst = np.zeros(len(found.state), dtype=int)
     stuck = np.flatnonzero(np.isin(found.state, (NONE, SEVERAL)))
     if len(stuck):
-        worst[stuck] = block.influence.of(stuck).worst(signs[:, stuck])
+        worst[stuck] = np.argmax(block.influence.of(stuck).feeding(signs[:, stuck]), axis=-1)
     return worst
