@@ -17,6 +17,7 @@ from compoundkin.kinematics.extremes import Measure, between, closed_cycles, giv
 from compoundkin.kinematics.extremes.inputs_between import inputs_between
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import EFFORT, POWER
+from compoundkin.model.units import Units
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,11 +38,16 @@ class DriverCourse(PrintsShort):
         return 2 if self.forces.inertia else 1
 
     @property
-    def unit(self) -> str:
-        """The unit of the effort."""
+    def units(self) -> Units:
+        """The mechanism's units."""
         units = self.motion.mechanism.units
         assert units is not None
-        return units.moment if self.motion.drives[self.driver].is_angle else units.force
+        return units
+
+    @property
+    def unit(self) -> str:
+        """The unit of the effort."""
+        return self.units.moment if self.motion.drives[self.driver].is_angle else self.units.force
 
     def effort(self, at: Motion) -> Number:
         """Return the effort at the poses, or at places between them."""
@@ -64,11 +70,12 @@ class DriverCourse(PrintsShort):
     @property
     def measures(self) -> tuple[Measure, Measure]:
         """The effort and the power as what can be searched."""
-        units, effort = self.motion.mechanism.units, f"{self.driver}.{EFFORT}"
-        assert units is not None
+        effort = f"{self.driver}.{EFFORT}"
         return (
             Measure(effort, self.unit, self.order, self.effort, scale=self._largest),
-            Measure(f"{self.driver}.{POWER}", units.power, self.order, self.power, scale=self._largest * self._pace),
+            Measure(
+                f"{self.driver}.{POWER}", self.units.power, self.order, self.power, scale=self._largest * self._pace
+            ),
         )
 
     @property

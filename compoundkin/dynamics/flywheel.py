@@ -13,7 +13,6 @@ from compoundkin.base.series import Number
 from compoundkin.dynamics.course_quadrature import integrals, smooth_pieces
 from compoundkin.dynamics.driver_course import DriverCourse, course_of
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.mass_motion import units_of_masses
 from compoundkin.dynamics.speed_fluctuation import SpeedFluctuation
 from compoundkin.kinematics.extremes import Places, between, zeros
 
@@ -73,7 +72,7 @@ def flywheel(forces: Forces, fluctuation: float, *, driver: str | None = None) -
     crossings = zeros(course.motion, course.above(mean)).crossings().at
     places, energies = _energies(course, mean, crossings)
     lent = np.array([np.ptp(np.append(energies[places.design == k], 0.0)) for k in range(course.motion.inputs.designs)])
-    inertia = lent / (fluctuation * speed**2) / units_of_masses(course.motion).inertia
+    inertia = lent / (fluctuation * speed**2) / course.units.inertia
     known = (SpeedFluctuation(course, k, mean[k], speed[k]) for k in range(len(mean)))
     both = np.array([[one.coefficient(0.0), one.coefficient(own)] for one, own in zip(known, inertia, strict=True)])
     return Flywheel(course.driver, fluctuation, speed, mean, lent, inertia, places, energies, *both.T)

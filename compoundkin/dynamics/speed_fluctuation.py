@@ -8,7 +8,6 @@ from compoundkin.base.series import Number
 from compoundkin.dynamics.course_quadrature import Pieces, integrals
 from compoundkin.dynamics.driver_course import DriverCourse
 from compoundkin.dynamics.equivalent_inertia import equivalent_inertia
-from compoundkin.dynamics.mass_motion import units_of_masses
 from compoundkin.kinematics.extremes import between
 
 # Energies are known at so many places a pose; between them parabolas find the extremes.
@@ -32,11 +31,12 @@ class SpeedFluctuation:
             effort = course.effort(between(course.motion, designs, places, course.order))
             return ((mean - effort) * course.way_by_place(designs, places))[None]
 
-        self.energy = np.cumsum(integrals(surplus, pieces)[0]) / units_of_masses(course.motion).inertia
-        at = between(course.motion, np.full(len(pieces), design), pieces.high, 2)
-        found = equivalent_inertia(at)
-        k = found.drivers.index(course.driver)
-        self.inertia = found.matrix[:, k, k]
+        self.energy = np.cumsum(integrals(surplus, pieces)[0]) / course.units.inertia
+        self.inertia = np.zeros(len(pieces))
+        if course.motion.mechanism.masses:
+            found = equivalent_inertia(between(course.motion, np.full(len(pieces), design), pieces.high, 2))
+            k = found.drivers.index(course.driver)
+            self.inertia = found.matrix[:, k, k]
         if not course.forces.inertia:  # the surplus has what the parts lend at constant speed too
             self.energy -= 0.5 * speed**2 * (self.inertia - self.inertia[-1])
 
