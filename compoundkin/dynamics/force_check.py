@@ -60,10 +60,11 @@ def _findings(forces: FoundForces, regular: Number) -> Iterator[Finding]:
     sums = ("frame", frame_balance(forces)), ("what is told of it", forces.on_frame - of_frame(forces))
     yield _finding(motion, "balance of the frame", _of(motion, sums), greatest, regular)
     yield _finding(motion, "what pairs can carry", dict(strays(forces)), greatest, regular)
-    if motion.structure.driven and motion.order:
+    if motion.structure.driven:
         yield _finding(motion, "efforts by virtual work", _by_work(forces), greatest, regular)
-        power = powers_of(forces)
-        most = greatest * _held_up(list(_speeds(motion)), regular)
+    if motion.structure.driven and motion.order:
+        power, most = powers_of(forces), greatest * _held_up(list(_speeds(motion)), regular)
+        yield _finding(motion, "work of pairs", dict(_work(forces)), most, regular)
         yield _finding(motion, "balance of power", {"": np.reshape(power.sum, motion.failed.shape)}, most, regular)
 
 
@@ -88,6 +89,16 @@ def _by_work(forces: FoundForces) -> dict[str, Number]:
         gap = np.reshape(drive.effort, motion.failed.shape) - effort
         found[name] = gap / (motion.size if drive.is_angle else 1.0)
     return found
+
+
+def _work(forces: FoundForces) -> Iterator[tuple[str, Number]]:
+    """Yield the power of every pair less that of its driver. A rack does some whose axis is not held at its pitch."""
+    motion = forces.motion
+    driven = {step.pair.name: DriverEffort(forces, step) for step in motion.structure.driven.values()}
+    for name, wrench in forces.wrenches.items():
+        first, second = (motion.poses[link] for link in motion.solving_order.pairs[name].members[:2])
+        own = driven[name].power.reshape(motion.failed.shape) if name in driven else 0.0
+        yield name, wrench.power(second) - wrench.power(first) - own
 
 
 def _greatest(forces: FoundForces, regular: Number) -> Number:

@@ -76,7 +76,7 @@ def powers_of(forces: FoundForces) -> Powers:
     motion = forces.motion
     motion.grid.require(1)
     found: dict[str, dict[str, Number]] = {"loads": {name: _zeros(motion) for name in motion.mechanism.loads}}
-    found["sums"] = {name: _zeros(motion) for name in ("gravity", "pairs", "rate", "kinetic", "potential")}
+    found["sums"] = {name: _zeros(motion) for name in ("gravity", "friction", "rate", "kinetic", "potential")}
     with np.errstate(all="ignore"):
         for at in loaded_blocks(motion):
             for name, value in _loads(at).items():
@@ -85,9 +85,8 @@ def powers_of(forces: FoundForces) -> Powers:
                 found["sums"][name][at.designs, at.poses] = value
     loads, sums = ({name: motion.grid.known(value) for name, value in part.items()} for part in found.values())
     drives = {name: DriverEffort(forces, driven).power for name, driven in motion.structure.driven.items()}
-    friction = sums["pairs"] - sum(drives.values())
     return Powers(
-        motion, drives, loads, sums["gravity"], friction, sums["rate"], sums["kinetic"], sums["potential"]
+        motion, drives, loads, sums["gravity"], sums["friction"], sums["rate"], sums["kinetic"], sums["potential"]
     )  # fmt: skip
 
 
@@ -105,8 +104,8 @@ def _loads(at: LoadedBlock) -> dict[str, Number]:
 
 
 def _sums(at: LoadedBlock, forces: FoundForces) -> dict[str, Number]:
-    """Return what is summed over masses and pairs. The power of weights, of inertia, of pairs; the energies."""
-    found: dict[str, Number] = dict.fromkeys(("gravity", "pairs", "rate", "kinetic", "potential"), 0.0)
+    """Return what is summed over masses and frictions. The power of weights, of inertia, of friction; the energies."""
+    found: dict[str, Number] = dict.fromkeys(("gravity", "friction", "rate", "kinetic", "potential"), 0.0)
     free_fall = at.motion.mechanism.gravity * at.units.metre
     for load in at.motion.mechanism.loads.values():
         energy = load.energy(at)
@@ -120,11 +119,7 @@ def _sums(at: LoadedBlock, forces: FoundForces) -> dict[str, Number]:
         if forces.inertia:
             found["rate"] -= free_link(at, mass.link, at.inertia(mass)).power(at.pose(mass.link))
     for one in forces.more:
-        found["pairs"] += cut(one.whole, at).power(at.pose(one.on))
-    for name, wrench in forces.wrenches.items():
-        part = cut(wrench, at)
-        first, second = at.pair(name)[0].members[:2]
-        found["pairs"] += part.power(at.pose(second)) - part.power(at.pose(first))
+        found["friction"] += cut(one.whole, at).power(at.pose(one.on))
     return found
 
 

@@ -59,7 +59,9 @@ def turns_of(tracker: Tracker, k: int, link: str) -> Turns:
     drawn = tracker.solving_order.structure.mechanism.drawn_poses.get(link)
     first = early[:, 0] if drawn is None else np.ravel(column(drawn).angle.c[0])
     early = _unwrapped(early, 0, first)
-    return Turns((before, early), (along, _unwrapped(late, int(np.searchsorted(along, tracker.at)), early[:, -1])))
+    # a home at the last pose may be a hair beyond it
+    start = min(int(np.searchsorted(along, tracker.at)), len(along) - 1)
+    return Turns((before, early), (along, _unwrapped(late, start, early[:, -1])))
 
 
 @dataclass(frozen=True)

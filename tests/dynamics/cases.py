@@ -276,6 +276,48 @@ def four_bar(rows: str) -> Case:
     return Case(mechanism, tuple(found), cranks(found), 0.2, {"speed": own["speed"]})
 
 
+def arm(spring: Any, *others: Any, speed: float = 0.0, acceleration: float = 0.0) -> Case:
+    """An arm with a spring from it to a point above its pivot."""
+    entry = reference("spring_balanced_arm", "forces")
+    own, rows = entry["dimensions"], entry["expected"]["rows"]
+    mechanism = ck.Mechanism(
+        "Spring-balanced arm",
+        ck.link("frame", O=(0, 0), S=own["frame_point"]),
+        ck.link("arm", O=(0, 0), A=own["A"]),
+        ck.drive("arm"),
+        ck.mass("arm", own["mass"], at=tuple(own["mass_centre"]), inertia=own["inertia"]),
+        ck.gravity(*own["gravity"]),
+        spring,
+        *others,
+        units=SI,
+    )
+    values = {"arm": ck.deg([row["arm_deg"] for row in rows])}
+    return Case(mechanism, tuple(rows), values, 1.0, {"speed": speed, "acceleration": acceleration})
+
+
+def planetary_train(row: Row) -> Case:
+    """A planet between sun and ring; the ring belongs to the frame, the arm is driven."""
+    own = reference("planetary_train_torques", "forces")["dimensions"]
+    radii, inertia = own["radii"], own["inertia"]
+    mechanism = ck.Mechanism(
+        "Planetary train",
+        ck.link("frame", O=(0, 0)),
+        ck.link("arm", O=(0, 0), P=(radii["arm"], 0)),
+        ck.link("planet", P=(0, 0), Q=(radii["planet"], 0)),
+        ck.link("sun", O=(0, 0), S=(radii["sun"], 0)),
+        ck.gear("planet", "frame", carrier="arm", radii=(radii["planet"], radii["ring"]), internal=True, name="ring"),
+        ck.gear("planet", "sun", carrier="arm", radii=(radii["planet"], radii["sun"]), name="sun gear"),
+        ck.drive("arm"),
+        ck.mass("sun", 1.0, at=(0, 0), inertia=inertia["sun"]),
+        ck.mass("planet", own["planet_mass"], at=(0, 0), inertia=inertia["planet"]),
+        ck.mass("arm", 1.0, at=(0, 0), inertia=inertia["arm about the axis"]),
+        ck.torque("sun", row["sun_torque_from_outside"]),
+        units=SI,
+    )
+    rates = {"speed": row["arm_speed"], "acceleration": row["arm_acceleration"]}
+    return Case(mechanism, (row,), {"arm": ck.deg([row["arm_deg"]])}, radii["ring"], rates)
+
+
 CASES: dict[str, Callable[[], Case]] = {
     "sixbar_example_3_4_masses dynamic": lambda: six_bar("dynamic", True),
     "sixbar_example_3_4_masses static": lambda: six_bar("static", False),
