@@ -10,6 +10,7 @@ from compoundkin.model.attributes import IMBALANCE, TIME_RATIO, course_figure, i
 from compoundkin.model.elements import Drive
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws.program_segments import LIMITS, NAMES, ProgramSegment
+from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import KINDS, WRITTEN
 from compoundkin.model.pairs.cylinder import Cylinder
@@ -34,6 +35,7 @@ FORMAT_DOC = f"The version of this file format; known: {', '.join(map(str, FORMA
 HEAD = (
     Key("title", "text", "What the mechanism is called.", required=True),
     Key("unit", "text", "The unit of every length, such as mm; it is only ever printed.", default=""),
+    Key("units", "units", "The units of length, mass and force, in place of unit, where there are masses or forces."),
     Key("source", "text", "Where the mechanism comes from: book, page, paper.", default=""),
     Key("description", "text", "What it is and what to look at.", default=""),
     Key("outputs", "names", 'The quantities a report tabulates, such as "bar.angle".', default=()),
@@ -50,6 +52,8 @@ LINK = (
 )
 
 DRAWN = Key("drawn", "drawing", "Points as drawn: one pose in global coordinates, exact or roughly.")
+
+GRAVITY = Key("gravity", "point", "The acceleration of free fall, in m/s^2 whatever the unit of length.")
 
 MODE = (
     Key("links", "names", "Links of the group whose assembly mode is chosen.", required=True),
@@ -69,6 +73,7 @@ TABLES = (
     *(TableForm(name, "array", kind.keys, f"Each is a {kind.title}.") for name, kind in WRITTEN.items()),
     TableForm(CYLINDERS, "array", Cylinder.keys, "Each is a cylinder: a barrel and a rod between two pins."),
     TableForm(DRIVES, "array", Drive.keys, "The drivers: of pairs, of points that are led, of the angles of links."),
+    *(TableForm(name, "array", kinds[0].keys, f"Each is a {kinds[0].title}.") for name, kinds in LOADS.items()),
     TableForm("modes", "array", MODE, "Assembly modes chosen by sign instead of by a drawing."),
     TableForm("expected", "array", EXPECTED, "Published numbers to hold the solution against."),
 )
@@ -103,6 +108,12 @@ def is_angle(mechanism: Mechanism, drive: Drive) -> bool | None:
         return None
     written = {pair.name: pair.free_is_angle for pair in mechanism.written_pairs}
     return written.get(choices[0], _PIN_IS_ANGLE)
+
+
+def name_is_angle(mechanism: Mechanism, name: str) -> bool | None:
+    """Return whether the coordinate of a pair, a pin or a driver is an angle. None where there is none."""
+    pair = mechanism.names.coordinate(name)
+    return None if pair is None else pair.free_is_angle
 
 
 def quantity_is_angle(quantity: object) -> bool:

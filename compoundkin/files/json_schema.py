@@ -17,7 +17,9 @@ from compoundkin.model.laws import WRITTEN as LAWS
 from compoundkin.model.laws.program_segments import ProgramSegment
 from compoundkin.model.leads import WRITTEN as PATHS
 from compoundkin.model.leads import Lead
+from compoundkin.model.loads.load_table import LoadTable
 from compoundkin.model.profiles import WRITTEN as PROFILES
+from compoundkin.model.units import KNOWN as UNITS
 from compoundkin.model.written import DRIVES
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -39,6 +41,7 @@ def schema() -> dict[str, Any]:
             **{key.name: _key(key) for key in doc.HEAD},
             **{table.name: _tables(table) for table in doc.TABLES},
             doc.DRAWN.name: _key(doc.DRAWN),
+            doc.GRAVITY.name: _key(doc.GRAVITY),
         },
         "required": [
             "format",
@@ -48,6 +51,13 @@ def schema() -> dict[str, Any]:
         "additionalProperties": False,
         "$defs": {
             **DEFINITIONS,
+            "units": {
+                "type": "object",
+                "properties": {name: {"enum": list(units)} for name, units in UNITS.items()},
+                "required": list(UNITS),
+                "additionalProperties": False,
+            },
+            "load_table": _table(LoadTable.keys),
             "law": _tagged(LAWS, "How a driven coordinate moves in time."),
             "segment": _table(ProgramSegment.keys),
             "turned": _table(SEGMENT),
@@ -66,6 +76,8 @@ def publish(path: str | os.PathLike[str]) -> None:
 
 def _tables(table: doc.TableForm) -> dict[str, Any]:
     one = _table(table.keys)
+    if len(kinds := doc.LOADS.get(table.name, ())) > 1:
+        one = {"anyOf": [_table(kind.keys) for kind in kinds]}
     if table.name == DRIVES:
         ways = [{"required": [key.name]} for key in Lead.keys if key.kind in ("law", "path")]
         one = {"anyOf": [one, {**_table(Lead.keys), "anyOf": ways}]}
@@ -168,6 +180,11 @@ DEFINITIONS: dict[str, Any] = {
     },
 }
 
+_AMOUNT = {"anyOf": [_ref("numbers"), _ref("load_table")]}
+# A table whose values are vectors.
+_VECTORS = {"type": "object", "required": ["at", "values"],
+            "properties": {"values": {"type": "array", "items": _pair_of(NUMBER, NUMBER)}}}  # fmt: skip
+
 FRAGMENTS: dict[Kind, dict[str, Any]] = {
     "name": NAME,
     "text": {"type": "string"},
@@ -175,6 +192,10 @@ FRAGMENTS: dict[Kind, dict[str, Any]] = {
     "length": _ref("numbers"),
     "angle": _ref("angle"),
     "point": _ref("point"),
+    "units": _ref("units"),
+    "spot": {"anyOf": [NAME, _ref("point")]},
+    "amount": _AMOUNT,
+    "planar": {"anyOf": [_ref("point"), _pair_of(_AMOUNT, _AMOUNT), _VECTORS]},
     "sign": {"enum": [1, -1]},
     "flag": {"type": "boolean"},
     "two": _pair_of(_ref("numbers"), _ref("numbers")),

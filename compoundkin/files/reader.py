@@ -8,6 +8,7 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.files import document as doc
+from compoundkin.files.load_tables import tables_of, written_loads
 from compoundkin.files.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
 from compoundkin.files.single_values import bad, described, single, wrong
 from compoundkin.files.tagged_tables import TAGGED
@@ -72,7 +73,7 @@ def _version(version: Any, log: Recovery) -> bool:
 
 def _parts(document: Mapping[str, Any], log: Recovery) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return what the file says on the whole, and its links, pairs, drives ... as written."""
-    parts = [*(table.name for table in doc.TABLES), doc.DRAWN.name]
+    parts = [*(table.name for table in doc.TABLES), doc.DRAWN.name, doc.GRAVITY.name]
     given = log.recognized(document, ["format", *(key.name for key in doc.HEAD), *parts], "")
     head = {key.name: given[key.name][0] for key in doc.HEAD if key.name in given}
     found = {name: given[name][0] for name in parts if name in given}
@@ -91,12 +92,12 @@ def _parts(document: Mapping[str, Any], log: Recovery) -> tuple[dict[str, Any], 
 def _items(parts: Mapping[str, Any], log: Recovery) -> Iterator[Item]:
     """Yield the words of the mechanism. What a driver's numbers mean depends on the pairs read before."""
     links = [_link(name, table, log) for name, table in parts.get("links", {}).items()]
-    pairs = [_pair(kind, *at, log) for name, kind in WRITTEN.items() for at in _array(parts, name, log)]
-    cylinders = [Cylinder(**log.table(raw, Cylinder.keys, where)) for raw, where in _array(parts, CYLINDERS, log)]
+    pairs = [_pair(kind, *at, log) for name, kind in WRITTEN.items() for at in tables_of(parts, name, log)]
+    cylinders = [Cylinder(**log.table(raw, Cylinder.keys, where)) for raw, where in tables_of(parts, CYLINDERS, log)]
     shown = {key: value for key, value in parts.items() if key == doc.DRAWN.name}
     drawn = [Drawn(points) for points in log.table(shown, (doc.DRAWN,), "").values()]
     base = _valid(links, pairs, cylinders, drawn)
-    drives = [_drive(base, *at, log) for at in _array(parts, DRIVES, log)]
+    drives = [_drive(base, *at, log) for at in tables_of(parts, DRIVES, log)]
     if any(problem.where.startswith(DRIVES) for problem in log.problems):
         log.doubts.append(r"expected\[\d+\]\.at\.")
     angles = dict(_driven(base, drives)) if base else {}
@@ -105,8 +106,9 @@ def _items(parts: Mapping[str, Any], log: Recovery) -> Iterator[Item]:
     yield from cylinders
     yield from drives
     yield from drawn
-    yield from (Mode(**log.table(raw, doc.MODE, where)) for raw, where in _array(parts, "modes", log))
-    yield from (_expected(angles, *at, log) for at in _array(parts, "expected", log))
+    yield from written_loads(parts, log, _valid(base.items if base else (), drives))
+    yield from (Mode(**log.table(raw, doc.MODE, where)) for raw, where in tables_of(parts, "modes", log))
+    yield from (_expected(angles, *at, log) for at in tables_of(parts, "expected", log))
 
 
 def _valid(*items: Iterable[Item]) -> Mechanism | None:
@@ -115,15 +117,6 @@ def _valid(*items: Iterable[Item]) -> Mechanism | None:
         return Mechanism("", *(item for some in items for item in some))
     except InvalidMechanism:
         return None
-
-
-def _array(parts: Mapping[str, Any], name: str, log: Recovery) -> list[tuple[Any, str]]:
-    """Return the tables of an array with their places. A single table is read as an array of one."""
-    raw = parts.get(name, [])
-    if not isinstance(raw, list):
-        log.report(wrong(name, raw, "an array of tables", f"write [[{name}]]"), JOINED)
-        raw = [raw] if isinstance(raw, dict) else []
-    return [(table, f"{name}[{index}]") for index, table in enumerate(raw)]
 
 
 def _link(name: str, raw: Any, log: Recovery) -> Link:

@@ -14,13 +14,15 @@ from compoundkin.base.series import Number
 from compoundkin.files.single_values import bad, wrong
 from compoundkin.files.value_readers import READERS
 from compoundkin.model.fields import Key, Kind
+from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.profiles import disc
 
 # Begins every name that stands in for a broken one: the Unicode replacement character.
 STAND_IN = "\ufffd"
 
 # Places that cannot be judged where the links of a pair, a link's letters or the drawing are not known.
-JOINED = (r"links\.[^.]+$", r"drives\[\d+\]$")
+_LOADS = rf"({'|'.join(LOADS)})\[\d+\](\.\w+)*\.(link|to|at|point|fixed_in|pair|over)$"
+JOINED = (r"links\.[^.]+$", r"drives\[\d+\]$", _LOADS)
 LETTERS = (*JOINED, r"drawn\.", r"points\.")
 DRAWING = (r"links\..+\.points\.", r"drawn\.")
 ALL = (r".*",)
@@ -43,6 +45,7 @@ class Recovery:
         self.tagged = tagged
         self.problems: list[Problem] = []
         self.doubts: list[str] = []
+        self.is_angle: Callable[[str], bool | None] = lambda name: None  # whether a coordinate is, by its name
         self._count = 0
 
     def report(self, error: InvalidMechanism, doubts: Iterable[str] = ()) -> None:
@@ -116,7 +119,8 @@ class Recovery:
             "name": name, "text": name, "names": (), "point": point, "points": {name: point}, "drawing": {},
             "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
             "two": (1.0, 1.0), "profile": PROFILE, "program": None, "place": point, "places": (), "route": (),
-            "path": None, "turned": (), "reach": None, "sweep": None,
+            "path": None, "turned": (), "reach": None, "sweep": None, "planar": 0j, "spot": 0j,
+            "units": {"length": "m", "mass": "kg", "force": "N"},
         }  # fmt: skip
         return values.get(kind, 0.0)
 

@@ -9,13 +9,16 @@ from typing import Any
 from compoundkin.base.errors import InvalidMechanism, Problem, nearest
 from compoundkin.files.document import DWELL, KIND, PROGRAM, RISING, SEGMENT
 from compoundkin.files.recovery import PROFILE, Recovery, Tagged
-from compoundkin.files.single_values import bad, described, wrong
+from compoundkin.files.single_values import bad, described, numbers, wrong
+from compoundkin.files.written_quantities import point
 from compoundkin.model import laws, leads, profiles
+from compoundkin.model.attributes import TIME
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import Law
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.laws.program_segments import ProgramSegment
 from compoundkin.model.leads import Path
+from compoundkin.model.loads.load_table import LoadTable
 from compoundkin.model.profiles import Profile
 
 
@@ -107,6 +110,38 @@ def _placed(problem: Problem, where: str) -> Problem:
     return replace(problem, where=where + dot + rest)
 
 
+def amount(log: Recovery, raw: Any, where: str, angle: bool | None, over: str = "") -> Any:
+    """Return an amount of a load: a number, an array or a table. Zero where it is broken, which is reported."""
+    if isinstance(raw, dict):
+        told = raw.get("over", over)
+        known = {TIME: False, "": angle}
+        is_angle = known[told] if told in known else log.is_angle(str(told))
+        table = made(log, LoadTable, {"over": over, **raw}, where, is_angle)
+        return 0.0 if table is None else table
+    try:
+        return numbers(raw, where)
+    except InvalidMechanism as error:
+        log.report(error)
+        return 0.0
+
+
+def planar(log: Recovery, raw: Any, where: str, angle: bool | None) -> Any:
+    """Return a vector of a load: a point, a table of points, or two amounts, x and y."""
+    if isinstance(raw, dict) and isinstance(raw.get("values"), list):
+        entries = raw["values"]
+        if not all(isinstance(entry, list) and len(entry) == 2 for entry in entries):
+            log.report(wrong(f"{where}.values", entries, "a list of vectors", "write [[x, y], [x, y]]"))
+            return 0j
+        raw = [{**raw, "values": [entry[k] for entry in entries]} for k in range(2)]
+    if isinstance(raw, list) and len(raw) == 2 and any(isinstance(one, dict) for one in raw):
+        return tuple(amount(log, one, f"{where}[{k}]", angle, TIME) for k, one in enumerate(raw))
+    try:
+        return point(raw, where)
+    except InvalidMechanism as error:
+        log.report(error)
+        return 0j
+
+
 # What is read table by table, each with its own problems.
 TAGGED: dict[Kind, Tagged] = {
     "law": law,
@@ -115,4 +150,6 @@ TAGGED: dict[Kind, Tagged] = {
     "profile": profile,
     "program": program,
     "turned": turned,
+    "planar": planar,
+    "amount": amount,
 }

@@ -56,8 +56,30 @@ def reach(value: Any, where: str, angle: bool | None = None) -> tuple[Number | s
     return low, high
 
 
+def spot(value: Any, where: str, angle: bool | None = None) -> Number | str:
+    """Read a point of a link: its letter, or a place in the link's frame.
+
+    >>> spot("A", "masses[0].at"), spot([1, 2], "masses[0].at")
+    ('A', (1+2j))
+    """
+    return name(value, where) if isinstance(value, str) else point(value, where)
+
+
+def units(value: Any, where: str, angle: bool | None = None) -> dict[str, str]:
+    """Read the names of units.
+
+    >>> units({"length": "mm", "mass": "kg", "force": "N"}, "units")["mass"]
+    'kg'
+    """
+    if not isinstance(value, dict):
+        raise wrong(where, value, "a table", 'write { length = "mm", mass = "kg", force = "N" }')
+    return {key: text(unit, f"{where}.{key}") for key, unit in value.items()}
+
+
 READERS: dict[Kind, Reader] = {
     "name": name,
+    "spot": spot,
+    "units": units,
     "text": text,
     "names": names,
     "length": numbers,

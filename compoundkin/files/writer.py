@@ -11,9 +11,10 @@ from compoundkin.base.series import Number
 from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
 from compoundkin.files.document import DWELL, KIND, PROGRAM, SEGMENT
+from compoundkin.files.load_tables import load_table
 from compoundkin.files.reader import default_name
 from compoundkin.model.attributes import ANGLE, OF_POINTS, rated
-from compoundkin.model.elements import Drive, Expectation, Lead, Link
+from compoundkin.model.elements import Drive, Expectation, Gravity, Lead, Link
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program
@@ -32,16 +33,34 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
     >>> document(Mechanism("Pin", link("frame", A=(0, 0))))["links"]
     {'frame': {'points': {'A': [0, 0]}}}
     """
-    out: dict[str, Any] = {"format": doc.FORMATS[-1], **_table(mechanism, doc.HEAD)}
+    out: dict[str, Any] = {"format": doc.FORMATS[-1], **_head(mechanism)}
     out["links"] = {name: _link(item) for name, item in mechanism.rigid_links.items()}
     for name in WRITTEN:
         out[name] = [_pair(item) for item in mechanism.items if getattr(item, "table", "") == name]
     out[CYLINDERS] = [_pair(item) for item in mechanism.cylinders.values()]
     out[DRIVES] = [_driven(mechanism, item) for item in mechanism.items if isinstance(item, Drive | Lead)]
     out[doc.DRAWN.name] = _points(mechanism.sketch)
+    for name in doc.LOADS:
+        out[name] = [_load(mechanism, item) for item in mechanism.items if getattr(item, "table", "") == name]
     out["modes"] = [_table(item, doc.MODE) for item in mechanism.modes]
     out["expected"] = [_expected(mechanism, item) for item in mechanism.expectations]
     return {key: value for key, value in out.items() if value not in ([], {})}
+
+
+def _head(mechanism: Mechanism) -> dict[str, Any]:
+    """Return what is said of the whole. Units of length, mass and force stand in the place of the one of length."""
+    said = _table(mechanism, tuple(key for key in doc.HEAD if key.name != "unit" or mechanism.units is None))
+    given = [item.vector for item in mechanism.items if isinstance(item, Gravity)]
+    return {**said, doc.GRAVITY.name: exact_numbers.point(given[0])} if given else said
+
+
+def _load(mechanism: Mechanism, item: Any) -> dict[str, Any]:
+    """Return a mass or a load; its name where it has one of its own."""
+    amounts = load_table(mechanism, item)
+    angle = any(key.kind == "coordinate" for key in item.keys) and bool(doc.name_is_angle(mechanism, item.pair))
+    out = {**_table(item, tuple(key for key in item.keys if key.name not in amounts), angle), **amounts}
+    said = [key.name for key in item.keys if key.name in out and (key.name != "name" or out["name"] != item.called)]
+    return {name: out[name] for name in said}
 
 
 def _table(item: Any, keys: tuple[Key, ...], angle: bool = False) -> dict[str, Any]:
@@ -168,6 +187,8 @@ WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "length": lambda value, _: exact_numbers.plain(value),
     "angle": lambda value, _: exact_numbers.degrees(value),
     "point": lambda value, _: exact_numbers.point(value),
+    "spot": lambda value, _: value if isinstance(value, str) else exact_numbers.point(value),
+    "units": lambda value, _: {"length": value.length, "mass": value.mass, "force": value.force},
     "whole": lambda value, _: int(value),
     "span": lambda value, _: exact_numbers.plain(value),
     "times": lambda value, _: exact_numbers.values(value, False),

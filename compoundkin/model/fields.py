@@ -31,6 +31,7 @@ from compoundkin.base.errors import Problem, nearest
 #   times    list of seconds or {from, to, step}          array
 #   segments list of tables, as ProgramSegment has keys          tuple of ProgramSegment
 #   law      table with a kind, and the keys of that law  law
+#   units    table of the units of length, mass, force   the same
 #   spot     name of a point, or a point in the link's frame   str, complex or array
 #   amount   number or nested list, {over, at, values}    float, array or LoadTable
 #   planar   the same of a vector: a point, or a list of two amounts   complex, array or tuple of two
@@ -57,7 +58,7 @@ Kind = Literal[
     "name", "text", "names", "length", "angle", "point", "sign", "flag", "two", "points", "drawing",
     "values", "rate", "at", "published", "margin",
     "whole", "span", "times", "coordinate", "segments", "law",
-    "spot", "amount", "planar",
+    "units", "spot", "amount", "planar",
     "number", "turn", "place", "places", "route", "path", "turned", "program", "profile", "reach", "sweep",
 ]  # fmt: skip
 

@@ -24,7 +24,7 @@ FORCES = {
 }
 # In watts; products of powers of ten that differ by rounding alone are one unit.
 _POWERS, _SAME = {"W": 1.0, "uW": 1e-6, "mW": 1e-3, "kW": 1e3, "MW": 1e6}, 1e-12
-_KNOWN: Mapping[str, Mapping[str, float]] = {"length": LENGTHS, "mass": MASSES, "force": FORCES}
+KNOWN: Mapping[str, Mapping[str, float]] = {"length": LENGTHS, "mass": MASSES, "force": FORCES}
 
 
 @dataclass(frozen=True)
@@ -101,9 +101,9 @@ def _problems(given: Any) -> Iterator[Problem]:
         yield Problem("units", f"{given!r} does not name units", remedy)
         return
     for key in given:
-        if key not in _KNOWN:
+        if key not in KNOWN:
             yield Problem(f"units.{key}", f"{key!r} has no unit here", "known: length, mass, force")
-    for key, known in _KNOWN.items():
+    for key, known in KNOWN.items():
         if key not in given:
             yield Problem(f"units.{key}", f"the unit of {key} is missing", f"known: {', '.join(known)}")
         elif given[key] not in known:

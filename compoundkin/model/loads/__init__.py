@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from compoundkin.model.loads.along_pair import AlongPair, Effort, effort
 from compoundkin.model.loads.contract import Load
@@ -16,6 +16,7 @@ from compoundkin.model.loads.spring import PairSpring, Spring, spring
 
 __all__ = [
     "KINDS",
+    "WRITTEN",
     "AlongPair",
     "Damper",
     "Effort",
@@ -43,5 +44,10 @@ __all__ = [
 
 # Every kind of load.
 KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper)
+# What each table of a mechanism file may hold.
+WRITTEN: dict[str, tuple[type[Any], ...]] = {
+    kind.table: tuple(other for other in (Mass, *KINDS, Friction, Pretension) if other.table == kind.table)
+    for kind in (Mass, *KINDS, Friction, Pretension)
+}
 # What is written of masses and forces.
 LoadWord: TypeAlias = Mass | Gravity | Load | Friction | Pretension

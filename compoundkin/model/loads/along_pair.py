@@ -19,7 +19,8 @@ from compoundkin.model.loads.contract import NO_NAMES, Load, LoadedPoses, Writte
 from compoundkin.model.pairs.revolute import SEPARATORS
 
 # What functions of a load along a pair may take.
-VARIABLES = ("coordinate", "rate", "time")
+COORDINATE = "coordinate"
+VARIABLES = (COORDINATE, "rate", "time")
 FORWARD, BACK = "forward", "back"
 
 
@@ -114,6 +115,7 @@ class Effort(AlongPair):
     title: ClassVar[str] = "effort"
     table: ClassVar[str] = "efforts"
     amounts: ClassVar[tuple[str, ...]] = ("amount",)
+    own_variable: ClassVar[str] = COORDINATE
 
     @property
     def needs_rates(self) -> bool:

@@ -150,7 +150,7 @@ def value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables =
         asked: list[Callable[[], Number]] = [*variables.values(), lambda: time_of(where, at)]
         return amount.value(where, tuple(variable() for variable in asked[: amount.count]))
     if isinstance(amount, LoadTable):
-        if amount.over == TIME:
+        if amount.over == TIME or not (amount.over or variables):
             return amount.value(where, time_of(where, at))
         if amount.over:
             return amount.value(where, at.coordinate(amount.over).c[0])

@@ -13,6 +13,7 @@ from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.base.wrenches import Wrench
+from compoundkin.model.attributes import TIME
 from compoundkin.model.fields import DeclaredKeys, NameWording, link_fields, name_problems, only_points, value_key
 from compoundkin.model.pairs.contract import Pair
 from compoundkin.model.units import Units
@@ -98,6 +99,7 @@ class Load(PrintsShort, ABC):
     wording: ClassVar[NameWording] = NameWording(verb="act")
     keys = DeclaredKeys()  # the keys of its table in a mechanism file, by its fields
     amounts: ClassVar[tuple[str, ...]] = ()  # the fields that hold amounts
+    own_variable: ClassVar[str] = TIME  # what their tables are over that do not say it
 
     def __post_init__(self) -> None:
         """A load that is given no name is called after what it acts on."""

@@ -39,6 +39,7 @@ class Damper(BetweenPoints):
     table: ClassVar[str] = "dampers"
     wording: ClassVar[NameWording] = NameWording(verb="pull", two_links="a damper has its ends on two links")
     amounts: ClassVar[tuple[str, ...]] = ("rate",)
+    own_variable: ClassVar[str] = "rate"
 
     @property
     def needs_rates(self) -> bool:
@@ -69,6 +70,7 @@ class PairDamper(AlongPair):
     title: ClassVar[str] = "damper"
     table: ClassVar[str] = "dampers"
     amounts: ClassVar[tuple[str, ...]] = ("rate",)
+    own_variable: ClassVar[str] = "rate"
 
     @property
     def needs_rates(self) -> bool:

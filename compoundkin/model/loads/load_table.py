@@ -39,7 +39,7 @@ class LoadTable(PrintsShort, Compared, CopiesFields):
     smooth: bool = False
 
     keys: ClassVar[tuple[Key, ...]] = (
-        Key("over", "name", 'What it is over: "time", a driver or a pair; its own coordinate where it is left out.'),
+        Key("over", "text", 'What it is over: "time", a driver or a pair; its own coordinate where it is left out.'),
         Key("at", "coordinate", "Where its entries are, increasing; degrees of an angle.", required=True),
         Key("values", "length", "The amount at each of these places.", required=True),
         Key("period", "coordinate", "After what it repeats, such as 360 of a crank."),
@@ -48,7 +48,7 @@ class LoadTable(PrintsShort, Compared, CopiesFields):
 
     def __post_init__(self) -> None:
         for name in ("at", "values"):
-            held = np.array(real_numbers(name, getattr(self, name), InvalidMechanism))
+            held = np.array(real_numbers(f"table.{name}", getattr(self, name), InvalidMechanism))
             held.setflags(write=False)
             object.__setattr__(self, name, held)
         problem = self._problem()
@@ -68,7 +68,8 @@ class LoadTable(PrintsShort, Compared, CopiesFields):
         try:
             return cls(**{"over": over, **given})
         except InvalidMechanism as error:
-            raise InvalidMechanism([Problem(f"{where}.{p.where}", p.what, p.remedy) for p in error.problems]) from None
+            placed = [Problem(where + p.where.removeprefix("table"), p.what, p.remedy) for p in error.problems]
+            raise InvalidMechanism(placed) from None
 
     @classmethod
     def parts(cls, where: str, given: Mapping[Any, Any]) -> tuple[Self, Self]:
@@ -84,17 +85,17 @@ class LoadTable(PrintsShort, Compared, CopiesFields):
     def _problem(self) -> Problem | None:
         shapes = np.shape(self.at), np.shape(self.values)
         if not isinstance(self.over, str):
-            return Problem("over", f"{self.over!r} is no name", 'write "time", a driver or a pair')
+            return Problem("table.over", f"{self.over!r} is no name", 'write "time", a driver or a pair')
         if len(shapes[0]) != 1 or shapes[0] != shapes[1]:
             return Problem(
                 "values", f"places and values have shapes {shapes[0]} and {shapes[1]}", "give as many of each"
             )
         if len(self.at) < 2 or not np.isfinite(self.at).all() or np.any(np.diff(self.at) <= 0.0):
-            return Problem("at", "they do not increase", "give two or more increasing places")
+            return Problem("table.at", "they do not increase", "give two or more increasing places")
         if not np.isfinite(self.values).all():
-            return Problem("values", "they are not finite")
+            return Problem("table.values", "they are not finite")
         if not isinstance(self.smooth, bool | np.bool_):
-            return Problem("smooth", f"{self.smooth!r} is neither True nor False")
+            return Problem("table.smooth", f"{self.smooth!r} is neither True nor False")
         return self._period_problem()
 
     def _period_problem(self) -> Problem | None:
@@ -103,15 +104,15 @@ class LoadTable(PrintsShort, Compared, CopiesFields):
         try:
             period = float(self.period)
         except (TypeError, ValueError):
-            return Problem("period", f"{self.period!r} is not a number")
+            return Problem("table.period", f"{self.period!r} is not a number")
         object.__setattr__(self, "period", period)
         span = float(self.at[-1] - self.at[0])
         if not np.isfinite(period) or period <= 0.0 or span > period * (1.0 + SLACK):
             what = f"places from {self.at[0]:g} to {self.at[-1]:g} do not fit into a period of {period:g}"
-            return Problem("period", what, "give the places of one period")
+            return Problem("table.period", what, "give the places of one period")
         if span > period * (1.0 - SLACK) and self.values[0] != self.values[-1]:
             what = f"the values {self.values[0]:g} and {self.values[-1]:g} are for one place"
-            return Problem("values", what, "give the same at both ends of a period")
+            return Problem("table.values", what, "give the same at both ends of a period")
         return None
 
     @cached_property

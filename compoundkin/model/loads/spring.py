@@ -13,7 +13,7 @@ from compoundkin.base.errors import Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME, real
-from compoundkin.model.loads.along_pair import VARIABLES, AlongPair, rate_of
+from compoundkin.model.loads.along_pair import COORDINATE, VARIABLES, AlongPair, rate_of
 from compoundkin.model.loads.amounts import Amount, LoadFunction, as_amount, needs_rates, value_of
 from compoundkin.model.loads.between_points import BetweenPoints, EndGap
 from compoundkin.model.loads.contract import LoadedPoses, WrittenNames
@@ -45,6 +45,7 @@ class Spring(BetweenPoints):
     table: ClassVar[str] = "springs"
     wording: ClassVar[NameWording] = NameWording(verb="pull", two_links="a spring has its ends on two links")
     amounts: ClassVar[tuple[str, ...]] = ("stiffness",)
+    own_variable: ClassVar[str] = "extension"
 
     @property
     def needs_rates(self) -> bool:
@@ -100,6 +101,7 @@ class PairSpring(AlongPair):
     title: ClassVar[str] = "spring"
     table: ClassVar[str] = "springs"
     amounts: ClassVar[tuple[str, ...]] = ("stiffness",)
+    own_variable: ClassVar[str] = COORDINATE
 
     @property
     def needs_rates(self) -> bool:
