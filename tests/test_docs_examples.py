@@ -22,6 +22,15 @@ def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytes
     exec("\n".join(line for line in lines if not line.startswith("compoundkin ")), {})
 
 
+def test_the_page_on_loads_prints_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (DOCS / "loads.md").read_text("utf-8")
+    exec("\n".join(re.findall(r"```python\n(.*?)```", page, re.DOTALL)), {})
+    (shown,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    printed = capsys.readouterr().out
+    assert shown in printed
+    assert "mass centre and inertia of a uniform bar A-B\n(15+0j) 30.0\n" in printed
+
+
 def test_the_page_on_machines_prints_what_it_shows() -> None:
     page = (DOCS / "machine.md").read_text("utf-8")
     lines = [line[4:] for line in page.splitlines() if line.startswith("    ")]

@@ -111,7 +111,7 @@ def is_angle(mechanism: Mechanism, drive: Drive) -> bool | None:
 
 
 def name_is_angle(mechanism: Mechanism, name: str) -> bool | None:
-    """Return whether the coordinate of a pair, a pin or a driver is an angle. None where there is none."""
+    """Return whether the coordinate that a name means is an angle. None where it means none."""
     pair = mechanism.names.coordinate(name)
     return None if pair is None else pair.free_is_angle
 

@@ -17,6 +17,7 @@ from compoundkin.model.laws import WRITTEN as LAWS
 from compoundkin.model.laws.program_segments import ProgramSegment
 from compoundkin.model.leads import WRITTEN as PATHS
 from compoundkin.model.leads import Lead
+from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.loads.load_table import LoadTable
 from compoundkin.model.profiles import WRITTEN as PROFILES
 from compoundkin.model.units import KNOWN as UNITS
@@ -43,20 +44,10 @@ def schema() -> dict[str, Any]:
             doc.DRAWN.name: _key(doc.DRAWN),
             doc.GRAVITY.name: _key(doc.GRAVITY),
         },
-        "required": [
-            "format",
-            *(key.name for key in doc.HEAD if key.required),
-            *(table.name for table in doc.TABLES if table.required),
-        ],
+        "required": ["format", *(key.name for key in doc.HEAD if key.required), "links"],
         "additionalProperties": False,
         "$defs": {
             **DEFINITIONS,
-            "units": {
-                "type": "object",
-                "properties": {name: {"enum": list(units)} for name, units in UNITS.items()},
-                "required": list(UNITS),
-                "additionalProperties": False,
-            },
             "load_table": _table(LoadTable.keys),
             "law": _tagged(LAWS, "How a driven coordinate moves in time."),
             "segment": _table(ProgramSegment.keys),
@@ -76,7 +67,7 @@ def publish(path: str | os.PathLike[str]) -> None:
 
 def _tables(table: doc.TableForm) -> dict[str, Any]:
     one = _table(table.keys)
-    if len(kinds := doc.LOADS.get(table.name, ())) > 1:
+    if len(kinds := LOADS.get(table.name, ())) > 1:
         one = {"anyOf": [_table(kind.keys) for kind in kinds]}
     if table.name == DRIVES:
         ways = [{"required": [key.name]} for key in Lead.keys if key.kind in ("law", "path")]
@@ -117,12 +108,8 @@ def _ref(name: str) -> dict[str, Any]:
 
 def _closed(**properties: Any) -> dict[str, Any]:
     """Return a table that has exactly these keys."""
-    return {
-        "type": "object",
-        "properties": properties,
-        "required": list(properties),
-        "additionalProperties": False,
-    }
+    required = list(properties)
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
 
 
 def _pair_of(first: Any, second: Any) -> dict[str, Any]:
@@ -141,6 +128,9 @@ NAME = {"type": "string", "minLength": 1}
 # Such as "0:360:5" and "60 rpm".
 RANGE = {"type": "string", "pattern": "^[^:]+:[^:]+:[^:]+$"}
 RATE = {"type": "string", "pattern": r"^\s*[-+.\dEe]+\s*(rpm|1/min|deg|deg/s|rad/s)\s*$"}
+
+# A table of a load whose values are vectors.
+_VECTORS = {"properties": {"values": {"items": _pair_of(NUMBER, NUMBER)}}, "required": ["at", "values"]}
 
 DEFINITIONS: dict[str, Any] = {
     "numbers": {
@@ -165,25 +155,20 @@ DEFINITIONS: dict[str, Any] = {
     },
     "point": {
         "description": "[x, y] or {polar = [radius, degrees]}.",
-        "anyOf": [
-            _pair_of(_ref("numbers"), _ref("numbers")),
-            _closed(polar=_pair_of(_ref("numbers"), _ref("angle"))),
-        ],
+        "anyOf": [_pair_of(*[_ref("numbers")] * 2), _closed(polar=_pair_of(_ref("numbers"), _ref("angle")))],
     },
     "single": {
         "description": "A number, or {rad = ...} for an angle.",
         "anyOf": [NUMBER, _closed(rad=NUMBER)],
     },
+    "units": _closed(**{name: {"enum": list(units)} for name, units in UNITS.items()}),
+    "amount": {"anyOf": [_ref("numbers"), _ref("load_table")]},
+    "planar": {"anyOf": [_ref("point"), _pair_of(_ref("amount"), _ref("amount")), _VECTORS]},
     "single_rate": {
         "description": "A number, {rpm = ...} or {deg = ...}.",
         "anyOf": [NUMBER, _closed(rpm=NUMBER), _closed(deg=NUMBER), RATE],
     },
 }
-
-_AMOUNT = {"anyOf": [_ref("numbers"), _ref("load_table")]}
-# A table whose values are vectors.
-_VECTORS = {"type": "object", "required": ["at", "values"],
-            "properties": {"values": {"type": "array", "items": _pair_of(NUMBER, NUMBER)}}}  # fmt: skip
 
 FRAGMENTS: dict[Kind, dict[str, Any]] = {
     "name": NAME,
@@ -194,8 +179,8 @@ FRAGMENTS: dict[Kind, dict[str, Any]] = {
     "point": _ref("point"),
     "units": _ref("units"),
     "spot": {"anyOf": [NAME, _ref("point")]},
-    "amount": _AMOUNT,
-    "planar": {"anyOf": [_ref("point"), _pair_of(_AMOUNT, _AMOUNT), _VECTORS]},
+    "amount": _ref("amount"),
+    "planar": _ref("planar"),
     "sign": {"enum": [1, -1]},
     "flag": {"type": "boolean"},
     "two": _pair_of(_ref("numbers"), _ref("numbers")),

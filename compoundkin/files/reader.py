@@ -8,7 +8,7 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.files import document as doc
-from compoundkin.files.load_tables import tables_of, written_loads
+from compoundkin.files.load_entries import tables_of, written_loads
 from compoundkin.files.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
 from compoundkin.files.single_values import bad, described, single, wrong
 from compoundkin.files.tagged_tables import TAGGED

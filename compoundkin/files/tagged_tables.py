@@ -126,7 +126,10 @@ def amount(log: Recovery, raw: Any, where: str, angle: bool | None, over: str = 
 
 
 def planar(log: Recovery, raw: Any, where: str, angle: bool | None) -> Any:
-    """Return a vector of a load: a point, a table of points, or two amounts, x and y."""
+    """Return a vector of a load.
+
+    It is a point, a table of points, or two amounts, x and y.
+    """
     if isinstance(raw, dict) and isinstance(raw.get("values"), list):
         entries = raw["values"]
         if not all(isinstance(entry, list) and len(entry) == 2 for entry in entries):

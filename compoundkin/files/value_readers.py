@@ -57,7 +57,7 @@ def reach(value: Any, where: str, angle: bool | None = None) -> tuple[Number | s
 
 
 def spot(value: Any, where: str, angle: bool | None = None) -> Number | str:
-    """Read a point of a link: its letter, or a place in the link's frame.
+    """Read a point of a link. It is a letter, or a place in the link's frame.
 
     >>> spot("A", "masses[0].at"), spot([1, 2], "masses[0].at")
     ('A', (1+2j))

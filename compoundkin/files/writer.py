@@ -11,7 +11,7 @@ from compoundkin.base.series import Number
 from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
 from compoundkin.files.document import DWELL, KIND, PROGRAM, SEGMENT
-from compoundkin.files.load_tables import load_table
+from compoundkin.files.load_entries import load_table
 from compoundkin.files.reader import default_name
 from compoundkin.model.attributes import ANGLE, OF_POINTS, rated
 from compoundkin.model.elements import Drive, Expectation, Gravity, Lead, Link
@@ -19,6 +19,7 @@ from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.laws.program_segments import ProgramSegment
+from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN
 from compoundkin.model.written import CYLINDERS, DRIVES
@@ -40,7 +41,7 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
     out[CYLINDERS] = [_pair(item) for item in mechanism.cylinders.values()]
     out[DRIVES] = [_driven(mechanism, item) for item in mechanism.items if isinstance(item, Drive | Lead)]
     out[doc.DRAWN.name] = _points(mechanism.sketch)
-    for name in doc.LOADS:
+    for name in LOADS:
         out[name] = [_load(mechanism, item) for item in mechanism.items if getattr(item, "table", "") == name]
     out["modes"] = [_table(item, doc.MODE) for item in mechanism.modes]
     out["expected"] = [_expected(mechanism, item) for item in mechanism.expectations]

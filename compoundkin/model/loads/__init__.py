@@ -45,9 +45,9 @@ __all__ = [
 # Every kind of load.
 KINDS: tuple[type[Load], ...] = (Force, Torque, Effort, Spring, PairSpring, Damper, PairDamper)
 # What each table of a mechanism file may hold.
+_TABLED: tuple[type[Any], ...] = (Mass, *KINDS, Friction, Pretension)
 WRITTEN: dict[str, tuple[type[Any], ...]] = {
-    kind.table: tuple(other for other in (Mass, *KINDS, Friction, Pretension) if other.table == kind.table)
-    for kind in (Mass, *KINDS, Friction, Pretension)
+    kind.table: tuple(other for other in _TABLED if other.table == kind.table) for kind in _TABLED
 }
 # What is written of masses and forces.
 LoadWord: TypeAlias = Mass | Gravity | Load | Friction | Pretension

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import dot
-from compoundkin.base.errors import LikelySlip, warn
+from compoundkin.base.errors import InvalidMechanism, LikelySlip, Problem, warn
 from compoundkin.base.series import Number, Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import link_key, spot_key
-from compoundkin.model.geometry import FRAME
+from compoundkin.model.geometry import FRAME, vector
 from compoundkin.model.loads.contract import Load, LoadedPoses
 
 
@@ -89,3 +89,29 @@ class BetweenPoints(Load):
 def velocity_of(series: Series) -> Number:
     """Return the velocity of a place; none of a motion without velocities."""
     return series.c[1] if len(series.c) > 1 else 0j
+
+
+def as_spot(where: str, given: Any) -> Number | str:
+    """Return a letter as it is, a place as a vector. Raises InvalidMechanism naming `where`.
+
+    >>> as_spot("springs.arm.at", "S"), as_spot("springs.arm.at", (1, 2))
+    ('S', (1+2j))
+    """
+    return given if isinstance(given, str) else vector(where, given)
+
+
+def hold_ends(where: str, pair: str, link: str, beside: Mapping[str, Any]) -> None:
+    """Raise InvalidMechanism for ends that are none, or of both sorts.
+
+    `beside` has what is said and should not be.
+
+    >>> hold_ends("springs.arm", "C", "", {"point": "A"})
+    Traceback (most recent call last):
+    compoundkin.base.errors.InvalidMechanism: springs.arm.point: it is along the pair 'C'; leave point out
+    """
+    said = [key for key, value in beside.items() if not (isinstance(value, str | int | float) and value in ("", 0))]
+    if not pair and not link:
+        raise InvalidMechanism(Problem(where, "it has no ends", 'name a link and a point, or write pair="C"'))
+    if said:
+        what = f"it is along the pair {pair!r}" if pair else "it is between points, which have no coordinate"
+        raise InvalidMechanism(Problem(f"{where}.{said[0]}", what, f"leave {', '.join(said)} out"))

@@ -15,9 +15,8 @@ from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.along_pair import AlongPair, rate_of
 from compoundkin.model.loads.amounts import Amount, as_amount, value_of
-from compoundkin.model.loads.between_points import BetweenPoints, EndGap
+from compoundkin.model.loads.between_points import BetweenPoints, EndGap, as_spot, hold_ends
 from compoundkin.model.loads.contract import LoadedPoses, WrittenNames
-from compoundkin.model.loads.load_ends import as_spot, hold_ends
 from compoundkin.model.loads.spring import is_law
 
 _RATE = "Force or torque for a unit of speed, or the force itself as a table over that."

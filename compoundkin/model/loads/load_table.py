@@ -110,7 +110,7 @@ class LoadTable(PrintsShort, Compared, CopiesFields):
         if not np.isfinite(period) or period <= 0.0 or span > period * (1.0 + SLACK):
             what = f"places from {self.at[0]:g} to {self.at[-1]:g} do not fit into a period of {period:g}"
             return Problem("table.period", what, "give the places of one period")
-        if span > period * (1.0 - SLACK) and self.values[0] != self.values[-1]:
+        if span > period * (1.0 - SLACK) and abs(self.values[0] - self.values[-1]) > SLACK * np.ptp(self.values):
             what = f"the values {self.values[0]:g} and {self.values[-1]:g} are for one place"
             return Problem("table.values", what, "give the same at both ends of a period")
         return None
@@ -119,7 +119,7 @@ class LoadTable(PrintsShort, Compared, CopiesFields):
     def _entries(self) -> tuple[Number, Number]:
         """The places and values, both ends of a period among them."""
         if self.period is None or self.at[-1] - self.at[0] > self.period * (1.0 - SLACK):
-            return self.at, self.values
+            return self.at, self.values if self.period is None else np.append(self.values[:-1], self.values[0])
         return np.append(self.at, self.at[0] + self.period), np.append(self.values, self.values[0])
 
     @cached_property

@@ -15,9 +15,8 @@ from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME, real
 from compoundkin.model.loads.along_pair import COORDINATE, VARIABLES, AlongPair, rate_of
 from compoundkin.model.loads.amounts import Amount, LoadFunction, as_amount, needs_rates, value_of
-from compoundkin.model.loads.between_points import BetweenPoints, EndGap
+from compoundkin.model.loads.between_points import BetweenPoints, EndGap, as_spot, hold_ends
 from compoundkin.model.loads.contract import LoadedPoses, WrittenNames
-from compoundkin.model.loads.load_ends import as_spot, hold_ends
 from compoundkin.model.loads.load_table import LoadTable
 
 TENSION, COMPRESSION = "tension", "compression"

@@ -15,6 +15,7 @@ from compoundkin.files.recovery import JOINED, Recovery
 from compoundkin.files.single_values import wrong
 from compoundkin.model.attributes import TIME
 from compoundkin.model.elements import Gravity, Item
+from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.loads.along_pair import COORDINATE
 from compoundkin.model.loads.amounts import LoadFunction
 from compoundkin.model.loads.gravity import warn_of_unit
@@ -33,7 +34,7 @@ def written_loads(parts: Mapping[str, Any], log: Recovery, driven: Mechanism | N
     for vector in log.table(given, (doc.GRAVITY,), "").values():
         warn_of_unit(vector)
         yield Gravity(vector)
-    for name, kinds in doc.LOADS.items():
+    for name, kinds in LOADS.items():
         for raw, where in tables_of(parts, name, log):
             yield _load(kinds, raw, where, log)
 
