@@ -26,6 +26,7 @@ VERBS = {
     "workspace": "The region that a point reaches by two or three drivers.",
     "characteristics": "Stroke, dead points, time ratio, transmission, advantage, dwells.",
     "forces": "Forces in all pairs, drivers' efforts, shaking force.",
+    "simulate": "How it moves under its masses and loads, in time.",
     "check": "Verify a motion: a table of all findings.",
     "catalog": "List, show or copy the shipped mechanisms.",
     "atlas": "All kinematic chains, trusses and Assur groups of a size.",

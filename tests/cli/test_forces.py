@@ -1,16 +1,96 @@
-"""`compoundkin forces`: what it prints, and what it says of wrong input."""
+"""`compoundkin forces`, `simulate`, and forces in other verbs: what they print and write, and wrong input."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 
-from compoundkin.cli import cli
+import compoundkin as ck
+from compoundkin.cli import cli, draw, mechanism_forces, plot, simulate, solve
+from tests.view.loaded import six_bar
+
+Run = Callable[..., Result]
 
 
-def test_what_has_no_units_is_told_how_to_state_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
     monkeypatch.chdir(tmp_path)
-    result = CliRunner().invoke(cli, ["forces", "six-bar"])
-    assert result.exit_code == 2 or "units" in str(result.exception)
+    known = {"loaded": six_bar, "pendulum": pendulum}
+    for verb in (draw, mechanism_forces, plot, simulate, solve):
+        monkeypatch.setattr(verb, "loaded", lambda name, own=verb.loaded: known[name]() if name in known else own(name))
+    return lambda *args: CliRunner().invoke(cli, args, catch_exceptions=True)
+
+
+def pendulum() -> ck.Mechanism:
+    frame, arm = ck.link("frame", A=(0, 0)), ck.link("arm", A=(0, 0), B=(0.5, 0))
+    units = {"length": "m", "mass": "kg", "force": "N"}
+    weight = ck.mass("arm", 2.0, at="B", inertia=0.0), ck.gravity(0, -9.81)
+    return ck.Mechanism("Pendulum", frame, arm, ck.drive("arm"), *weight, units=units)
+
+
+def test_forces_are_printed_and_written(run: Run, tmp_path: Path) -> None:
+    text = run("forces", "loaded", "--at", "35").stdout
+    assert text.index("Assumed:") < text.index("Masses") < text.index("Loads:") < text.index("Reactions")
+    still = json.loads(run("forces", "loaded", "--at", "35", "--statics", "--format", "json").stdout)
+    assert "statics: no inertia" in still["sections"]["forces"]["blocks"][0]["text"]
+    assert run("forces", "loaded", "--at", "0,35", "-o", "forces.md").exit_code == 0
+    assert "## Forces" in (tmp_path / "forces.md").read_text(encoding="utf-8")
+
+
+def test_quantities_of_forces_are_columns(run: Run) -> None:
+    found = run("solve", "loaded", "--at", "35", "--speed", "20", "--output", "crank.effort,A.force")
+    head, row = found.stdout.splitlines()[-2:]
+    values = {name.partition(" ")[0]: text for name, text in zip(head.split(","), row.split(","), strict=True)}
+    forces = ck.force_analysis(ck.solve(six_bar(), {"crank": ck.deg([35])}, speed=20.0))
+    assert float(values["crank.effort"]) == pytest.approx(float(forces.drives["crank"].effort[0]))
+    assert float(values["A.force.x"]) == pytest.approx(forces.pairs["A"].force[0].real)
+
+
+@pytest.mark.parametrize("option", [("--forces",), ("--free-bodies",), ("--free-body", "plate"),
+                                    ("--force-polygons",), ("--force-polygon", "bar")])  # fmt: skip
+def test_pictures_of_forces(run: Run, tmp_path: Path, option: tuple[str, ...]) -> None:
+    assert run("draw", "loaded", "--at", "35", *option, "-o", "forces.svg").exit_code == 0
+    assert "ck-reaction" in (tmp_path / "forces.svg").read_text(encoding="utf-8")
+
+
+def test_bearing_loads_are_plotted(run: Run, tmp_path: Path) -> None:
+    assert run("plot", "loaded", "D", "--bearing", "-o", "bearing.svg").exit_code == 0
+    assert (tmp_path / "bearing.svg").stat().st_size > 1000
+
+
+def test_a_pendulum_is_let_go(run: Run, tmp_path: Path) -> None:
+    # a small swing about the lowest place: its period is that of the mathematical pendulum
+    period = 2.0 * np.pi * np.sqrt(0.5 / 9.81)
+    done = run("simulate", "pendulum", "--until", str(period), "--start", "arm=-89", "--output", "arm", "-o", "arm.csv")
+    assert done.exit_code == 0, done.output
+    last = (tmp_path / "arm.csv").read_text(encoding="utf-8").splitlines()[-1]
+    assert float(last.split(",")[1]) == pytest.approx(-89.0, abs=1e-4)
+    told = run("simulate", "pendulum", "--until", "1", "--start", "arm=0", "--start", "arm.speed=60rpm").stdout
+    assert "Free under masses and loads for 1 s" in told
+    assert run("simulate", "pendulum", "--until", "0.2", "--start", "arm=0", "-o", "arm.html").exit_code == 0
+    assert "ck-reaction" in (tmp_path / "arm.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (("forces", "six-bar"), "units"),
+        (("draw", "loaded", "--free-body", "plat"), "did you mean"),
+        (("draw", "loaded", "--forces", "--ghosts", "3"), "does not go with"),
+        (("draw", "loaded", "--statics"), "give --forces too"),
+        (("plot", "loaded", "--bearing", "Z"), "there is no such pair"),
+        (("simulate", "pendulum", "--until", "1", "--start", "arm.speed=5"), "give --start arm=VALUE too"),
+        (("simulate", "pendulum", "--until", "1", "--start", "arn=5"), "did you mean"),
+        (("simulate", "pendulum", "--until", "1", "-o", "arm.xyz"), "not saved"),
+        (("simulate", "six-bar", "--until", "1"), "units"),
+    ],
+)
+def test_wrong_input(run: Run, args: tuple[str, ...], said: str) -> None:
+    result = run(*args)
+    assert result.exit_code != 0
+    assert said in result.output + str(result.exception)
