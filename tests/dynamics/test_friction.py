@@ -467,3 +467,33 @@ def test_how_many_solutions_contacts_have() -> None:
         forces = np.linalg.solve(matrix, own.T[..., None])[..., 0]
         count += np.all(forces * np.array(signs) >= 0.0, axis=1)
     counted(PressInfluence(own + 0j, by + 0j, np.arange(3)), senses, count)
+
+
+@pytest.mark.parametrize("torque", [12.0, -12.0])
+def test_gears_whose_bearings_rub(torque: float) -> None:
+    """Bearings carry F / cos(pressure angle) of the tooth force F, so that the losses part the gears as well.
+
+    On the wheel F (r2 - lever) is its torque, on the pinion F (r1 + lever) is the driver's, where it drives; the lever
+    is coefficient times radius of the bearing over the cosine. Driven by its load the wheel has the signs changed.
+    """
+    rough = (ck.friction(name, 0.1, radius=0.02) for name in ("O", "Q"))
+    train = ck.Mechanism(
+        "gears",
+        ck.link("frame", O=0, Q=0.3),
+        ck.link("pinion", O=0),
+        ck.link("wheel", Q=0),
+        ck.gear("pinion", "wheel", carrier="frame", radii=(0.1, 0.2), pressure_angle=np.deg2rad(25.0)),
+        ck.drive("pinion"),
+        ck.torque("wheel", torque),
+        *rough,
+        units=SI,
+    )
+    forces = ck.force_analysis(ck.solve(train, {"pinion": [0.0, 1.0]}))
+    lever = 0.1 * 0.02 / np.cos(np.deg2rad(25.0)) * np.sign(torque)
+    tooth = torque / (0.2 - lever)
+    assert forces.drives["pinion"].effort == pytest.approx(tooth * (0.1 + lever), rel=1e-14)
+    assert np.abs(forces.pairs["Q"].friction) == pytest.approx(0.002 * np.abs(forces.pairs["Q"].force), rel=1e-14)
+    assert ck.verify(forces).passed
+    held = ck.force_analysis(ck.solve(train, {"pinion": [0.0]}, speed=0.0)).drives["pinion"].interval
+    back = torque / (0.2 + lever) * (0.1 - lever)
+    assert held[0][0] == pytest.approx(min(back, forces.drives["pinion"].effort[0]), rel=1e-14)

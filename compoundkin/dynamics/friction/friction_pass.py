@@ -7,18 +7,22 @@ of Machines and Mechanisms, chapter on static forces; a pin's friction moment is
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.wrenches import Wrench
-from compoundkin.dynamics.friction.coulomb_equations import NONE, frictions
+from compoundkin.dynamics.friction.coulomb_equations import EXACT, NONE, Frictions, frictions
 from compoundkin.dynamics.friction.press_influence import PressInfluence
 from compoundkin.dynamics.friction.rubs import Rub, flat, senses
 from compoundkin.dynamics.loaded_block import LoadedBlock
 from compoundkin.dynamics.redundant_reactions import own_wrenches
 from compoundkin.dynamics.reverse_pass import Reactions, found_reactions, reverse_pass
+from compoundkin.model.pairs.optional_answers import as_accompanied
+
+# So often at most is what parts gears found again: each time its change is a friction's part of the one before.
+ROUNDS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +45,29 @@ class RubbedBlock:
                 loads[link] = loads.get(link, Wrench()) + wrench
         return found_reactions(self.at, loads)
 
+    def frictions(self, signs: Number) -> Frictions:
+        """Return the frictions against motion in some senses, (frictions, poses).
+
+        What parts gears presses bearings too, and goes by what they transmit: where there is such, once more until
+        nothing changes.
+        """
+        found = frictions(self.influence, signs)
+        gears = any(as_accompanied(self.at.motion.solving_order.pairs[name]) for name in self.dry.pairs)
+        for _ in range(ROUNDS if gears else 0):
+            before, found = found, frictions(self._parted(found.sizes), signs)
+            change = np.abs(found.sizes - before.sizes)
+            if not np.any(change > EXACT * np.abs(found.sizes).max(axis=0)):
+                break
+        return found
+
+    def _parted(self, sizes: Number) -> PressInfluence:
+        """Return the influence of frictions, what comes with these sizes being given."""
+        known = np.nan_to_num(sizes)
+        pairs = _of_pairs(self.at, self.with_friction(known))
+        presses = [flat(press, self.at) for rub in self.rubs for press in rub.presses(self.at, pairs[rub.name])]
+        by_frictions = self.influence.presses(known) - self.influence.own
+        return replace(self.influence, own=np.array(presses, dtype=complex) - by_frictions)
+
     def effort(self, driver: str, sizes: Number) -> Number:
         """Return a driver's effort (poses) under frictions of these sizes."""
         own, *by = (flat(self._effort(driver, found), self.at) for found in (self.dry, *self.alone))
@@ -61,20 +88,14 @@ class RubbedBlock:
         signs = senses(self.rubs, moved)
         ends = []
         for way in (-1.0, 1.0):
-            sizes = np.full(signs.shape, np.nan)
-            found = frictions(self.influence.of(which), way * signs[:, which])
-            sizes[:, which] = found.sizes
-            effort = self.effort(driver, sizes)
-            effort[which] = np.where(found.state == NONE, way * np.inf, effort[which])
-            ends.append(effort)
+            found = self.frictions(way * signs)
+            effort = np.where(found.state == NONE, way * np.inf, self.effort(driver, found.sizes))
+            ends.append(np.where(which, effort, np.nan))
         return np.minimum(*ends), np.maximum(*ends)
 
 
 def rubbed_block(at: LoadedBlock, rubs: tuple[Rub, ...], known: Mapping[str, Wrench]) -> RubbedBlock:
-    """Return a block with what each friction does alone.
-
-    What parts gears and stretches belts presses pairs as it does without friction; its change is of second order.
-    """
+    """Return a block with what each friction does alone."""
     order, block = at.motion.solving_order, at.block
     dry = found_reactions(at, known)
     units = tuple(rub.unit(at) for rub in rubs)

@@ -12,7 +12,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import WedgedPoses, warn
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.friction.coulomb_equations import NONE, SEVERAL, Frictions, frictions
+from compoundkin.dynamics.friction.coulomb_equations import NONE, SEVERAL, Frictions
 from compoundkin.dynamics.friction.friction_forces import FrictionForces
 from compoundkin.dynamics.friction.friction_pass import RubbedBlock, rubbed_block
 from compoundkin.dynamics.friction.rubs import Rub, flat, resting, rubs_of, senses
@@ -48,8 +48,8 @@ class RubbedMotion:
         for at, *units in zip(loaded_blocks(self.motion), *map(loaded_blocks, alone.values()), strict=True):
             block = rubbed_block(at, self.rubs, at.known(inertia))
             signs = senses(self.rubs, at)
-            found = frictions(block.influence, signs)
-            self._take(block, found, _worst(block, signs, found), frictions(block.influence, -signs))
+            found = block.frictions(signs)
+            self._take(block, found, _worst(block, signs, found), block.frictions(-signs))
             rests = flat(self.resting[at.designs, at.poses], at)
             for name, unit in zip(alone, units, strict=True):
                 self._hold(block, name, unit, rests)
