@@ -68,7 +68,7 @@ def at_singular_poses(motion: Motion, wrenches: Mapping[str, Wrench], found: Fou
             wrench.force[at], wrench.moment[at] = limit[:, 0] + 1j * limit[:, 1], limit[:, 2] * motion.size
     return tuple(
         _named(motion, design, pose, (FINITE, LEFT_OPEN, INFINITE)[k])
-        for design, pose, k in zip(*at, worst, strict=True)
+        for design, pose, k in zip(designs.tolist(), poses.tolist(), worst, strict=True)
     )
 
 
