@@ -54,7 +54,8 @@ class ForceBalance(PrintsShort):
             return f"Partial force balance by {counted(len(self.counterweights), 'counterweight')}."
         links = ", ".join(self.unreached)
         why = f"no way of pins alone leads from {links} to the frame"
-        return f"Full force balance by counterweights does not exist: {why}. The best there is on these links:"
+        best = "The best there is:" if self.counterweights else "No link that turns is pinned to the frame."
+        return f"Full force balance by counterweights does not exist: {why}. {best}"
 
     def _rows(self) -> tuple[str, ...]:
         about = f"({self.about.real:.6g}, {self.about.imag:.6g})"
@@ -133,9 +134,6 @@ def _moments(
         if rest <= BALANCED:
             return found
     chosen = links or conditions.pinned
-    if not chosen:
-        remedy = "name links that a way of pins joins to the frame"
-        raise InvalidInput(Problem("links", "no link that turns is pinned to the frame", remedy))
     return sizes.settled(ShakingSamples(conditions.ways), chosen)[0]
 
 

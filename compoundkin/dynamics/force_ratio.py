@@ -49,7 +49,8 @@ def force_ratio(motion: Motion, output: Port, driver: str | None = None) -> Numb
     loaded = Mechanism(mechanism.title, *items, *_resisting(motion, output, load), units=mechanism.units or ANY_UNITS)
     forces = force_analysis(replace(motion, structure=replace(motion.structure, mechanism=loaded)), inertia=False)
     with np.errstate(divide="ignore"):
-        return -load / np.asarray(forces.drives[name].effort)
+        found = -load / np.asarray(forces.drives[name].effort)
+    return np.where(by_rates.output_rests, np.inf, found)
 
 
 def _resisting(motion: Motion, output: Port, load: Number) -> Iterator[Item]:

@@ -35,8 +35,8 @@ class ShakingSamples:
         for name in links:
             force = force - added[name] * np.ravel(poses[name].derivative(self.ways.reached[name].pivot, 2))
         root = np.sqrt(self.weights)
-        columns = np.array(turned).reshape(len(links), -1).T * root[:, None]
-        found = np.linalg.lstsq(columns, force * root, rcond=None)[0]
+        columns = np.array(turned).reshape(len(links), len(self.weights)).T * root[:, None]
+        found = np.linalg.lstsq(columns, force * root, rcond=None)[0] if len(links) else np.empty(0, dtype=complex)
         rest = np.linalg.norm(columns @ found - force * root) / np.linalg.norm(self.force * root)
         return found, float(rest)
 

@@ -73,7 +73,7 @@ class PinWays(PrintsShort):
         """The rows that further pins keep constant, (loops, classes)."""
         rows = [self.row(a, p) - self.row(b, q) for a, p, b, q in _pins(self.motion)
                 if a in self.origins and b in self.origins]  # fmt: skip
-        return np.array(rows, dtype=complex).reshape(-1, self.count)
+        return np.array(rows, dtype=complex).reshape(len(rows), self.count)
 
     @cached_property
     def vectors(self) -> Number:
