@@ -497,3 +497,24 @@ def test_gears_whose_bearings_rub(torque: float) -> None:
     held = ck.force_analysis(ck.solve(train, {"pinion": [0.0]}, speed=0.0)).drives["pinion"].interval
     back = torque / (0.2 + lever) * (0.1 - lever)
     assert held[0][0] == pytest.approx(min(back, forces.drives["pinion"].effort[0]), rel=1e-14)
+
+
+def test_efficiency_of_a_whole_motion() -> None:
+    """Work out over work in, by time or by the driver, from rest, and backward; there and back of one motion alike."""
+    machine = slider_crank(ck.force("piston", (2000.0, 0.0), at="B"), sizes=CASE["dimensions"])
+    angles, times = np.linspace(0.3, 2.9, 2001), np.linspace(0.0, 1.0, 2001)
+
+    def over(values: Any, **rates: Any) -> Any:
+        return ck.force_analysis(ck.solve(machine, {"crank": values}, **rates)).efficiency.over_motion
+
+    steady = over(angles)
+    # the load takes its force times the way; the driver gives its effort times the angle
+    forces = ck.force_analysis(ck.solve(machine, {"crank": angles}))
+    way = forces.motion.points["B"].x
+    assert steady == pytest.approx(
+        2000.0 * (way[0] - way[-1]) / np.trapezoid(forces.drives["crank"].effort, angles), rel=1e-6
+    )
+    assert over(0.3 + 2.6 * times**2, speed=5.2 * times, acceleration=5.2) == pytest.approx(steady, rel=1e-4)
+    backward = over(angles[::-1], speed=-1.0)
+    assert over(angles, speed=np.array([[1.0], [-1.0]])) == pytest.approx([steady, backward], rel=1e-12)
+    assert 0.8 < backward < steady

@@ -113,7 +113,14 @@ class Efficiency(PrintsShort):
             return np.trapezoid(power, np.broadcast_to(motion.time, motion.shape).reshape(power.shape), axis=-1)
         name = next(iter(motion.drives))
         value, rate = (self._flat(motion.drives[name].derivative(k)) for k in (0, 1))
-        return np.trapezoid(power / rate, value, axis=-1)
+        with np.errstate(all="ignore"):
+            slope = power / np.abs(rate)
+        # where the driver rests for a moment, as at its start, the work of a step is as beside it
+        for shift in (-1, 1):
+            slope = np.where(rate == 0.0, np.roll(slope, shift, axis=-1), slope)
+        # time goes on whichever way the poses are listed
+        work: Number = np.sum(0.5 * (slope[..., 1:] + slope[..., :-1]) * np.abs(np.diff(value, axis=-1)), axis=-1)
+        return work
 
     def _flat(self, value: Number) -> Number:
         return np.reshape(value, self.forces.motion.failed.shape)
