@@ -146,6 +146,7 @@ class Forces(FoundForces):
     def __repr__(self) -> str:
         kind = "with" if self.inertia else "without"
         missing = f", {count} not assembled" if (count := int((self.motion.failed != 0).sum())) else ""
+        missing += f", {len(self.singular)} singular" if self.singular else ""
         if self.assumed:
             kind = f"assuming freed {', '.join(map(str, self.relaxed))}, {kind}"
         told = f"{kind} inertia: {len(self.wrenches)} pairs at {self.shape} poses{missing}"

@@ -22,7 +22,7 @@ from compoundkin.kinematics.motion import Motion
 PLACES, STEP = 8, 0.01
 # All of them are nearer than the next pose.
 NEAR = 0.9
-# Limits from both sides, or by fewer places, are one where they agree to this part of the greatest force there.
+# Limits from both sides, or by one place less, are one where they agree to this part of the greatest force there.
 AGREE = 1e-6
 FINITE, LEFT_OPEN, INFINITE = "finite", "undetermined", "infinite"
 CHANGE_POINT, LIMIT_POSITION = "change point", "limit position"
@@ -140,9 +140,9 @@ class _Beside:
         values = np.where(there[..., None], self.values[name], 0.0)
         bound = AGREE * np.max(np.abs(values), axis=(1, 2, 3))
         poles = np.max(np.abs(_extrapolated(values * self.powers[:, None])), axis=(1, 2))
-        limits, fewer = _extrapolated(values), _extrapolated(values[:, :, 1::2])
+        limits, fewer = _extrapolated(values), _extrapolated(values[:, :, :-1])
         both = self.there.all(axis=1)
-        # from one side alone, by half of the places
+        # from one side alone, by one place less
         apart = np.where(there & ~both[:, None, None], limits - fewer, 0.0)
         apart[both] = (limits[:, :1] - limits[:, 1:])[both]
         is_open = (np.max(np.abs(apart), axis=(1, 2)) > bound) | ~self.there.any(axis=1)
