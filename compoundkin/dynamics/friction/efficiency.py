@@ -110,7 +110,7 @@ class Efficiency(PrintsShort):
         """Return the work of a power (designs, poses) over the motion."""
         motion = self.forces.motion
         if motion.time is not None:
-            return np.trapezoid(power, np.broadcast_to(motion.time, motion.shape).reshape(power.shape), axis=-1)
+            return _sum_over(power, self._flat(np.broadcast_to(motion.time, motion.shape)))
         name = next(iter(motion.drives))
         value, rate = (self._flat(motion.drives[name].derivative(k)) for k in (0, 1))
         with np.errstate(all="ignore"):
@@ -119,14 +119,19 @@ class Efficiency(PrintsShort):
         for shift in (-1, 1):
             slope = np.where(rate == 0.0, np.roll(slope, shift, axis=-1), slope)
         # time goes on whichever way the poses are listed
-        work: Number = np.sum(0.5 * (slope[..., 1:] + slope[..., :-1]) * np.abs(np.diff(value, axis=-1)), axis=-1)
-        return work
+        return _sum_over(slope, value)
 
     def _flat(self, value: Number) -> Number:
         return np.reshape(value, self.forces.motion.failed.shape)
 
     def _shaped(self, value: Number) -> Number:
         return self.forces.motion.grid.known(value)
+
+
+def _sum_over(values: Number, places: Number) -> Number:
+    """Return the integral over the last axis by the trapezoidal rule, steps counting by their sizes."""
+    middles = 0.5 * (values[..., 1:] + values[..., :-1])
+    return np.sum(middles * np.abs(np.diff(places, axis=-1)), axis=-1)
 
 
 def _ratio(powers: Iterable[Number], least: float) -> Number:
