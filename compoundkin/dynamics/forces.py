@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from compoundkin.base.display import Shows
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.dynamics.driver_efforts import DriverEffort
 from compoundkin.dynamics.found_forces import FoundForces
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Forces(FoundForces):
+class Forces(Shows, FoundForces):
     """The forces of a motion, in the mechanism's units.
 
     Arrays have the motion's shape, and are NaN where poses are not assembled.

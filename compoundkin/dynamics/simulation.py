@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.display import counted
+from compoundkin.base.display import Shows, counted
 from compoundkin.base.series import Number
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
@@ -17,7 +17,7 @@ from compoundkin.kinematics.motion import Motion
 
 
 @dataclass(frozen=True, eq=False)
-class Simulation:
+class Simulation(Shows):
     """A mechanism that moved under its loads. `motion` is a motion in time, solved again at `times`.
 
     `events` are in the order of time. `steps` and `evaluations` count those of the integration.

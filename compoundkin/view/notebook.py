@@ -12,13 +12,16 @@ from compoundkin.analysis.checks import Check
 from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits
+from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.simulation import Simulation
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose, roman
 from compoundkin.structure.redundancy import MobilityAnalysis
-from compoundkin.view.page.html_blocks import plain_block, plain_sections, plain_table
+from compoundkin.view.page.force_blocks import forces_html
+from compoundkin.view.page.html_blocks import plain_block, plain_figure, plain_sections, plain_table
 from compoundkin.view.page.markup import safe
 from compoundkin.view.page.player import framed
 from compoundkin.view.report.centres_section import centre_blocks
@@ -34,7 +37,6 @@ from compoundkin.view.sketch import draw
 
 # Pictures of more links than these take more than a second: they are drawn where they are asked for.
 MOST_LINKS = 30
-FITTED = "max-width:100%;height:auto;"
 
 
 def html_of(what: object) -> str | None:
@@ -109,7 +111,7 @@ def _(what: Mechanism) -> Iterator[str]:
     facts += [f"lengths in {what.unit}"] if what.unit else []
     caption = f"<strong>{safe(what.title)}</strong>: {safe('; '.join(facts))}"
     if picture := what._repr_svg_():
-        yield _figure(picture, caption)
+        yield plain_figure(picture, caption)
     else:
         yield f"<p>{caption}</p>"
         yield from map(plain_block, links_section(structure).blocks)
@@ -120,7 +122,7 @@ def _(what: Structure) -> Iterator[str]:
     said = f"{what.mobility.formula}; {what.mobility.verdict}"
     caption = f"<strong>{safe(what.mechanism.title)}</strong>: {safe(said)}"
     picture = what._repr_svg_()
-    yield _figure(picture, caption) if picture else f"<p>{caption}</p>"
+    yield plain_figure(picture, caption) if picture else f"<p>{caption}</p>"
     yield from (plain_block(Alert(f"{fault.text[:1].upper()}{fault.text[1:]}.", fault.remedy)) for fault in what.faults)
     dropped = what.relaxation.dropped if what.relaxation else ()
     told = [*(f"Passive: {one}." for one in what.passive), *(f"Left out: {one}." for one in dropped)]
@@ -182,7 +184,7 @@ def _(what: Configuration) -> Iterator[str]:
     mechanism = what.structure.mechanism
     caption = f"<strong>{safe(what.name)}</strong>: {safe(mechanism.title)}"
     if len(mechanism.links) <= MOST_LINKS:
-        yield _figure(draw(solve(what.structure, what.values, modes=what, order=0)).svg, caption)
+        yield plain_figure(draw(solve(what.structure, what.values, modes=what, order=0)).svg, caption)
     else:
         yield f"<p>{caption}</p>"
     columns = Column("link"), Column("angle", "deg", "fixed", floor=1e-9)
@@ -205,7 +207,6 @@ def _(what: CamAnalysis) -> Iterator[str]:
     yield from map(plain_block, cam_blocks(Sample(what.motion), what))
 
 
-def _figure(svg: str, caption: str) -> str:
-    """A picture, not wider than the page, with what stands below it."""
-    fitted = svg.replace('style="', f'style="{FITTED}', 1)
-    return f'<figure style="margin:0 0 .5em">\n{fitted}<figcaption>{caption}</figcaption>\n</figure>'
+@_parts.register
+def _(what: Forces | Simulation) -> Iterator[str]:
+    yield from forces_html(what, len(what.motion.mechanism.links) <= MOST_LINKS)

@@ -30,6 +30,7 @@ MOST_ROWS = 40
 CELL = "vertical-align:top;padding:.3em .6em"
 LEFT, RIGHT = f"text-align:left;{CELL}", f"text-align:right;{CELL}"
 CAPTION = "text-align:left;caption-side:top;font-weight:bold;padding:.5em 0"
+FITTED = "max-width:100%;height:auto;"
 # The section that stands in the head of the page, and the one whose steps are the groups.
 ABOUT, GROUPS = "about", "groups"
 
@@ -59,6 +60,12 @@ def plain_table(table: TableBlock, caption: str = "") -> str:
         element("tbody", f"\n{lines(found)}\n"),
     ]
     return element("div", element("table", f"\n{lines(parts)}\n"), style="overflow-x:auto")
+
+
+def plain_figure(svg: str, caption: str) -> str:
+    """Write a picture, not wider than the page, with what stands below it."""
+    fitted = svg.replace('style="', f'style="{FITTED}', 1)
+    return f'<figure style="margin:0 0 .5em">\n{fitted}<figcaption>{caption}</figcaption>\n</figure>'
 
 
 def _heading(column: Column) -> str:

@@ -1,0 +1,34 @@
+"""Forces and simulations in notebooks and on animations."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import compoundkin as ck
+from compoundkin.view.sketch.shapes import ShapeGroup, leaves
+from tests.view.loaded import MASS, crank, crank_forces, six_bar_forces
+
+
+def test_a_notebook_shows_forces_and_simulations() -> None:
+    shown = six_bar_forces()._repr_html_() or ""
+    assert "ck-reaction" in shown
+    assert "Reactions" in shown
+    fallen = ck.simulate(crank(), start={"crank": 0.5}, until=0.1)._repr_html_() or ""
+    assert "iframe" in fallen
+    assert "energy balance" in fallen
+
+
+def test_arrows_move_with_the_motion_at_one_scale() -> None:
+    forces = crank_forces()
+    film = ck.animate(forces, size=300)
+    scales = {one.scale.kind: one.scale.per_unit for one in film.arrows}
+    assert len(set(scales.values())) == 1
+    weight = next(one for one in film.arrows if one.scale.kind == "load")
+    ((key, rates),) = weight.rates.items()
+    assert np.allclose(rates, -9.81j * MASS)
+    middle = film.sketch.window.at(np.asarray(forces.points["B"].position) / 2.0)
+    assert np.allclose(weight.places[key], middle[film.sketch.scene.known])
+    titles = [shape.title for shape in film.frame(3).shapes if isinstance(shape, ShapeGroup)]
+    assert any("load" in title for title in titles)
+    assert "ck-inertia" in film.svg
+    assert len(list(leaves(film.frame(0).shapes))) > 10
