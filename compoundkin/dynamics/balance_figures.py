@@ -41,17 +41,22 @@ class InertiaAlone(PrintsShort):
 
     def length(self, motion: Motion) -> Number:
         """Return the length of the shaking force."""
-        return np.abs(self.force(motion)).reshape(motion.shape)
+        return _shaped(motion, np.abs(self.force(motion)))
 
     def moment(self, motion: Motion) -> Number:
         """Return the shaking moment, drivers' reactions included."""
         total = -self.factor * sum(mass.moment for mass in mass_motions(motion))
-        return np.asarray(total - cross(self.about, self.force(motion))).reshape(motion.shape)
+        return _shaped(motion, total - cross(self.about, self.force(motion)))
 
     def effort(self, driver: str, motion: Motion) -> Number:
         """Return the effort of a driver, by virtual work."""
         rows = zip(mass_motions(motion), mass_motions(moved_alone(motion, driver)), strict=True)
-        return np.asarray(self.factor * sum(mass.product(2, unit, 1) for mass, unit in rows)).reshape(motion.shape)
+        return _shaped(motion, self.factor * sum(mass.product(2, unit, 1) for mass, unit in rows))
+
+
+def _shaped(motion: Motion, value: Number) -> Number:
+    found: Number = np.broadcast_to(value, motion.failed.shape).reshape(motion.shape)
+    return found
 
 
 def balance_figures(motion: Motion, about: complex) -> tuple[BalanceFigure, ...]:

@@ -45,12 +45,14 @@ def critical_points(motion: Motion, free: tuple[str, ...], rounding: float) -> C
         with np.errstate(all="ignore"):
             steps = _steps(slopes, efforts)
         steps = steps / np.maximum(np.max(np.abs(steps) / reach, axis=1, keepdims=True), 1.0)
-        places = places - np.nan_to_num(steps)
-        again = _solved(motion, free, places)
+        places = places - steps
+        # what leaves the range leads nowhere; other places of the grid find what is there
+        kept = np.all((places >= low - reach) & (places <= high + reach), axis=1)
+        again = _solved(motion, free, places[kept]) if np.any(kept) else None
         if again is None:
-            break
-        motion = again
-        if np.nanmax(np.abs(steps) / reach, initial=0.0) <= rounding:
+            return CriticalPoints((), False)
+        motion, places = again, places[kept]
+        if np.max(np.abs(steps[kept]) / reach) <= rounding:
             break
     small = np.all(np.abs(_efforts(held, motion)) <= 1e3 * rounding * scales, axis=1)
     within = np.all((places >= low - SAME * reach) & (places <= high + SAME * reach), axis=1)

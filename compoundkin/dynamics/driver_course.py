@@ -98,7 +98,7 @@ class DriverCourse(PrintsShort):
         """
         at = between(self.motion, designs, places, self.order)
         effort, way, rate = self.effort(at), self.way_by_place(designs, places), at.drives[self.driver].rate
-        over = way if self.motion.time is None else self._time_by_place(designs, places)
+        over = np.abs(way) if self.motion.time is None else self._time_by_place(designs, places)
         power = effort * rate
         return np.stack([way, effort * way, *(over * f for f in (1.0, effort, power, effort**2, power**2))])
 

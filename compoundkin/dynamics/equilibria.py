@@ -28,8 +28,8 @@ from compoundkin.model.mechanism import Mechanism
 
 # An effort that is below this part of what a single load asks is none: rounding of sums of some loads.
 ROUNDING = 1e-11
-# So many values of each of several drivers make the grid where none are given.
-FEW = 9
+# So many values of each of several drivers make the grid where none are given, of so many places at most.
+FEW, MANY = 9, 300
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,7 +128,8 @@ def _motion(mechanism: Mechanism, values: Any) -> tuple[Motion, tuple[str, ...]]
         free = tuple(name for name, value in values_of.items() if np.ptp(value) > 0)
         if len(free) == 1:
             return motion, free
-        given = {name: np.linspace(np.min(value), np.max(value), FEW) if name in free else value[:1]
+        few = min(FEW, int(MANY ** (1.0 / max(len(free), 1))))
+        given = {name: np.linspace(np.min(value), np.max(value), few) if name in free else value[:1]
                  for name, value in values_of.items()}  # fmt: skip
     given = {name: real(f"values.{name}", value) for name, value in given.items()}
     free = tuple(name for name, value in given.items() if np.size(value) > 1)

@@ -22,7 +22,8 @@ class ShakingSamples:
     def __init__(self, ways: PinWays) -> None:
         designs, places, self.weights = nodes(smooth_pieces(ways.motion))
         self.ways, self.motion = ways, between(ways.motion, designs, places, 2)
-        self.force = -sum((np.ravel(mass.force) for mass in mass_motions(self.motion)), 0j)
+        total = -sum((mass.force for mass in mass_motions(self.motion)), 0j)
+        self.force = np.ravel(np.broadcast_to(total, self.motion.failed.shape))
 
     def moments(self, links: Sequence[str], added: Mapping[str, float]) -> tuple[Number, float]:
         """Return the moments about the links' pivots with the least squared shaking force.
@@ -30,15 +31,16 @@ class ShakingSamples:
         Return also its root mean square over that without counterweights.
         """
         poses = {name: self.motion.poses[name] for name in links}
-        turned = [np.ravel(poses[name].derivative(1.0, 2) - poses[name].derivative(0.0, 2)) for name in links]
+        turned = [np.broadcast_to(np.ravel(poses[name].derivative(1.0, 2) - poses[name].derivative(0.0, 2)),
+                                  self.weights.shape) for name in links]  # fmt: skip
         force = self.force
         for name in links:
             force = force - added[name] * np.ravel(poses[name].derivative(self.ways.reached[name].pivot, 2))
         root = np.sqrt(self.weights)
         columns = np.array(turned).reshape(len(links), len(self.weights)).T * root[:, None]
         found = np.linalg.lstsq(columns, force * root, rcond=None)[0] if len(links) else np.empty(0, dtype=complex)
-        rest = np.linalg.norm(columns @ found - force * root) / np.linalg.norm(self.force * root)
-        return found, float(rest)
+        whole = np.linalg.norm(self.force * root)
+        return found, float(np.linalg.norm(columns @ found - force * root) / whole) if whole else 0.0
 
 
 def fraction_moment(ways: PinWays, fraction: float) -> tuple[str, complex]:
