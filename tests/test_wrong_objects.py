@@ -99,7 +99,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "expect": {"quantity": "a.angle", "value": 0.5, "tolerance": 1e-3, "crank": 1.0},
         "face": {"link": "a", "on": "b", "at": "A", "profile": ck.profiles.disc(1), "angle": 0.0, "side": 1},
         "force": {"link": "a", "force": (1, 2), "at": "A", "fixed_in": "frame", "while_moving": (1, 0), "name": "n"},
-        "force_analysis": {"motion": h["loaded"], "inertia": True},
+        "force_analysis": {"motion": h["loaded"], "inertia": True, "holding": ""},
         "friction": {"pair": "A", "coefficient": 0.1, "radius": 2.0, "length": None},
         "gaps": {"motion": motion},
         "gear": {"first": "a", "second": "b", "radii": (1.0, 2.0), "name": "n", "carrier": "frame", "teeth": None,

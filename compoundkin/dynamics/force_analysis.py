@@ -11,6 +11,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.rubbed_motion import with_friction
+from compoundkin.dynamics.holding import held_wrenches, holding_effort, holds
 from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.redundant_reactions import own_wrenches
@@ -23,17 +24,22 @@ ON_FRAME = ""
 
 
 @checked
-def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
+def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -> Forces:
     """Return the forces in all pairs at every pose, and the drivers' efforts.
 
-    With ``inertia=False`` masses have weight only: statics. Raises InvalidInput for a mechanism without units, and for
-    a motion without accelerations where masses move.
+    With ``inertia=False`` masses have weight only: statics. A pair, a pin or a driver named by `holding` holds in the
+    place of the driver that moves: its effort is `forces.held.effort`, the driver's own is zero.
+
+    Raises InvalidInput for a mechanism without units, for a motion without accelerations where masses move, and for
+    what cannot hold; UnknownName for what there is not.
     """
     _hold(motion, inertia)
-    found = _wrenches(motion, inertia)
-    singular = at_singular_poses(motion, found, lambda other: _wrenches(other, inertia))
-    on_frame, told = found.pop(ON_FRAME), replace(motion, loading={"inertia": inertia})
-    forces = Forces(told, inertia, found, on_frame, singular=singular)
+    found = _wrenches(motion, inertia, holding)
+    singular = at_singular_poses(motion, found, lambda other: _wrenches(other, inertia, holding))
+    on_frame, told = found.pop(ON_FRAME), replace(motion, loading={"inertia": inertia, "holding": holding})
+    held = holding_effort(told, inertia, holding) if holding else None
+    more = () if held is None else tuple(held_wrenches(told, held))
+    forces = Forces(told, inertia, found, on_frame, singular=singular, more=more, held=held)
     if motion.mechanism.frictions:
         forces = with_friction(forces)
     # quantities of forces are read from their motion, which need not find them again
@@ -41,12 +47,16 @@ def force_analysis(motion: Motion, *, inertia: bool = True) -> Forces:
     return forces
 
 
-def _wrenches(motion: Motion, inertia: bool) -> dict[str, Wrench]:
+def _wrenches(motion: Motion, inertia: bool, holding: str) -> dict[str, Wrench]:
     """Return the wrenches in all pairs by their names, and that on the frame."""
+    more = tuple(held_wrenches(motion, holding_effort(motion, inertia, holding))) if holding else ()
     store: JoinedWrenches[str] = JoinedWrenches(motion.failed.shape)
     with np.errstate(all="ignore"):
         for loaded in loaded_blocks(motion):
-            reactions = found_reactions(loaded, loaded.known(inertia))
+            known = loaded.known(inertia)
+            for link, wrench in holds(more, loaded.designs, loaded.poses).items():
+                known[link] = known.get(link, Wrench()) + wrench
+            reactions = found_reactions(loaded, known)
             for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():
                 store.take(name, wrench, loaded.designs, loaded.poses)
     found = store.wrenches()

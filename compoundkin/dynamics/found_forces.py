@@ -13,6 +13,7 @@ from compoundkin.base.copies import CopiesFields
 from compoundkin.base.poses import Pose
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.friction_forces import FrictionForces, no_friction
+from compoundkin.dynamics.holding import HoldingEffort
 from compoundkin.dynamics.link_wrench import LinkWrench
 from compoundkin.dynamics.self_stresses import Open, SelfStress, self_stress
 from compoundkin.dynamics.singular_poses import SingularPose
@@ -34,7 +35,7 @@ class FoundForces(CopiesFields):
     `on_frame` is that on the frame; `more` is what else was found to act on links, such as friction; `rubbed` are the
     frictions of a mechanism that has some. Of a mechanism held by too much they are those with what the structure's
     `relaxation` names left free: one of many possible, which is told only where that is `assumed`.
-    At poses that are `singular` they are told where they have a limit.
+    At poses that are `singular` they are told where they have a limit. `held` is what holds in the place of a driver.
     """
 
     motion: Motion
@@ -45,6 +46,7 @@ class FoundForces(CopiesFields):
     assumed: bool = False
     singular: tuple[SingularPose, ...] = ()
     rubbed: FrictionForces | None = None
+    held: HoldingEffort | None = None
 
     @cached_property
     def friction(self) -> FrictionForces:

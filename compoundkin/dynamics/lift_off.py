@@ -45,7 +45,8 @@ class LiftOffSpeed(PrintsShort):
 class LiftOff(PrintsShort):
     """Where a contact lets go, between the poses too.
 
-    There the force along its normal passes through zero. A pin in a slot, or a roller in a groove, changes its flank there.
+    There the force along its normal passes through zero. A pin in a slot, or a roller in a groove, changes its flank
+    there.
     """
 
     forces: FoundForces

@@ -46,7 +46,8 @@ class LinkWrench(PrintsShort):
         """The wrench about the world's origin, NaN where equilibrium leaves it open, (designs, poses)."""
         if self.open is None:
             return self.whole
-        moment = np.where(self.open.moment, np.nan, self.whole.about(self.attack))
+        with np.errstate(invalid="ignore"):
+            moment = np.where(self.open.moment, np.nan, self.whole.about(self.attack))
         return Wrench.at(self.attack, np.where(self.open.force, NOTHING, self.whole.force), moment)
 
     @property
@@ -67,7 +68,8 @@ class LinkWrench(PrintsShort):
     @property
     def moment(self) -> Number:
         """The moment about the point of attack."""
-        about = self.whole.about(self.attack)
+        with np.errstate(invalid="ignore"):  # infinite forces have no moment
+            about = self.whole.about(self.attack)
         return self.motion.grid.known(about if self.open is None else np.where(self.open.moment, np.nan, about))
 
     def moment_about(self, point: Any) -> Number:
@@ -88,7 +90,8 @@ def moment_about(motion: Motion, wrench: Wrench, point: Any) -> Number:
     """
     place = motion.points[point].position if isinstance(point, str) else vector("point", point)
     shown = motion.grid.known
-    return np.asarray(shown(wrench.moment) - cross(np.asarray(place), np.asarray(shown(wrench.force))))
+    with np.errstate(invalid="ignore"):
+        return np.asarray(shown(wrench.moment) - cross(np.asarray(place), np.asarray(shown(wrench.force))))
 
 
 def place_in_world(motion: Motion, link: str, point: str | Number) -> Number:

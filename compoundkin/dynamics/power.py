@@ -14,6 +14,7 @@ from compoundkin.base.display import Shows
 from compoundkin.base.series import Number
 from compoundkin.dynamics.driver_efforts import DriverEffort
 from compoundkin.dynamics.found_forces import FoundForces
+from compoundkin.dynamics.link_wrench import FRICTION
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.virtual_work import cut, free_link
 from compoundkin.kinematics.motion import Motion
@@ -85,6 +86,8 @@ def powers_of(forces: FoundForces) -> Powers:
                 found["sums"][name][at.designs, at.poses] = value
     loads, sums = ({name: motion.grid.known(value) for name, value in part.items()} for part in found.values())
     drives = {name: DriverEffort(forces, driven).power for name, driven in motion.structure.driven.items()}
+    if forces.held is not None:
+        drives[forces.held.name] = forces.held.power
     return Powers(
         motion, drives, loads, sums["gravity"], sums["friction"], sums["rate"], sums["kinetic"], sums["potential"]
     )  # fmt: skip
@@ -118,7 +121,7 @@ def _sums(at: LoadedBlock, forces: FoundForces) -> dict[str, Number]:
         found["kinetic"] += _kinetic(at, mass)
         if forces.inertia:
             found["rate"] -= free_link(at, mass.link, at.inertia(mass)).power(at.pose(mass.link))
-    for one in forces.more:
+    for one in (one for one in forces.more if one.kind == FRICTION):
         found["friction"] += cut(one.whole, at).power(at.pose(one.on))
     return found
 
