@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import Field, fields
 from typing import Any
 
@@ -12,6 +11,8 @@ from compoundkin.base.arrays import first_entry
 from compoundkin.base.series import Number
 from compoundkin.dynamics.forces import Forces
 from compoundkin.model.elements import Load
+from compoundkin.model.loads.amounts import LoadFunction
+from compoundkin.model.loads.load_table import LoadTable
 from compoundkin.view.report.report_data import Column, TableBlock
 from compoundkin.view.report.wording import number
 
@@ -36,7 +37,8 @@ def loads_table(forces: Forces) -> TableBlock:
 
 def _told(load: Load) -> str:
     """The numbers of a load that are not as where nothing is said, by what they are called."""
-    own = [field for field in fields(load) if field.name not in ("name", *load.link_keys)]
+    written = {key.name for key in load.keys} - {"name", *load.link_keys}
+    own = [field for field in fields(load) if field.name in written]
     values = {field.name: _value(value) for field in own if not _is_usual(value := getattr(load, field.name), field)}
     return ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in values.items() if value)
 
@@ -48,12 +50,15 @@ def _is_usual(value: Any, field: Field[Any]) -> bool:
 def _value(value: Any) -> str:
     if value is None or isinstance(value, bool | str):
         return str(value or "")
-    if callable(value) or isinstance(value, Mapping):
+    if isinstance(value, tuple):
+        return f"({'; '.join(map(_value, value))})"
+    if isinstance(value, LoadFunction):
         return "a function"
-    table = getattr(value, "over", None)
-    values = np.ravel(np.asarray(value if table is None else value.values))
-    said = f"({_range(values.real)}, {_range(values.imag)})" if np.iscomplexobj(values) else _range(values)
-    return said if table is None else f"{said}, a table over {table}"
+    if isinstance(value, LoadTable):
+        over = f" over {value.over}" if value.over else ""
+        return f"{_range(value.values)}, a table{over}"
+    values = np.ravel(np.asarray(value))
+    return f"({_range(values.real)}, {_range(values.imag)})" if np.iscomplexobj(values) else _range(values)
 
 
 def _range(values: Number) -> str:

@@ -118,8 +118,8 @@ def test_springs_whose_ends_meet() -> None:
                        ck.drive("arm", values=[0.0, 0.5]), units=SI)  # fmt: skip
     found = torque(arm.replace(ck.spring("arm", "A", at="S", stiffness=3)), driver="arm")
     assert found.tolist() == pytest.approx([0.0, 3.0 * np.sin(0.5)])
+    loaded = block(arm.replace(ck.spring("arm", "A", at="S", stiffness=3, free_length=1)))
     with pytest.warns(LikelySlip, match="its ends meet"):
-        loaded = block(arm.replace(ck.spring("arm", "A", at="S", stiffness=3, free_length=1)))
         pulls = [np.ravel(wrench.force) for *_, wrench in loaded.named_loads()]
     assert [np.isnan(pull).tolist() for pull in pulls] == [[True, False]] * 2
 
@@ -227,3 +227,13 @@ def test_units_are_needed_and_said_once() -> None:
     with pytest.raises(InvalidMechanism, match=r"units\.mass: 'kgs' is no known unit of mass; did you mean 'kg'\?"):
         ck.Mechanism("m", *links, units={**SI, "mass": "kgs"})
     assert ck.gravity(0, -386.088582677165, unit="in/s^2").vector == pytest.approx(-9.80665j)
+
+
+def test_every_load_is_told_in_a_report() -> None:
+    table = {"over": "crank", "at": [0, 7], "values": [1, 8]}
+    loaded = press(ck.effort("stroke", lambda s: 0 * s), ck.torque("rod", table), ck.force("G", (2.0, table)),
+                   ck.spring(pair="A", stiffness=table), ck.damper("rod", "G", at="S", rate=2.0),
+                   values=[0.5, 1.0])  # fmt: skip
+    told = " ".join(ck.report(loaded).text().split())
+    for words in ("amount a function", "torque 1 to 8, a table over crank", "rate 2"):
+        assert words in told
