@@ -19,7 +19,7 @@ from compoundkin.dynamics.frame_forces import ShakingForce
 from compoundkin.dynamics.friction.efficiency import Efficiency
 from compoundkin.dynamics.friction.friction_forces import FrictionForces, PairFriction, Wedged
 from compoundkin.dynamics.friction.pose_stretches import PoseStretch
-from compoundkin.dynamics.holding import HoldingEffort
+from compoundkin.dynamics.held_pair import HoldingEffort
 from compoundkin.dynamics.lift_off import LiftOff, LiftOffSpeed
 from compoundkin.dynamics.link_forces import LinkForces
 from compoundkin.dynamics.link_wrench import LinkWrench

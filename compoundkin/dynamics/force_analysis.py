@@ -11,7 +11,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.rubbed_motion import with_friction
-from compoundkin.dynamics.holding import held_wrenches, holding_effort, holds
+from compoundkin.dynamics.held_pair import held_wrenches, holding_effort, holds
 from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.redundant_reactions import own_wrenches

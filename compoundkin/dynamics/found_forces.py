@@ -13,7 +13,7 @@ from compoundkin.base.copies import CopiesFields
 from compoundkin.base.poses import Pose
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.friction_forces import FrictionForces, no_friction
-from compoundkin.dynamics.holding import HoldingEffort
+from compoundkin.dynamics.held_pair import HoldingEffort
 from compoundkin.dynamics.link_wrench import LinkWrench
 from compoundkin.dynamics.self_stresses import Open, SelfStress, self_stress
 from compoundkin.dynamics.singular_poses import SingularPose

@@ -26,9 +26,9 @@ RESTS = 1e-10
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HoldingEffort(PrintsShort):
-    """The effort of a pair that holds in the place of the driver `instead_of`, whose own effort is zero.
+    """The effort of a pair that holds in the place of a driver.
 
-    It is infinite where the pair rests while the driver moves: nothing holds there.
+    That is `instead_of`, whose own effort is zero. It is infinite where the pair rests while the driver moves: nothing holds there.
     """
 
     motion: Motion = field(repr=False)
@@ -62,7 +62,7 @@ def resting(rate: Number) -> Number:
 
 
 def holding_effort(motion: Motion, inertia: bool, name: str) -> HoldingEffort:
-    """Return the effort by which a pair, a pin or a driver of a name holds.
+    """Return the effort by which a pair, a pin or a driver holds.
 
     Raises UnknownName for a name that there is not, InvalidInput for a pair along which nothing acts, with friction,
     and where not just one driver moves.
