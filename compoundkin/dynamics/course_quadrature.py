@@ -66,10 +66,10 @@ def integrals(of: Integrand, pieces: Pieces) -> Number:
         middle = 0.5 * (going.low + going.high)
         halves = Pieces(np.repeat(going.design, 2), _two(going.low, middle), _two(middle, going.high))
         parts = _gauss(of, halves)
-        both = parts[:, ::2] + parts[:, 1::2]
-        np.add.at(total.T, index, (both - known).T)
+        change = parts[:, ::2] + parts[:, 1::2] - known
+        np.add.at(total.T, index, change.T)
         size = np.sum(np.abs(total), axis=1, keepdims=True)
-        off = np.flatnonzero(np.any(np.abs(both - known) > TRUSTED * size, axis=0))
+        off = np.flatnonzero(np.any(np.abs(change) > TRUSTED * size, axis=0))
         if not len(off):
             break
         both_halves = np.repeat(2 * off, 2) + np.tile([0, 1], len(off))

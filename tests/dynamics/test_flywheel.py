@@ -129,3 +129,17 @@ def test_a_two_stroke_engine_of_the_textbook_has_its_power_and_fluctuation() -> 
     found = ck.machine.flywheel(forces, spread / (64 * speed**2))
     np.testing.assert_allclose([found.fluctuation, found.inertia], [[spread], [64.0]], rtol=1e-9)
     np.testing.assert_allclose(found.coefficient, 0.0133, rtol=1e-3)
+
+
+def test_corners_of_tables_between_the_poses_do_no_harm() -> None:
+    """A torque of straight lines over the crank: mean and mean square in closed form, whatever the poses."""
+    at, values = np.deg2rad([0.0, 33.0, 100.0, 217.5]), np.array([0.0, -30.0, -5.0, 1.0])
+    torque = {"over": "crank", "at": at, "values": values, "period": 2.0 * np.pi}
+    shaft = ck.Mechanism("Shaft", ck.link("frame", O=0), ck.link("crank", O=0, A=1), ck.drive("crank"),
+                         ck.torque("crank", torque), units=UNITS)  # fmt: skip
+    found = ck.machine.drive_figures(ck.force_analysis(ck.solve(shaft, TURN, speed=3)))
+    steps, ends = np.diff([*at, 2.0 * np.pi]), np.append(values[1:], values[0])
+    mean = np.sum(steps * (values + ends)) / (4.0 * np.pi)
+    square = np.sum(steps * (values**2 + values * ends + ends**2)) / (6.0 * np.pi)
+    np.testing.assert_allclose([found.mean_effort[0], found.rms_effort[0]], [-mean, np.sqrt(square)], rtol=1e-9)
+    np.testing.assert_allclose(found.peak_effort, 30.0, rtol=1e-8)
