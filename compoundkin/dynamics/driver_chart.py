@@ -11,8 +11,7 @@ import numpy as np
 from compoundkin.base.arrays import whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
-from compoundkin.dynamics.driver_state import DriverState, Rates
-from compoundkin.dynamics.linear_angle import LinearAngle, by_drivers
+from compoundkin.dynamics.driver_state import DriverState, LinearAngle, Rates, by_drivers
 from compoundkin.dynamics.moving_masses import free_fall, moving_masses
 from compoundkin.dynamics.simulated_energy import sorted_loads
 from compoundkin.kinematics.block import Block

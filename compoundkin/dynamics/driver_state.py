@@ -9,7 +9,6 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.dynamics.linear_angle import LinearAngle, by_drivers
 from compoundkin.dynamics.loaded_state import LoadedState, loaded_state
 from compoundkin.dynamics.moving_masses import InertiaTerms, MovingMass, inertia_terms
 from compoundkin.kinematics.block import Block
@@ -17,6 +16,23 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import Load
 from compoundkin.model.pairs import Pair
+
+
+class LinearAngle(NamedTuple):
+    """About where an angle is. Its value at values of the drivers, and its rates by them."""
+
+    angle: float
+    values: Number | None
+    slopes: Number
+
+    def at(self, values: Number) -> float:
+        """Return it at other values."""
+        return self.angle if self.values is None else self.angle + float(self.slopes @ (values - self.values))
+
+
+def by_drivers(value: Number, names: tuple[str, ...]) -> Number:
+    """Return the rates of a coordinate by the drivers. They are all in a column but the last."""
+    return np.broadcast_to(value, (len(names) + 1, 1))[:-1, 0]
 
 
 class StateChart(Protocol):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from compoundkin.dynamics.integration import SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulated_energy import simulated_energy
 from compoundkin.dynamics.simulated_motion import simulated_motion
 from compoundkin.dynamics.simulation import Simulation
+from compoundkin.dynamics.simulation_events import watches
 from compoundkin.dynamics.simulation_start import simulation_start
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
@@ -33,6 +34,9 @@ def simulate(
     until: float,
     prescribed: Mapping[str, Any] | None = None,
     times: Any = None,
+    events: Mapping[str, Any] | None = None,
+    stop: str | Sequence[str] = (),
+    restitution: float | None = None,
     tolerance: float = 1e-11,
     modes: Mapping[str, int] | str | Configuration | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -43,6 +47,10 @@ def simulate(
     (value, speed), a single driver without its name; without it they rest at the drawn pose, else at the first.
     Drivers with a law are `prescribed`, and so are those that the call gives a law, a function of time, or a value at
     which they are held. `modes` are those of `solve`.
+
+    `events` are functions of the state by name, ``lambda state: state["B.y"] - 20``: where one passes through zero it
+    is noted, and the simulation stops if `stop` names it. It stops at an end of a guide, unless a coefficient of
+    `restitution` (0 to 1) says how fast that is left again, and where a contact lets go.
 
     The result is a motion in time at `times`, evenly spaced ones without them; with its forces and energies.
     The error of a step is `tolerance` of the drivers' values and speeds. Where a driver comes to a limit position,
@@ -60,11 +68,12 @@ def simulate(
     >>> swung, swung.energy.worst < 1e-9
     (Simulation('Pendulum' over 2 s in 18 steps), True)
     """
-    _hold(mechanism, until, tolerance)
+    _hold(mechanism, until, tolerance, restitution)
     begun = simulation_start(mechanism, start, prescribed or {}, modes)
     chart = chart_of(begun.motion, tuple(begun.speeds), begun.laws)
     state = np.array([*(begun.values[name] for name in chart.free), *begun.speeds.values(), 0.0])
-    course = SimulatedCourse(float(until), float(tolerance))
+    watched = watches(mechanism, events or {}, (stop,) if isinstance(stop, str) else tuple(stop))
+    course = SimulatedCourse(float(until), float(tolerance), watched, restitution)
     with np.errstate(all="ignore"):
         _hold_moving(chart, state)
         integrate(chart, state, course, progress)
@@ -74,15 +83,23 @@ def simulate(
     return Simulation(motion, energy, tuple(course.events), course.tolerance, len(course.steps), course.evaluations)
 
 
-def _hold(mechanism: Mechanism, until: float, tolerance: float) -> None:
+def _hold(mechanism: Mechanism, until: float, tolerance: float, restitution: float | None) -> None:
     """Raise InvalidInput for what cannot be simulated."""
     if mechanism.units is None:
         remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
         raise InvalidInput(Problem("units", "forces need units of length, mass and force", remedy))
     if not mechanism.masses:
         raise InvalidInput(Problem("masses", "nothing has a mass", 'write mass("link", 0.2, at=..., inertia=...)'))
+    if mechanism.frictions:
+        told = ", ".join(mechanism.frictions)
+        what = f"friction ({told}) is not followed by a simulation yet"
+        raise InvalidInput(
+            Problem("frictions", what, "leave it out, or write dampers; force_analysis() knows friction")
+        )
     if not 0.0 < until < np.inf:
         raise InvalidInput(Problem("until", f"{until:g} is no end", "give seconds after the start, more than 0"))
+    if restitution is not None and not 0.0 <= restitution <= 1.0:
+        raise InvalidInput(Problem("restitution", f"{restitution:g} is no coefficient of restitution", "0 to 1"))
     if not 1e-13 <= tolerance <= 1e-2:
         raise InvalidInput(Problem("tolerance", f"{tolerance:g} is too fine or too coarse", "1e-13 to 1e-2"))
 

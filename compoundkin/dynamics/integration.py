@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.dynamics.coordinate_change import driven_there, fastest_pair
 from compoundkin.dynamics.driver_chart import DriverChart
-from compoundkin.dynamics.simulation_events import SimulationEvent
+from compoundkin.dynamics.simulation_events import END, SimulationEvent, Watch, after_impact, ended_pair, first_passed
+from compoundkin.dynamics.state_motion import SimulatedState
 from compoundkin.dynamics.tabulated_chart import FASTER
 
 # No step takes a driver farther than this (radians, or parts of the size): configurations are followed, angles counted.
@@ -57,6 +58,8 @@ class SimulatedCourse:
 
     until: float
     tolerance: float
+    watched: tuple[Watch, ...] = ()
+    restitution: float | None = None
     steps: list[Step] = field(default_factory=list)
     events: list[SimulationEvent] = field(default_factory=list)
     evaluations: int = 0
@@ -92,14 +95,46 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
         solver.step()
         if solver.status == "failed":
             return _stop(course, "limit", "the motion comes to a limit position")
-        chart.accept(solver.t, solver.y[:n], solver.y[n : 2 * n])
         course.steps.append(Step(chart, float(solver.t_old), float(solver.t), solver.dense_output()))
+        passed = _passed(course) if course.watched else None
+        if passed is not None and (passed.state is None or passed.time >= course.until):
+            return None
+        if passed is None:
+            chart.accept(solver.t, solver.y[:n], solver.y[n : 2 * n])
+            changed = _changed(chart, solver, course)
+            if changed is not None:
+                chart, state = changed
+                solver = _solver(chart, course.last, state, course)
+        else:
+            solver = _solver(chart, passed.time, passed.state, course)
         if progress is not None:
-            progress(int(PARTS * solver.t / course.until), PARTS)
-        changed = _changed(chart, solver, course)
-        if changed is not None:
-            chart, state = changed
-            solver = _solver(chart, course.last, state, course)
+            progress(int(PARTS * course.last / course.until), PARTS)
+    return None
+
+
+class _Turn(NamedTuple):
+    """Where the course is broken off, and the state with which it goes on. None where it ends."""
+
+    time: float
+    state: Number | None
+
+
+def _passed(course: SimulatedCourse) -> _Turn | None:
+    """Note what happened in the last step; return where that breaks the course off, None where it does not."""
+    step = course.steps[-1]
+    for one in first_passed(course.watched, step.chart, (step.first, step.last), step.between):
+        is_end, n = one.watch.name == END, len(step.chart.free)
+        here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]))
+        text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else one.watch.text
+        bounced = after_impact(here, course.restitution) if is_end and course.restitution is not None else None
+        stops = one.watch.stops and bounced is None
+        course.events.append(SimulationEvent(one.time, one.watch.name, text, stops))
+        if stops or bounced is not None:
+            course.steps[-1] = Step(step.chart, step.first, one.time, step.between)
+        if stops:
+            return _Turn(one.time, None)
+        if bounced is not None:
+            return _Turn(one.time, np.array([*one.state[:n], *bounced[0], one.state[-1] - bounced[1]]))
     return None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.argument_forms import is_finite_real
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses, UnknownName, nearest
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.chosen_modes import shown_by
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.driver_values import inputs
+from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.model.elements import Drive
@@ -58,11 +60,27 @@ def simulation_start(
             for name in names if name not in laws}  # fmt: skip
     if not free:
         raise InvalidInput(Problem("prescribed", "all drivers are prescribed", "leave one free, or use solve()"))
-    shown = _shown(mechanism)
-    values = {name: shown[name] if value is None else value for name, (value, _) in free.items()}
-    values |= {name: float(np.ravel(law.coordinate(np.zeros(1), 0).c[0])[0]) for name, law in laws.items()}
-    motion = solve(mechanism, {name: [value] for name, value in values.items()}, order=1, modes=modes)
+    motion = _first_pose(mechanism, {name: value for name, (value, _) in free.items()}, laws, modes)
     return SimulationStart(motion, {name: speed for name, (_, speed) in free.items()}, laws)
+
+
+def _first_pose(
+    mechanism: Mechanism,
+    free: Mapping[str, float | None],
+    laws: Mapping[str, Law],
+    modes: Mapping[str, int] | str | Configuration | None,
+) -> Motion:
+    """Return the first pose. Raises InvalidInput where it cannot be assembled."""
+    shown = _shown(mechanism)
+    values = {name: shown[name] if value is None else value for name, value in free.items()}
+    values |= {name: float(np.ravel(law.coordinate(np.zeros(1), 0).c[0])[0]) for name, law in laws.items()}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnassembledPoses)
+        motion = solve(mechanism, {name: [value] for name, value in values.items()}, order=1, modes=modes)
+    if motion.failed.any():
+        reasons = "; ".join(gap.reason for gap in gaps(motion))
+        raise InvalidInput(Problem("start", reasons or "it cannot be assembled there", "start elsewhere"))
+    return motion
 
 
 def _laws(mechanism: Mechanism, start: Mapping[str, Any], prescribed: Mapping[str, Any]) -> dict[str, Law]:

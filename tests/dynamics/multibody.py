@@ -6,7 +6,6 @@ soft, is left out. Links are bodies of a spanning tree of pins and slides, the o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +13,6 @@ import mujoco
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.base.poses import Pose
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.model.pairs.revolute import Revolute
@@ -83,15 +81,12 @@ class Multibody:
             mass = self.motion.mechanism.masses[child]
             at = self.motion.mechanism.geometry.points[child][mass.at] if isinstance(mass.at, str) else mass.at
             place, inertia = complex(at), " ".join([repr(float(mass.inertia))] * 3)
+            turned = f"{float(np.cos(angle / 2))!r} 0 0 {float(np.sin(angle / 2))!r}"
+            text += f'<body name="{child}" pos="{z.real!r} {z.imag!r} 0" quat="{turned}">'
             text += (
-                (
-                    f'<body name="{child}" pos="{z.real!r} {z.imag!r} 0" quat="{np.cos(angle / 2)!r} 0 0 {np.sin(angle / 2)!r}">'
-                    f'<inertial pos="{place.real!r} {place.imag!r} 0" mass="{float(mass.mass)!r}" diaginertia="{inertia}"/>'
-                    f"{self._joint(pair, child)}{self._bodies(child)}</body>"
-                )
-                .replace("np.float64(", "")
-                .replace(")", "")
+                f'<inertial pos="{place.real!r} {place.imag!r} 0" mass="{float(mass.mass)!r}" diaginertia="{inertia}"/>'
             )
+            text += f"{self._joint(pair, child)}{self._bodies(child)}</body>"
         return text
 
     def _joint(self, pair: Pair, child: str) -> str:

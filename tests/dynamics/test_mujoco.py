@@ -1,4 +1,4 @@
-"""Efforts and accelerations of drivers by MuJoCo's mass matrix, bias forces and Jacobians, at the program's own poses."""
+"""Efforts and accelerations of drivers by MuJoCo's mass matrix, bias forces and Jacobians, at solved poses."""
 
 from __future__ import annotations
 

@@ -163,3 +163,41 @@ def test_a_driver_that_moves_no_mass_is_named() -> None:
                        units=SI)  # fmt: skip
     with pytest.raises(InvalidInput, match="this driver moves no mass"):
         ck.simulate(arm, start={"upper": 0.0, "fore": 0.0}, until=1.0)
+
+
+def test_events_of_a_user_are_found_and_stop() -> None:
+    """A pendulum let go from the horizontal passes the lowest place at the time of the quarter of its period."""
+    from scipy.special import ellipk
+
+    pendulum = ck.Mechanism("Pendulum", ck.link("frame", A=0), ck.link("bar", A=0, B=1), ck.drive("bar"),
+                            ck.mass("bar", 1.0, at="B", inertia=0.0), ck.gravity(0, -9.81), units=SI)  # fmt: skip
+    quarter = ellipk(0.5) / np.sqrt(9.81)
+    events = {"lowest": lambda state: state["B.x"], "half way": lambda state: state["bar.angle"] + np.pi / 4}
+    found = ck.simulate(pendulum, start=0.0, until=5.0, events=events, stop="lowest")
+    assert [event.name for event in found.events] == ["half way", "lowest"]
+    assert found.events[-1].time == pytest.approx(quarter, rel=1e-9)
+    assert found.times[-1] == found.events[-1].time
+    assert found.motion.points["B"].y[-1] == pytest.approx(-1.0, abs=1e-12)
+
+
+def test_block_falls_to_the_end_of_its_guide() -> None:
+    """A block in free fall: where it meets the end, and how high it comes back with a coefficient of restitution."""
+    fall = ck.Mechanism(
+        "Block in a shaft",
+        ck.link("frame", O=(0, 0), L=(0, -1), H=(0, 1)),
+        ck.link("block", P=(0, 0)),
+        ck.slide("block", on="frame", at="P", through="O", angle=np.pi / 2, name="shaft", reach=("L", "H")),
+        ck.drive("block"),
+        ck.mass("block", 2.0, at="P", inertia=0.0),
+        ck.gravity(0, -9.81),
+        units=SI,
+    )
+    first = np.sqrt(2 / 9.81)
+    stopped = ck.simulate(fall, start={"block": 0.0}, until=3.0)
+    assert stopped.times[-1] == pytest.approx(first, rel=1e-9)
+    assert [event.stops for event in stopped.events] == [True]
+    back = ck.simulate(fall, start={"block": 0.0}, until=2.0 * first, restitution=0.5)
+    assert [event.time for event in back.events] == pytest.approx([first, 2.0 * first], rel=1e-8)
+    top = back.motion.points["P"].y[back.times > 1.2 * first].max()
+    assert top == pytest.approx(-0.75, abs=1e-4)
+    assert back.energy.worst < 1e-9
