@@ -146,6 +146,8 @@ class Forces(Shows, FoundForces):
 
     def __repr__(self) -> str:
         kind = "with" if self.inertia else "without"
+        if not (self.mechanism.masses or self.mechanism.loads):
+            kind = f"no masses and no loads, {kind}"
         missing = f", {count} not assembled" if (count := int((self.motion.failed != 0).sum())) else ""
         missing += f", {len(self.singular)} singular" if self.singular else ""
         if self.assumed:

@@ -28,7 +28,8 @@ RESTS = 1e-10
 class HoldingEffort(PrintsShort):
     """The effort of a pair that holds in the place of a driver.
 
-    That is `instead_of`, whose own effort is zero. It is infinite where the pair rests while the driver moves: nothing holds there.
+    That is `instead_of`, whose own effort is zero. It is infinite where the pair rests while the driver moves: nothing
+    holds there.
     """
 
     motion: Motion = field(repr=False)
