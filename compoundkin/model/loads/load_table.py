@@ -135,9 +135,10 @@ class LoadTable(PrintsShort, Compared, CopiesFields):
         if self.period is not None:
             x = at[0] + np.mod(x - at[0], self.period)
         slack = SLACK * (at[-1] - at[0])
-        outside = x[(x < at[0] - slack) | (x > at[-1] + slack)] if self.period is None else x[:0]
+        beyond = (x < at[0] - slack) | (x > at[-1] + slack)
+        outside = np.ravel(x)[np.ravel(beyond)] if self.period is None else np.empty(0)
         if outside.size:
-            what = f"{outside.flat[0]:g} is outside its table, {at[0]:g} to {at[-1]:g}"
+            what = f"{outside[0]:g} is outside its table, {at[0]:g} to {at[-1]:g}"
             raise InvalidInput(Problem(where, what, "give more of it, or its period"))
         x = np.clip(x, at[0], at[-1])
         return self._spline(x) if self.smooth else np.interp(x, at, values)
