@@ -117,7 +117,10 @@ def _courses(forces: Forces, scene: Scene, link: str, design: int) -> Iterator[F
     pins = [letter for letter, pin in forces.pins.items() if len(pin.links) > 2 and link in pin.links]
     twice = Counter(one.by for one in acting if one.kind == PAIR)
     for letter in pins:
-        yield _course(forces.pins[letter].on(link), design, f"F{_lowered(scene, link)}({letter})", "M")
+        pin = _course(forces.pins[letter].on(link), design, f"F{_lowered(scene, link)}({letter})", "M")
+        # the torque of a driver at the pin is told by itself
+        turned = [_course(one, design, "", "").moment for one in acting if one.kind == EFFORT and one.at == letter]
+        yield replace(pin, moment=pin.moment - sum(turned)) if turned else pin
     for one in acting:
         if one.kind != PAIR or one.at not in pins:
             yield _course(one, design, *_names(scene, one, twice[one.by] > 1))

@@ -88,6 +88,13 @@ def test_a_pin_of_three_links_acts_on_each() -> None:
     bare = ck.catalog.load_named("toggle-press")
     press = ck.Mechanism("Press", *bare.items, ck.force("slider", (-10000, 0), at="D"), units=UNITS)
     forces = ck.force_analysis(ck.solve(press))
+    bare = ck.catalog.load_named("planetary-train")
+    train = ck.Mechanism("Train", *bare.items, ck.torque("sun", 2000.0), units=UNITS)
+    for one in (forces, ck.force_analysis(ck.solve(train))):
+        scene = scene_of(one.motion, None, 3, 0)
+        for link, own in acting_forces(one, scene).items():
+            if link != "frame":
+                assert abs(sum(f.moment + (np.conjugate(f.at) * f.force).imag for f in own)) < 1e-6
     texts = _texts(ck.draw(forces, at=ck.deg(45)).shapes)
     assert {"F₃(B)", "F₄(B)", "F₅(B)"} <= set(texts)
 
