@@ -16,6 +16,7 @@ from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import Drive
 from compoundkin.model.laws import Law
 from compoundkin.model.laws.constant_laws import taylor
+from compoundkin.model.load_problems import load_designs
 from compoundkin.model.mechanism import Mechanism
 
 # A period is sampled as finely as a full turn in steps of five degrees.
@@ -125,6 +126,7 @@ def _shape(solving_order: SolvingOrder, drives: Mapping[str, tuple[Number, ...]]
     named += [(name, v) for name, ends in solving_order.ends.items() for end in ends for v in end if v is not None]
     points = solving_order.structure.mechanism.geometry.points
     named += [(f"links.{name}.points.{k}", v) for name, placed in points.items() for k, v in placed.items()]
+    named += load_designs(solving_order.structure.mechanism)
     for where, value in named:
         if not isinstance(value, np.ndarray):
             continue

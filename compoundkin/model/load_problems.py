@@ -68,6 +68,17 @@ def _numbers_of(item: Weighed) -> Iterator[tuple[str, Any]]:
                     yield key.name, part
 
 
+def load_designs(mechanism: Written) -> Iterator[tuple[str, Any]]:
+    """Yield the arrays of masses and loads over designs with their places.
+
+    The motion's axis is left out.
+    """
+    for where, item in placed_loads(mechanism):
+        for key, value in _numbers_of(item):
+            if np.ndim(value) > 1:
+                yield f"{where}.{key}", value[..., :1]
+
+
 def _no_numbers(where: str, item: Weighed) -> Iterator[Problem]:
     """Find what is empty or not finite, and a mass that would change along the motion."""
     for key, value in _numbers_of(item):

@@ -229,6 +229,18 @@ def test_units_are_needed_and_said_once() -> None:
     assert ck.gravity(0, -386.088582677165, unit="in/s^2").vector == pytest.approx(-9.80665j)
 
 
+def test_masses_and_loads_over_designs() -> None:
+    """Each design is as if it were alone, though all move alike."""
+
+    def words(k: Any) -> tuple[Any, ...]:
+        return ck.mass("ram", 1.0 + k), ck.spring("rod", "G", at="S", stiffness=2.0 + k), ck.torque("rod", 3.0 * k)
+
+    together = torque(press(*words(np.array([[0.0], [1.0], [2.0]]))))
+    assert together.shape == (3, CRANK.size)
+    for k in range(3):
+        np.testing.assert_allclose(together[k], torque(press(*words(float(k)))), rtol=1e-12, atol=1e-12)
+
+
 def test_every_load_is_told_in_a_report() -> None:
     table = {"over": "crank", "at": [0, 7], "values": [1, 8]}
     loaded = press(ck.effort("stroke", lambda s: 0 * s), ck.torque("rod", table), ck.force("G", (2.0, table)),
