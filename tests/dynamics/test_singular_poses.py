@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.view.report.forces_section import forces_report
 from tests import catalog
 from tests.dynamics.cases import SI, toggle_press
 from tests.support import reference
@@ -120,3 +121,9 @@ def test_change_points_of_the_catalog() -> None:
     assert {one.pose for one in forces.singular} == {(0,), (36,), (72,)}
     assert all(np.isnan(forces.pairs[name].force).all() for name in "ABCDEF")
     assert np.isfinite(forces.drives["crank"].effort).all()
+
+
+def test_the_report_tells_singular_poses() -> None:
+    weight = ck.force("coupler", (0.0, -5.0), at="P")
+    forces = ck.force_analysis(ck.solve(parallelogram(weight), {"crank": ck.deg(np.arange(0, 361, 30))}))
+    assert "pose 6, change point of coupler and follower: infinite" in " ".join(forces_report(forces).text().split())

@@ -25,6 +25,8 @@ from compoundkin.view.report.wording import listed, number
 BALANCES = "balances written anew by Newton and Euler, and virtual work"
 # Speeds that differ by less than this part of the greatest are constant.
 STEADY = 1e-9
+# So many singular poses are told one by one.
+SHOWN = 8
 
 
 def forces_section(forces: Forces, design: int = 0) -> Section:
@@ -52,6 +54,7 @@ def _blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
         yield Paragraph("Loads:")
         yield loads_table(forces)
     yield from _undetermined(forces)
+    yield from _singular(sample, forces)
     yield from reactions_blocks(sample, forces)
     yield from drives_blocks(sample, forces)
     yield from shaking_blocks(sample, forces)
@@ -98,6 +101,18 @@ def _undetermined(forces: Forces) -> Iterator[Block]:
         freed = dict.fromkeys(str(dropped) for one in found for dropped in one.freed)
         remedy = f"they would be determined were {listed(freed)} left free" if freed else ""
         yield Alert(f"Equilibrium does not determine {told}: they balance each other.", remedy)
+
+
+def _singular(sample: Sample, forces: Forces) -> Iterator[Block]:
+    """What becomes of forces at change points and limit positions."""
+    before = tuple(int(k) for k in np.unravel_index(sample.design, forces.shape[:-1] or (1,)))[: len(forces.shape) - 1]
+    found = [one for one in forces.singular if one.pose[:-1] == before]
+    told = "; ".join(f"pose {one.pose[-1]}, {one.kind} of {listed(one.links)}: {one.forces}" for one in found[:SHOWN])
+    more = f"; and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
+    if found:
+        yield Paragraph(
+            f"Forces at singular poses: {told}{more}. Finite ones are what they come to from beside the pose."
+        )
 
 
 def _speeds(sample: Sample) -> Iterator[str]:
