@@ -106,8 +106,9 @@ def _fitting(asked: Mapping[str, Any]) -> None:
     from compoundkin.base.errors import InvalidInput, Problem
 
     instead = [option for option, name in INSTEAD.items() if asked[name] not in (None, False)]
-    if asked["statics"] and not any(option in FORCE_PICTURES for option in instead):
-        raise InvalidInput(Problem("--statics", "it tells how forces are found", "give --forces too"))
+    how = [option for option in ("statics", "holding") if asked[option]]
+    if how and not any(option in FORCE_PICTURES for option in instead):
+        raise InvalidInput(Problem(f"--{how[0]}", "it tells how forces are found", "give --forces too"))
     unfit = instead[1:] + [key for key in OF_SKETCH if key != "labels" and asked[key]]
     if asked["view"]:
         unfit += [key for key in ("at", "speeds", "modes") if asked[key]]

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 STATICS = click.option("--statics", is_flag=True, help="Leave inertia out: masses have weight only.")
+HOLDING = click.option("--holding", default="", metavar="PAIR",
+                       help="A pair, pin or driver that holds in the drivers' place.")  # fmt: skip
 # What is drawn with forces: options, and the names of their values.
 FORCE_PICTURES = {
     "forces": "forces",
@@ -31,6 +33,7 @@ _OPTIONS = (
     click.option("--force-polygons", is_flag=True, help="Draw the forces on every link head to tail."),
     click.option("--force-polygon", metavar="LINK", help="The same of one link."),
     STATICS,
+    HOLDING,
 )
 
 
@@ -52,14 +55,14 @@ def picture_of_forces(
     """Return the picture with forces that is asked for, at a pose."""
     from compoundkin.view.sketch import draw
 
-    forces = forces_of(shown, asked["statics"])
+    forces = forces_of(shown, asked["statics"], asked["holding"])
     if asked["forces"]:
         return draw(forces, at, labels=asked["labels"], **words)
     kind = "free-bodies" if asked["free_bodies"] or asked["free_body"] else "force-polygon"
     return draw(forces, at, kind=kind, link=asked["free_body"] or asked["force_polygon"], **words)
 
 
-def forces_of(what: Motion | Structure, statics: bool) -> Forces:
+def forces_of(what: Motion | Structure, statics: bool, holding: str = "") -> Forces:
     """Return the forces of a motion, or of a structure over its range."""
     from compoundkin.cli.progress import working
     from compoundkin.dynamics.force_analysis import force_analysis
@@ -67,4 +70,4 @@ def forces_of(what: Motion | Structure, statics: bool) -> Forces:
 
     motion = what if isinstance(what, Motion) else solve(what)
     with working("finding forces"):
-        return force_analysis(motion, inertia=not statics)
+        return force_analysis(motion, inertia=not statics, holding=holding)

@@ -8,7 +8,7 @@ import click
 
 from compoundkin.cli.drive_options import DESIGN, drive_options, solved
 from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
-from compoundkin.cli.force_options import STATICS, forces_of
+from compoundkin.cli.force_options import HOLDING, STATICS, forces_of
 from compoundkin.cli.shell import NOT_ASSEMBLED
 from compoundkin.cli.structure import unsolvable
 
@@ -29,8 +29,11 @@ Examples:
 @drive_options
 @DESIGN
 @STATICS
+@HOLDING
 @report_options
-def command(file: str, design: int, statics: bool, form: str | None, path: str | None, **asked: Any) -> int:
+def command(
+    file: str, design: int, statics: bool, holding: str, form: str | None, path: str | None, **asked: Any
+) -> int:
     """Print forces in all pairs, efforts of drivers, the force on the frame.
 
     The mechanism states its units of length, mass and force, and has masses or loads. What is assumed comes first.
@@ -45,7 +48,7 @@ def command(file: str, design: int, statics: bool, form: str | None, path: str |
     if structure.faults:
         put_report(report(structure), form, path)
         return unsolvable(len(structure.faults))
-    forces = forces_of(solved(structure, asked), statics)
+    forces = forces_of(solved(structure, asked), statics, holding)
     with working("finding extremes"):
         made = forces_report(forces, design)
     put_report(made, form, path)

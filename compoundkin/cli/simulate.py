@@ -28,8 +28,8 @@ OF_SPEED = f".{SPEED}"
     epilog="""\b
 Examples:
   compoundkin simulate pendulum.toml --until 2 --start arm=60
-  compoundkin simulate linkage.toml --until 0.5 --start crank=30 --start crank.speed=5 -o fall.csv
-  compoundkin simulate linkage.toml --until 2 --step 0.01 --output crank,G.velocity -o fall.parquet
+  compoundkin simulate bar.toml --until 1 --start a=30 --start a.speed=5
+  compoundkin simulate bar.toml --until 2 --output a,G.velocity -o fall.csv
   compoundkin simulate five-bar.toml --until 1 --hold left=90 -o fall.html
   compoundkin simulate pendulum.toml --until 2 -o fall.gif
 """

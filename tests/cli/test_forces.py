@@ -38,6 +38,8 @@ def test_forces_are_printed_and_written(run: Run, tmp_path: Path) -> None:
     assert text.index("Assumed:") < text.index("Masses") < text.index("Loads:") < text.index("Reactions")
     still = json.loads(run("forces", "loaded", "--at", "35", "--statics", "--format", "json").stdout)
     assert "statics: no inertia" in still["sections"]["forces"]["blocks"][0]["text"]
+    held = run("forces", "loaded", "--at", "35", "--statics", "--holding", "B").stdout
+    assert "B holds in the drivers' place" in held.replace("\n", " ")
     assert run("forces", "loaded", "--at", "0,35", "-o", "forces.md").exit_code == 0
     assert "## Forces" in (tmp_path / "forces.md").read_text(encoding="utf-8")
 
@@ -83,6 +85,7 @@ def test_a_pendulum_is_let_go(run: Run, tmp_path: Path) -> None:
         (("draw", "loaded", "--free-body", "plat"), "did you mean"),
         (("draw", "loaded", "--forces", "--ghosts", "3"), "does not go with"),
         (("draw", "loaded", "--statics"), "give --forces too"),
+        (("forces", "loaded", "--at", "35", "--holding", "Z"), "Z"),
         (("plot", "loaded", "--bearing", "Z"), "there is no such pair"),
         (("simulate", "pendulum", "--until", "1", "--start", "arm.speed=5"), "give --start arm=VALUE too"),
         (("simulate", "pendulum", "--until", "1", "--start", "arn=5"), "did you mean"),

@@ -17,7 +17,7 @@ from compoundkin.view.sketch import draw
 
 
 def forces_html(what: Forces | Simulation, drawn: bool) -> Iterator[str]:
-    """Yield the picture, where it is `drawn`, and the tables of forces or of a simulation."""
+    """Yield a picture, if `drawn`, and tables of forces or a simulation."""
     if isinstance(what, Simulation):
         yield framed(what.motion) if drawn else ""
         yield from plain_sections(simulation_report(what).sections)

@@ -83,6 +83,9 @@ def assumptions(sample: Sample, forces: Forces) -> Iterator[str]:
         yield f"no mass on {listed(massless)}"
     yield "accelerations cause inertia forces" if forces.inertia else "statics: no inertia"
     yield from _speeds(sample)
+    held = forces.motion.loading.get("holding")
+    if held:
+        yield f"{held} holds in the drivers' place"
     yield friction_words(forces)
 
 
