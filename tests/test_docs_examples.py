@@ -14,7 +14,7 @@ import compoundkin as ck
 DOCS = Path(__file__).parents[1] / "docs"
 
 
-@pytest.mark.parametrize("page", ["pictures.md", "circuits.md", "press-drive.md", "machine.md"])
+@pytest.mark.parametrize("page", ["pictures.md", "circuits.md", "press-drive.md", "machine.md", "simulation.md"])
 def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     lines = [line[4:] for line in (DOCS / page).read_text("utf-8").splitlines() if line.startswith("    ")]

@@ -13,7 +13,7 @@ from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.dynamics.coordinate_change import chart_of
 from compoundkin.dynamics.driver_chart import DriverChart
-from compoundkin.dynamics.integration import SimulatedCourse, Step, integrate
+from compoundkin.dynamics.integration import PARTS, SimulatedCourse, Step, integrate
 from compoundkin.dynamics.simulated_energy import simulated_energy
 from compoundkin.dynamics.simulated_motion import simulated_motion
 from compoundkin.dynamics.simulation import Simulation
@@ -69,6 +69,7 @@ def simulate(
     (Simulation('Pendulum' over 2 s in 18 steps), True)
     """
     _hold(mechanism, until, tolerance, restitution)
+    _hold_progress(progress)
     begun = simulation_start(mechanism, start, prescribed or {}, modes)
     chart = chart_of(begun.motion, tuple(begun.speeds), begun.laws)
     state = np.array([*(begun.values[name] for name in chart.free), *begun.speeds.values(), 0.0])
@@ -102,6 +103,16 @@ def _hold(mechanism: Mechanism, until: float, tolerance: float, restitution: flo
         raise InvalidInput(Problem("restitution", f"{restitution:g} is no coefficient of restitution", "0 to 1"))
     if not 1e-13 <= tolerance <= 1e-2:
         raise InvalidInput(Problem("tolerance", f"{tolerance:g} is too fine or too coarse", "1e-13 to 1e-2"))
+
+
+def _hold_progress(progress: Callable[[int, int], None] | None) -> None:
+    """Raise InvalidInput for what cannot be told of progress."""
+    try:
+        if progress is not None:
+            progress(0, PARTS)
+    except Exception as error:  # whatever a user's function does
+        remedy = "give a function of two numbers: how much is done, of how much"
+        raise InvalidInput(Problem("progress", f"it cannot be told: {error}", remedy)) from error
 
 
 def _hold_moving(chart: DriverChart, state: Number) -> None:

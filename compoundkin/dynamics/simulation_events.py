@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.dynamics.driver_chart import DriverChart
 from compoundkin.dynamics.force_analysis import force_analysis
@@ -59,14 +59,14 @@ class Watch:
     def value(self, chart: DriverChart, time: float, state: Number) -> float:
         """Return the function at a state. Raises InvalidInput where it returns no number."""
         n = len(chart.free)
-        told = self.function(SimulatedState(chart.state(time, state[:n], state[n : 2 * n])))
+        here = SimulatedState(chart.state(time, state[:n], state[n : 2 * n]))
         try:
-            found = float(np.ravel(told)[0])
-        except (TypeError, ValueError, IndexError):
-            what = f"its function returned {told!r}"
-            raise InvalidInput(
-                Problem(f"events.{self.name}", what, "return a number that passes through zero")
-            ) from None
+            found = float(np.ravel(self.function(here))[0])
+        except CompoundkinError:
+            raise
+        except Exception as error:  # whatever a user's function does
+            remedy = 'give a function of the state that passes through zero: lambda state: state["B.y"] - 20'
+            raise InvalidInput(Problem(f"events.{self.name}", f"its function fails: {error}", remedy)) from error
         return found
 
 
