@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.dynamics.force_analysis import force_analysis
-    from compoundkin.dynamics.forward_dynamics import simulate
+    from compoundkin.dynamics.simulation.forward_dynamics import simulate
     from compoundkin.files import load, save
     from compoundkin.kinematics import solve
     from compoundkin.kinematics.gaps import gaps
@@ -142,7 +142,7 @@ _LATE = {
     "quantity": "kinematics.quantities",
     "report": "view.report",
     "save": "files",
-    "simulate": "dynamics.forward_dynamics",
+    "simulate": "dynamics.simulation.forward_dynamics",
     "solve": "kinematics",
     "verify": "analysis.checks",
     "with_driver": "synthesis.inversion",

@@ -13,24 +13,24 @@ from compoundkin.analysis.checks import Check, Finding
 from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.reached_region import Workspace
-from compoundkin.dynamics.driver_efforts import DriverEffort
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.frame_forces import ShakingForce
 from compoundkin.dynamics.friction.efficiency import Efficiency
 from compoundkin.dynamics.friction.friction_forces import FrictionForces, PairFriction, Wedged
 from compoundkin.dynamics.friction.pose_stretches import PoseStretch
-from compoundkin.dynamics.held_pair import HoldingEffort
-from compoundkin.dynamics.lift_off import LiftOff, LiftOffSpeed
-from compoundkin.dynamics.link_forces import LinkForces
-from compoundkin.dynamics.link_wrench import LinkWrench
-from compoundkin.dynamics.pair_forces import PairForce
-from compoundkin.dynamics.pin_forces import PinForces
-from compoundkin.dynamics.power import Powers
-from compoundkin.dynamics.simulated_energy import SimulatedEnergy
-from compoundkin.dynamics.simulation import Simulation
-from compoundkin.dynamics.simulation_events import SimulationEvent
-from compoundkin.dynamics.singular_poses import SingularPose
-from compoundkin.dynamics.undetermined import Undetermined
+from compoundkin.dynamics.named_forces.driver_efforts import DriverEffort
+from compoundkin.dynamics.named_forces.frame_forces import ShakingForce
+from compoundkin.dynamics.named_forces.lift_off import LiftOff, LiftOffSpeed
+from compoundkin.dynamics.named_forces.link_forces import LinkForces
+from compoundkin.dynamics.named_forces.link_wrench import LinkWrench
+from compoundkin.dynamics.named_forces.pair_forces import PairForce
+from compoundkin.dynamics.named_forces.pin_forces import PinForces
+from compoundkin.dynamics.reactions.held_pair import HoldingEffort
+from compoundkin.dynamics.reactions.singular_poses import SingularPose
+from compoundkin.dynamics.reactions.undetermined import Undetermined
+from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
+from compoundkin.dynamics.simulation.simulation import Simulation
+from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
+from compoundkin.dynamics.work.power import Powers
 from compoundkin.kinematics import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.kinematics.chosen_modes import GroupMode
 from compoundkin.kinematics.configuration import Configuration

@@ -15,7 +15,7 @@ from compoundkin.cli.structure import unsolvable
 from compoundkin.model.attributes import SPEED
 
 if TYPE_CHECKING:
-    from compoundkin.dynamics.simulation import Simulation
+    from compoundkin.dynamics.simulation.simulation import Simulation
     from compoundkin.structure import Structure
 
 # What a simulation is written as, by the suffix of the file; the first that has it.
@@ -82,7 +82,7 @@ def simulated(structure: Structure, asked: dict[str, Any]) -> Simulation:
     import numpy as np
 
     from compoundkin.cli.progress import counting
-    from compoundkin.dynamics.forward_dynamics import simulate
+    from compoundkin.dynamics.simulation.forward_dynamics import simulate
     from compoundkin.files.written_quantities import spaced
 
     step, until = asked["step"], asked["until"]

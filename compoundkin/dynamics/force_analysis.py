@@ -11,12 +11,12 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.rubbed_motion import with_friction
-from compoundkin.dynamics.held_pair import held_wrenches, holding_effort, holds
-from compoundkin.dynamics.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.redundant_reactions import own_wrenches
-from compoundkin.dynamics.reverse_pass import found_reactions
-from compoundkin.dynamics.singular_poses import at_singular_poses
+from compoundkin.dynamics.reactions.held_pair import held_wrenches, holding_effort, holds
+from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
+from compoundkin.dynamics.reactions.redundant_reactions import own_wrenches
+from compoundkin.dynamics.reactions.reverse_pass import found_reactions
+from compoundkin.dynamics.reactions.singular_poses import at_singular_poses
 from compoundkin.kinematics.motion import Motion
 
 # What the mechanism does to its frame, among the wrenches by pairs.

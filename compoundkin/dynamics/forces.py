@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 from compoundkin.base.display import Shows
 from compoundkin.base.errors import Problem, UnknownName, nearest
-from compoundkin.dynamics.driver_efforts import DriverEffort
 from compoundkin.dynamics.found_forces import FoundForces
-from compoundkin.dynamics.frame_forces import ShakingForce
 from compoundkin.dynamics.friction.efficiency import Efficiency
-from compoundkin.dynamics.link_forces import LinkForces, link_forces
-from compoundkin.dynamics.pair_forces import PairForce
-from compoundkin.dynamics.pin_forces import PinForces
-from compoundkin.dynamics.power import Powers, powers_of
-from compoundkin.dynamics.undetermined import Undetermined, undetermined
+from compoundkin.dynamics.named_forces.driver_efforts import DriverEffort
+from compoundkin.dynamics.named_forces.frame_forces import ShakingForce
+from compoundkin.dynamics.named_forces.link_forces import LinkForces, link_forces
+from compoundkin.dynamics.named_forces.pair_forces import PairForce
+from compoundkin.dynamics.named_forces.pin_forces import PinForces
+from compoundkin.dynamics.reactions.undetermined import Undetermined, undetermined
+from compoundkin.dynamics.work.power import Powers, powers_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import Named
 from compoundkin.kinematics.table import Table, table_of
@@ -110,7 +110,7 @@ class Forces(Shows, FoundForces):
 
     def check(self) -> Check:
         """Return the findings of an independent verification, which is `verify(forces)`."""
-        from compoundkin.dynamics.force_check import check_of
+        from compoundkin.dynamics.verification.force_check import check_of
 
         return check_of(self)
 

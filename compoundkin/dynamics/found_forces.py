@@ -13,11 +13,11 @@ from compoundkin.base.copies import CopiesFields
 from compoundkin.base.poses import Pose
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.friction_forces import FrictionForces, no_friction
-from compoundkin.dynamics.held_pair import HoldingEffort
-from compoundkin.dynamics.link_wrench import LinkWrench
-from compoundkin.dynamics.self_stresses import Open, SelfStress, self_stress
-from compoundkin.dynamics.singular_poses import SingularPose
-from compoundkin.dynamics.virtual_work import virtual_efforts
+from compoundkin.dynamics.named_forces.link_wrench import LinkWrench
+from compoundkin.dynamics.reactions.held_pair import HoldingEffort
+from compoundkin.dynamics.reactions.self_stresses import Open, SelfStress, self_stress
+from compoundkin.dynamics.reactions.singular_poses import SingularPose
+from compoundkin.dynamics.work.virtual_work import virtual_efforts
 from compoundkin.kinematics.inputs import Inputs, PoseGrid
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import LinkMotion, PointMotion

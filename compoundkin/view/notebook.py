@@ -13,7 +13,7 @@ from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.simulation import Simulation
+from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.configuration_arrays import Configurations

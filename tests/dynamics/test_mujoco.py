@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.dynamics.coordinate_change import chart_of
+from compoundkin.dynamics.simulation.coordinate_change import chart_of
 from compoundkin.results import Motion
 from tests.catalog import mechanism as loaded
 from tests.dynamics.cases import SI

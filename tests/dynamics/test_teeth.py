@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.reverse_pass import accompanying, found_reactions, reverse_pass
+from compoundkin.dynamics.reactions.reverse_pass import accompanying, found_reactions, reverse_pass
 from compoundkin.model.pairs.optional_answers import as_accompanied
 from compoundkin.results import Forces
 from tests.support import reference

@@ -17,8 +17,8 @@ from compoundkin.dynamics.friction.coulomb_equations import EXACT, NONE, Frictio
 from compoundkin.dynamics.friction.press_influence import PressInfluence
 from compoundkin.dynamics.friction.rubs import Rub, flat, senses
 from compoundkin.dynamics.loaded_block import LoadedBlock
-from compoundkin.dynamics.redundant_reactions import own_wrenches
-from compoundkin.dynamics.reverse_pass import Reactions, found_reactions, reverse_pass
+from compoundkin.dynamics.reactions.redundant_reactions import own_wrenches
+from compoundkin.dynamics.reactions.reverse_pass import Reactions, found_reactions, reverse_pass
 from compoundkin.model.pairs.optional_answers import as_accompanied
 
 # So often at most is what parts gears found again: each time its change is a friction's part of the one before.

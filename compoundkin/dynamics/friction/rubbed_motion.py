@@ -16,11 +16,11 @@ from compoundkin.dynamics.friction.coulomb_equations import NONE, SEVERAL, Frict
 from compoundkin.dynamics.friction.friction_forces import FrictionForces
 from compoundkin.dynamics.friction.friction_pass import RubbedBlock, rubbed_block
 from compoundkin.dynamics.friction.rubs import Rub, flat, resting, rubs_of, senses
-from compoundkin.dynamics.joined_wrenches import JoinedWrenches
-from compoundkin.dynamics.link_wrench import FRICTION, LinkWrench
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
-from compoundkin.dynamics.redundant_reactions import own_wrenches
-from compoundkin.dynamics.reverse_pass import Reactions
+from compoundkin.dynamics.named_forces.link_wrench import FRICTION, LinkWrench
+from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
+from compoundkin.dynamics.reactions.redundant_reactions import own_wrenches
+from compoundkin.dynamics.reactions.reverse_pass import Reactions
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.unit_rates import moved_alone
 from compoundkin.model.elements import FRAME

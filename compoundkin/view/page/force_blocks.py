@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.simulation import Simulation
+from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.view.page.html_blocks import plain_block, plain_figure, plain_sections
 from compoundkin.view.page.markup import safe
 from compoundkin.view.page.player import framed

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from compoundkin.base.arrays import degrees
-from compoundkin.dynamics.simulation import Simulation
+from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.model.attributes import DEGREES, PER_SECOND, unit_of
 from compoundkin.view.report.report_data import Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report

@@ -12,8 +12,8 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.link_wrench import EFFORT, FRICTION, PAIR, WEIGHT, LinkWrench
-from compoundkin.dynamics.link_wrench import INERTIA as OF_INERTIA
+from compoundkin.dynamics.named_forces.link_wrench import EFFORT, FRICTION, PAIR, WEIGHT, LinkWrench
+from compoundkin.dynamics.named_forces.link_wrench import INERTIA as OF_INERTIA
 from compoundkin.model.elements import FRAME
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.sketch_style import INERTIA, LOAD, REACTION

@@ -1,0 +1,1 @@
+"""Counterweights: which exist, and what they do."""

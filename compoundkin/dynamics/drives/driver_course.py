@@ -1,0 +1,167 @@
+"""The effort of a driver along a motion: a function of the place, solved again between the poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.series import Number
+from compoundkin.dynamics.drives.course_quadrature import Pieces, integrals, smooth_pieces
+from compoundkin.dynamics.force_analysis import force_analysis
+from compoundkin.dynamics.forces import Forces
+from compoundkin.kinematics.extremes import Measure, between, closed_cycles, given_over
+from compoundkin.kinematics.extremes.inputs_between import inputs_between
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import EFFORT, POWER
+from compoundkin.model.units import Units
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DriverCourse(PrintsShort):
+    """A driver's effort along a motion, with its way."""
+
+    forces: Forces
+    driver: str
+
+    @property
+    def motion(self) -> Motion:
+        """The motion."""
+        return self.forces.motion
+
+    @property
+    def order(self) -> int:
+        """How many derivatives of the motion the effort takes."""
+        return 2 if self.forces.inertia else 1
+
+    @property
+    def units(self) -> Units:
+        """The mechanism's units."""
+        units = self.motion.mechanism.units
+        assert units is not None
+        return units
+
+    @property
+    def unit(self) -> str:
+        """The unit of the effort."""
+        return self.units.moment if self.motion.drives[self.driver].is_angle else self.units.force
+
+    def effort(self, at: Motion) -> Number:
+        """Return the effort at the poses, or at places between them."""
+        forces = self.forces if at is self.motion else force_analysis(at, inertia=self.forces.inertia)
+        return np.asarray(forces.drives[self.driver].effort)
+
+    def power(self, at: Motion) -> Number:
+        """Return effort times rate at the poses, or at places between them."""
+        return self.effort(at) * at.drives[self.driver].rate
+
+    def above(self, less: Number) -> Measure:
+        """Return the effort less a number for each design, to be searched."""
+        scale, own = self._largest, np.reshape(less, (*self.motion.shape[:-1], 1))
+
+        def of(at: Motion) -> Number:
+            return self.effort(at) - (own if at is self.motion else given_over(at, own)[0])
+
+        return Measure(f"{self.driver}.{EFFORT}", self.unit, self.order, of, scale=scale)
+
+    @property
+    def measures(self) -> tuple[Measure, Measure]:
+        """The effort and the power as what can be searched."""
+        effort = f"{self.driver}.{EFFORT}"
+        return (
+            Measure(effort, self.unit, self.order, self.effort, scale=self._largest),
+            Measure(
+                f"{self.driver}.{POWER}", self.units.power, self.order, self.power, scale=self._largest * self._pace
+            ),
+        )
+
+    @property
+    def _largest(self) -> float:
+        return float(np.nanmax(np.abs(self.effort(self.motion)), initial=0.0))
+
+    @property
+    def _pace(self) -> float:
+        return float(np.nanmax(np.abs(self.motion.drives[self.driver].rate), initial=0.0))
+
+    def way_by_place(self, designs: Number, places: Number) -> Number:
+        """Return how fast the driver goes, by the place."""
+        found = inputs_between(self.motion, designs, places, 1, by_place=True).drives[self.driver][1]
+        return np.broadcast_to(found, (len(places), 1))[:, 0]
+
+    def _rows(self, designs: Number, places: Number) -> Number:
+        """Return by the place: way, work; then 1, effort, power and the squares of both, by what means are taken over.
+
+        Means are over the time of a motion in time, else over the driver's way.
+        """
+        at = between(self.motion, designs, places, self.order)
+        effort, way, rate = self.effort(at), self.way_by_place(designs, places), at.drives[self.driver].rate
+        over = np.abs(way) if self.motion.time is None else self._time_by_place(designs, places)
+        power = effort * rate
+        return np.stack([way, effort * way, *(over * f for f in (1.0, effort, power, effort**2, power**2))])
+
+    def _time_by_place(self, designs: Number, places: Number) -> Number:
+        """Return how fast the time goes, by the place."""
+        before = np.clip(np.floor(places), 0, self.motion.inputs.poses - 2)
+        times = (between(self.motion, designs, before + k, 0).time for k in (0.0, 1.0))
+        first, second = times
+        return np.asarray(second) - np.asarray(first)
+
+    @cached_property
+    def pieces(self) -> Pieces:
+        """The smooth pieces of the motion."""
+        return smooth_pieces(self.motion)
+
+    @cached_property
+    def _sums(self) -> Number:
+        found, total = integrals(self._rows, self.pieces), np.zeros((7, self.motion.inputs.designs))
+        np.add.at(total.T, self.pieces.design, found.T)
+        return total
+
+    @property
+    def way(self) -> Number:
+        """How far the driver goes, (designs,)."""
+        return self._sums[0]
+
+    @property
+    def work(self) -> Number:
+        """The work of the driver, (designs,)."""
+        return self._sums[1]
+
+    @property
+    def means(self) -> Number:
+        """The means of effort and power, (2, designs)."""
+        return self._sums[3:5] / self._sums[2]
+
+    @property
+    def mean_squares(self) -> Number:
+        """The roots of the means of the squares of effort and power, (2, designs)."""
+        return np.sqrt(self._sums[5:] / self._sums[2])
+
+
+def course_of(forces: Forces, driver: str | None, of_cycle: bool = False) -> DriverCourse:
+    """Return the course of a driver, of the only one without a name.
+
+    Raises UnknownName for another name, InvalidInput where none is named of several, where it does not move, and for
+    what is no whole closed cycle if that is asked.
+    """
+    motion, name = forces.motion, driver_named(forces.motion, driver)
+    if motion.inputs.poses < 2:
+        raise InvalidInput(Problem("motion", "a single pose has no course", "solve it at several values of a driver"))
+    if of_cycle and not (closed_cycles(motion).all() and not np.any(motion.failed)):
+        raise InvalidInput(Problem("motion", "it is no closed cycle", "solve it over a full turn of its driver"))
+    if np.any(np.ptp(np.broadcast_to(motion.drives[name].value, motion.shape), axis=-1) == 0.0):
+        raise InvalidInput(Problem(name, "the driver does not move along the motion", "name one that does"))
+    return DriverCourse(forces, name)
+
+
+def driver_named(motion: Motion, driver: str | None) -> str:
+    """Return a driver, the only one without a name. Raises UnknownName, InvalidInput where none is named of several."""
+    names = tuple(motion.drives)
+    if driver is None and len(names) != 1:
+        raise InvalidInput(Problem("driver", f"there are {len(names)}: {', '.join(names)}", "name one"))
+    if driver is not None and driver not in names:
+        raise UnknownName(Problem("driver", f"there is no driver {driver!r}", nearest(driver, names)))
+    return names[0] if driver is None else driver

@@ -1,0 +1,1 @@
+"""Reactions: the reverse pass over the groups, and what equilibrium leaves open."""

@@ -1,0 +1,79 @@
+"""Forces that equilibrium leaves open, in words: which part of them, together with which others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from compoundkin.base.arrays import Number, cross
+from compoundkin.dynamics.found_forces import FoundForces
+from compoundkin.dynamics.named_forces.link_wrench import NOTHING
+from compoundkin.dynamics.named_forces.pair_forces import PairForce
+from compoundkin.dynamics.reactions.self_stresses import Open
+from compoundkin.model.pairs import Pair
+from compoundkin.structure.parts import Dropped
+
+# A force is along a line of a link where it is at every pose to so much of an angle.
+ALONG = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Undetermined:
+    """Part of the force in a pair that equilibrium does not determine.
+
+    `part` says which, `others` are the pairs in states of self-stress with it; were all of `freed` left free, it would
+    be determined. `line` is the direction of the part, NaN where it is the whole force or a moment; `poses` are those
+    at which it is open, in the motion's shape.
+    """
+
+    pair: str
+    part: str
+    others: tuple[str, ...]
+    freed: tuple[Dropped, ...]
+    line: Number = field(repr=False)
+    poses: Number = field(repr=False)
+
+    def __str__(self) -> str:
+        return f"{self.pair}: {self.part}, balanced by forces in {', '.join(self.others)}"
+
+
+def undetermined(forces: FoundForces) -> tuple[Undetermined, ...]:
+    """Return what equilibrium leaves open of the forces in all pairs."""
+    if not forces.relaxed:
+        return ()
+    held = {name: PairForce(forces, forces.solving_order.pairs[name]) for name in forces.wrenches}
+    left = {name: one.acting.open for name, one in held.items()}
+    return tuple(found for name, one in left.items() if one is not None for found in _parts(forces, held[name], one))
+
+
+def _parts(forces: FoundForces, held: PairForce, left: Open) -> Iterator[Undetermined]:
+    others, freed = forces.self_stress.sharing(held.name)
+    shown, line = forces.motion.grid.shaped, forces.motion.grid.known(left.line)
+    if np.any(left.force):
+        part = _direction(forces, held.pair, left)
+        yield Undetermined(held.name, part, others, freed, line, shown(left.force))
+    # that of a single force goes with it
+    if np.any(left.moment) and held.pair.held_angles:
+        part = f"the moment about {held.at}"
+        yield Undetermined(held.name, part, others, freed, NOTHING + 0.0 * line, shown(left.moment))
+
+
+def _direction(forces: FoundForces, pair: Pair, left: Open) -> str:
+    """Say which part of a force is open."""
+    if pair.held == 1 or pair.held_angles:
+        return "the normal force"
+    line = np.where(left.force, left.line, np.nan)
+    if np.all(np.isnan(line[left.force])):
+        return "the force, in all directions"
+    motion, letter = forces.motion, pair.letters[0]
+    for link in pair.members:
+        points = motion.mechanism.geometry.points[link]
+        for other in points if letter in points else ():
+            if other != letter:
+                along = motion.poses[link].u.c[0] * (points[other] - points[letter])
+                apart = np.abs(cross(along / np.abs(along), np.where(np.isnan(line), along / np.abs(along), line)))
+                if np.all(apart < ALONG):
+                    return f"the force along {letter} {other} of {link}"
+    return "the force along one line"

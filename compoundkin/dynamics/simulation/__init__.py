@@ -1,0 +1,1 @@
+"""Forward dynamics: mechanisms that move under their masses and loads."""

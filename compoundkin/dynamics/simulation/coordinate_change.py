@@ -1,0 +1,101 @@
+"""Another pair in a driver's place, where the mechanism comes to a limit position of that driver.
+
+Next to a limit position other pairs move infinitely faster than the driver. The fastest of them tells the pose as well,
+and is regular there: the driver's coordinate is then a smooth function of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.errors import CompoundkinError
+from compoundkin.base.series import Number
+from compoundkin.dynamics.simulation.driver_chart import DriverChart
+from compoundkin.dynamics.simulation.driver_state import DriverState
+from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
+from compoundkin.kinematics import solve
+from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.elements import Drive, Expectation, Item, Mode
+from compoundkin.model.laws import Law
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.optional_answers import Drivable, as_drivable
+
+
+class FastPair(NamedTuple):
+    """A pair and how fast it moves by the scales. A driver moves at unit rate."""
+
+    pair: Pair
+    ratio: float
+    driver: str
+
+
+def fastest_pair(chart: DriverChart, state: DriverState) -> FastPair | None:
+    """Return the pair that moves fastest at unit rate of a free driver. None where none could be driven."""
+    return max(_pairs(chart, state), key=lambda found: found.ratio, default=None)
+
+
+def _pairs(chart: DriverChart, state: DriverState) -> Iterator[FastPair]:
+    for pair in chart.candidates:
+        slopes = np.abs(state.slopes(pair))[: len(chart.free)] * chart.scales
+        slopes = slopes / (1.0 if pair.free_is_angle else chart.order.size)
+        if np.isfinite(slopes).all():
+            yield FastPair(pair, float(slopes.max()), chart.free[int(np.argmax(slopes))])
+
+
+def driven_there(chart: DriverChart, state: DriverState, fast: FastPair) -> tuple[DriverChart, Number] | None:
+    """Return the chart with a pair driven in the place of a driver.
+
+    With it comes its state. None where it cannot be solved.
+    """
+    first, second = fast.pair.members
+    taken = {own.name for own in chart.mechanism.drives}
+    name = next(one for one in (second, f"{second} on {first}", f"{fast.pair.name} driven") if one not in taken)
+    items = [Drive(name, second, first) if isinstance(item, Drive) and item.name == fast.driver else item
+             for item in chart.mechanism.items]  # fmt: skip
+    moved = state.loaded.coordinate(fast.pair.name)
+    free = tuple(name if one == fast.driver else one for one in chart.free)
+    values = dict(zip(chart.names, state.values, strict=True))
+    speeds = dict(zip(chart.names, state.speeds, strict=True))
+    sense = float(as_driven(fast.pair).driven_by(second))
+    values[name], speeds[name] = float(moved.c[0]) * sense, float(moved.c[1]) * sense
+    del values[fast.driver]
+    try:
+        mechanism = _written(chart.mechanism, items)
+        start = solve(mechanism, {one: [value] for one, value in values.items()}, order=1, modes=_here(state, values))
+        found = chart_of(start, free, chart.laws)
+    except CompoundkinError:
+        return None
+    return found, np.array([*(values[one] for one in free), *(speeds[one] for one in free)])
+
+
+def _here(state: DriverState, values: dict[str, float]) -> Configuration:
+    """Return the configuration of a state."""
+    structure = state.chart.start.structure
+    return Configuration(
+        structure, values, placed_at(state.block.world, (0, 0)), {}, {}, dimensions_at(structure, 0, 0)
+    )
+
+
+def _written(mechanism: Mechanism, items: list[Item]) -> Mechanism:
+    """Return a mechanism driven elsewhere, without what was said of the old driver."""
+    kept = [item for item in items if not isinstance(item, Mode | Expectation)]
+    known = {*mechanism.carriers, *mechanism.links, *(pair.name for pair in mechanism.written_pairs)}
+    outputs = [name for name in mechanism.outputs if name.split("(")[0].split(".")[0] in known]
+    return Mechanism(mechanism.title, *kept, units=mechanism.units, outputs=outputs, source=mechanism.source)
+
+
+def as_driven(pair: Pair) -> Drivable:
+    """Return a pair that is known to be one that can be driven."""
+    found = as_drivable(pair)
+    assert found is not None
+    return found
+
+
+def chart_of(start: Motion, free: tuple[str, ...], laws: Mapping[str, Law]) -> DriverChart:
+    """Return the chart around a pose. It has a table where a single driver moves everything."""
+    return DriverChart(start, free, laws) if len(free) + len(laws) > 1 else TabulatedChart(start, free, laws)

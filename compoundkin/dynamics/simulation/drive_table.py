@@ -1,0 +1,181 @@
+"""The equation of motion of one driver as a table over its coordinate: Chebyshev polynomials, piece by piece.
+
+Of one freedom everything but time and speed is a function of the coordinate. It is solved once at Chebyshev's points of
+pieces that are halved until the polynomials hold to rounding, and read off them afterwards.
+
+Source: L. N. Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, chapters 3 and 4.
+"""
+
+from __future__ import annotations
+
+import warnings
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from compoundkin.base.errors import CompoundkinError
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Number, Series
+from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.dynamics.work.mass_motion import mass_motions
+from compoundkin.dynamics.work.moving_masses import free_fall, units_of
+from compoundkin.kinematics import solve
+from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.extremes import between
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.elements import Load
+from compoundkin.model.pairs import Pair
+
+# Points of a piece; pieces of a table to begin with, and how often they are halved.
+POINTS, PIECES, HALVED = 24, 16, 7
+# Polynomials hold where their last coefficients are this part of the largest: some hundred units of rounding.
+HOLDS, LAST = 3e-14, 3
+# Poses of the motion by which the configuration is kept.
+POSES = 145
+
+_ANGLES = (np.arange(POINTS) + 0.5) * np.pi / POINTS
+NODES = np.cos(_ANGLES)
+_TO_COEFFICIENTS = np.cos(np.outer(np.arange(POINTS), _ANGLES)) * (2.0 / POINTS)
+_TO_COEFFICIENTS[0] /= 2.0
+_DEGREES = np.arange(POINTS)
+
+
+@dataclass(eq=False)
+class TablePiece:
+    """A piece of a table. It has polynomials of inertia, bias, stored and other forces, and the poses at its points."""
+
+    low: float
+    high: float
+    terms: Number  # (4, POINTS)
+    ratio: float  # how fast the fastest pair moves, by the scales
+    nodes: Mapping[str, Pose]
+    place: slice
+    known: dict[str, Number] = field(default_factory=dict)
+
+    def basis(self, value: float) -> Number:
+        """Return Chebyshev's polynomials at a value."""
+        x = (2.0 * value - self.low - self.high) / (self.high - self.low)
+        found: Number = np.cos(_DEGREES * np.arccos(min(1.0, max(-1.0, x))))
+        return found
+
+    def pose(self, link: str, basis: Number, speed: float) -> Pose:
+        """Return the pose of a link. Its rates are those at unit rate and at a speed."""
+        if self.nodes[link] is FIXED:
+            return FIXED
+        if link not in self.known:
+            pose = self.nodes[link]
+            rows = [self._row(series, k) for series in (pose.z, pose.u) for k in (0, 1)]
+            self.known[link] = np.array(rows) @ _TO_COEFFICIENTS.T
+        z, moved, u, turned = self.known[link] @ basis
+        pace = np.array([1.0, speed])
+        return Pose(Series((complex(z), moved * pace)), Series((complex(u), turned * pace)))
+
+    def _row(self, series: Series, k: int) -> Number:
+        value = series.c[k] if k < len(series.c) else 0.0
+        row = np.ravel(value)
+        return np.broadcast_to(row, POINTS) if row.size == 1 else row[self.place]
+
+
+@dataclass(frozen=True, eq=False)
+class DriveTable:
+    """A table over a range of a driver. Pieces in order; where nothing holds there is none."""
+
+    low: float
+    high: float
+    pieces: Sequence[TablePiece]
+    starts: Sequence[float]
+    motion: Motion
+
+    def piece(self, value: float) -> TablePiece | None:
+        """Return the piece at a value."""
+        k = bisect_right(self.starts, value) - 1
+        found = self.pieces[k] if k >= 0 else None
+        return found if found is not None and value <= found.high else None
+
+
+def drive_table(
+    first: Configuration, driver: str, low: float, high: float, loads: Sequence[Sequence[Load]], pairs: Sequence[Pair]
+) -> DriveTable | None:
+    """Return the table of a driver around a configuration. None where that cannot be solved."""
+    mechanism = first.structure.mechanism
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            values = np.linspace(low, high, POSES)
+            motion = solve(mechanism, {driver: values}, speed=1.0, acceleration=0.0, order=2, modes=first)
+            found = _pieces(motion, low, high, loads, pairs)
+    except CompoundkinError:
+        return None
+    return DriveTable(low, high, found, [piece.low for piece in found], motion)
+
+
+def _pieces(
+    motion: Motion, low: float, high: float, loads: Sequence[Sequence[Load]], pairs: Sequence[Pair]
+) -> list[TablePiece]:
+    """Return the pieces that hold, in order."""
+    edges, found = np.linspace(low, high, PIECES + 1), []
+    todo = list(pairwise(edges.tolist()))
+    for _ in range(HALVED + 1):
+        made = _solved(motion, todo, (low, high), loads, pairs)
+        found += [piece for piece in made if _holds(piece)]
+        broken = [(piece.low, piece.high) for piece in made if not _holds(piece)]
+        todo = [part for a, b in broken for part in ((a, (a + b) / 2), ((a + b) / 2, b))]
+        if not todo:
+            break
+    return sorted(found, key=lambda piece: piece.low)
+
+
+def _holds(piece: TablePiece) -> bool:
+    scales = np.max(np.abs(piece.terms), axis=1)
+    # the bias is a derivative of the inertia, and the forces are alike
+    scales = np.array([scales[:2].max()] * 2 + [scales[2:].max()] * 2)
+    return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= HOLDS * scales[:, None]))
+
+
+def _solved(
+    motion: Motion,
+    parts: Sequence[tuple[float, float]],
+    ends: tuple[float, float],
+    loads: Sequence[Sequence[Load]],
+    pairs: Sequence[Pair],
+) -> list[TablePiece]:
+    """Return pieces, solved all at once."""
+    values = np.concatenate([(a + b) / 2.0 + (b - a) / 2.0 * NODES for a, b in parts])
+    places = np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0) * (POSES - 1)
+    at = between(motion, 0, places)
+    rows = _terms(at, loads)
+    # beyond an end of a guide groups close all the same
+    rows[:, (at.failed[0] > 0) & (at.failed[0] <= len(motion.structure.groups))] = np.nan
+    ratios = _ratios(at, pairs)
+    cuts = [slice(k * POINTS, (k + 1) * POINTS) for k in range(len(parts))]
+    return [TablePiece(float(a), float(b), rows[:, cut] @ _TO_COEFFICIENTS.T, float(np.max(ratios[cut])), at.poses, cut)
+            for (a, b), cut in zip(parts, cuts, strict=True)]  # fmt: skip
+
+
+def _terms(motion: Motion, loads: Sequence[Sequence[Load]]) -> Number:
+    """Return inertia, bias, stored forces and others at all poses of a motion at unit speed."""
+    mechanism = motion.mechanism
+    factor, fall = units_of(mechanism).inertia, free_fall(mechanism)
+    rows = np.zeros((4, motion.failed.shape[1]))
+    for own in mass_motions(motion):
+        rows[0] += np.ravel(own.product(1, own, 1)) * factor
+        rows[1] += np.ravel(own.product(1, own, 2)) * factor
+        rows[2] += np.ravel((np.conj(fall) * own.centre[1]).real * own.mass) * factor
+    for loaded in loaded_blocks(motion):
+        for row, some in zip(rows[2:], loads, strict=True):
+            for load in some:
+                for link, wrench in load.wrenches(loaded):
+                    row[loaded.poses] += np.ravel(wrench.power(loaded.pose(link)))
+    return rows
+
+
+def _ratios(motion: Motion, pairs: Sequence[Pair]) -> Number:
+    """Return how fast the fastest of some pairs moves, each by its scale."""
+    found = np.zeros(motion.failed.shape[1])
+    for pair in pairs:
+        scale = 1.0 if pair.free_is_angle else motion.size
+        found = np.fmax(found, np.abs(np.ravel(motion.pairs[pair.name].rate)) / scale)
+    return found

@@ -1,0 +1,153 @@
+"""A mechanism in the coordinates of its drivers, some free and some prescribed, solved at one state at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.arrays import whole_turns
+from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.series import Number
+from compoundkin.dynamics.simulation.driver_state import DriverState, LinearAngle, Rates, by_drivers
+from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
+from compoundkin.dynamics.work.moving_masses import free_fall, moving_masses
+from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.groups.contract import equations_of
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solving_order import run
+from compoundkin.model.laws import Law
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.optional_answers import as_drivable
+
+
+@dataclass(eq=False)
+class DriverChart:
+    """The configurations around one pose, by the values of the drivers. The `free` ones obey the equation of motion.
+
+    `start` is a motion of one pose; `laws` prescribe the other drivers. The configuration is kept by signs of dyads and
+    by states of other groups, which follow every accepted state.
+    """
+
+    start: Motion
+    free: tuple[str, ...]
+    laws: Mapping[str, Law]
+    signs: dict[int, Number] = field(init=False)
+    states: dict[int, Number] = field(init=False)
+    near: dict[str, LinearAngle] = field(init=False)
+    turned: dict[str, LinearAngle] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.names = (*self.free, *self.laws)
+        self.mechanism = self.start.mechanism
+        self.order = self.start.solving_order
+        self.masses, self.gravity = moving_masses(self.mechanism), free_fall(self.mechanism)
+        self.loads = sorted_loads(self.start)
+        self.ends = self.start.inputs.cut(slice(0, 1), slice(0, 1)).ends
+        self.signs = {s.index: float(self.start.sign(s.index, 0)) for s in self.order.solvers if not s.is_numbered}
+        self.states, self.near, self.turned = {}, {}, {}
+        self.driven = {own.pair.name: (name, own) for name, own in self.start.structure.driven.items()}
+        self._follow(self.start.poses, None)
+
+    @cached_property
+    def candidates(self) -> tuple[Pair, ...]:
+        """The pairs that might be driven instead. They are the only ones between their links."""
+        pairs = self.start.structure.pairs
+        sides = [frozenset(pair.members) for pair in pairs]
+        single = zip(pairs, sides, strict=True)
+        return tuple(pair for pair, both in single if as_drivable(pair) and len(both) == 2 and sides.count(both) == 1)
+
+    @cached_property
+    def scales(self) -> Number:
+        """How far each free driver goes where it goes far.
+
+        That is a radian, or the mechanism's size.
+        """
+        return np.array([self.order.unit(name) for name in self.free])
+
+    def prescribed(self, time: float) -> tuple[Number, Number, Number]:
+        """Return values, speeds and accelerations of the prescribed drivers."""
+        moved = [law.coordinate(np.array([time]), 2) for law in self.laws.values()]
+        told = [[float(np.ravel(one.derivative(k))[0]) for one in moved] for k in range(3)]
+        return np.array(told[0]), np.array(told[1]), np.array(told[2])
+
+    def state(self, time: float, values: Number, speeds: Number) -> DriverState:
+        """Return the state at values and speeds of the free drivers."""
+        given = self.prescribed(time) if self.laws else (np.empty(0),) * 3
+        whole, rates = np.concatenate([values, given[0]]), np.concatenate([speeds, given[1]])
+        return DriverState(self, time, whole, rates, given[2], self._block(whole, rates))
+
+    def rates(self, time: float, values: Number, speeds: Number) -> Rates:
+        """Return what a state grows by."""
+        return self.state(time, values, speeds).rates
+
+    def is_regular(self, values: Number) -> bool:
+        """Tell whether it is known that no pair moves much faster than a driver."""
+        return False
+
+    def accept(self, time: float, values: Number, speeds: Number) -> None:
+        """Follow the configuration to a state that is reached."""
+        if self.states or self.order.turning or self.turned:
+            found = self.state(time, values, speeds)
+            self._follow(found.block.world, found.values)
+            for pair in self.turned:
+                self.turned[pair] = found.angle_of(pair)
+
+    def _follow(self, world: Mapping[str, Pose], values: Number | None) -> None:
+        """Note the states of groups without signs, and the angles that are counted, with their rates by the drivers."""
+        for solver in (s for s in self.order.solvers if s.is_numbered):
+            bodies = [_still(world[body.links[0]]) for body in solver.group.bodies]
+            self.states[solver.index] = equations_of(solver).state(bodies).reshape(1, 1, -1)
+        for link in self.order.turning:
+            if (turned := world[link].theta) is None:
+                continue
+            slopes = (
+                np.zeros(len(self.names))
+                if values is None or len(turned.c) < 2
+                else by_drivers(turned.c[1], self.names)
+            )
+            self.near[link] = LinearAngle(float(np.ravel(turned.c[0])[0]), values, slopes)
+
+    def turns_of(self, pair: str, angle: float, values: Number) -> float:
+        """Return an angle of a pair with the full turns that it has made."""
+        if pair in self.driven:
+            name, own = self.driven[pair]
+            return float(values[self.names.index(name)]) * own.pair.driven_by(own.drive.link)
+        if pair not in self.turned:
+            first = float(np.ravel(self.start.pairs[pair].value)[0])
+            self.turned[pair] = LinearAngle(first, None, np.zeros(len(self.names)))
+        return angle + float(whole_turns(self.turned[pair].at(values) - angle))
+
+    def _block(self, values: Number, speeds: Number) -> Block:
+        """Solve a pose with the rates at unit rate of each driver, and last the true ones."""
+        count = len(values)
+        table = np.vstack([np.eye(count), speeds])[:, :, None]
+        drives = {name: (values[k : k + 1, None], table[:, k]) for k, name in enumerate(self.names)}
+        part = self.start.inputs.driven(drives)
+        block = self.order.start(self.ends, part.series(2), 2, (count + 1, 1))
+        return run(self.order, block, _Held(self, values))
+
+
+@dataclass(frozen=True)
+class _Held:
+    """The choice of the configuration that is kept."""
+
+    chart: DriverChart
+    values: Number
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the sign or the state."""
+        return self.chart.states[solver.index] if solver.is_numbered else self.chart.signs[solver.index]
+
+    def angle(self, solver: GroupSolver, link: str) -> Number | None:
+        """Return about where a counted angle is."""
+        known = self.chart.near.get(link)
+        return None if known is None else known.at(self.values)
+
+
+def _still(pose: Pose) -> Pose:
+    """Return a pose at its first entry, without rates."""
+    return pose if pose is FIXED else pose.trimmed(0).entry((0, 0))

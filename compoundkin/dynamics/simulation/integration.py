@@ -1,0 +1,203 @@
+"""The equation of motion integrated: steps of an explicit method, each with its polynomial in between.
+
+Source: E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993,
+section II.10: the method of Dormand and Prince of order 8, as SciPy has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.dynamics.simulation.coordinate_change import driven_there, fastest_pair
+from compoundkin.dynamics.simulation.driver_chart import DriverChart
+from compoundkin.dynamics.simulation.simulation_events import (
+    END,
+    SimulationEvent,
+    Watch,
+    after_impact,
+    ended_pair,
+    first_passed,
+)
+from compoundkin.dynamics.simulation.state_motion import SimulatedState
+from compoundkin.dynamics.simulation.tabulated_chart import FASTER
+
+# No step takes a driver farther than this (radians, or parts of the size): configurations are followed, angles counted.
+FARTHEST = 1.0
+# Where a pair moves so many times as fast as a driver and cannot take its place, the motion ends.
+LIMIT = 1e4
+# What is told of progress: so many parts of the whole.
+PARTS = 1000
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A step of the integration. Its chart, its times, and the state in between as a function of time."""
+
+    chart: DriverChart
+    first: float
+    last: float
+    between: Callable[[Number], Number]
+
+
+@dataclass(frozen=True, eq=False)
+class ChartStretch:
+    """The course in one chart. The states at times are in columns, its first and last among them.
+
+    `asked` tells which of the times were asked for.
+    """
+
+    chart: DriverChart
+    times: Number
+    states: Number
+    asked: Number
+
+
+@dataclass(eq=False)
+class SimulatedCourse:
+    """The steps from the start on. A state is the free drivers' values, their speeds, and the work done."""
+
+    until: float
+    tolerance: float
+    watched: tuple[Watch, ...] = ()
+    restitution: float | None = None
+    steps: list[Step] = field(default_factory=list)
+    events: list[SimulationEvent] = field(default_factory=list)
+    evaluations: int = 0
+
+    def at(self, times: Number) -> list[ChartStretch]:
+        """Return the states at times in order, chart by chart."""
+        charts = list(dict.fromkeys(step.chart for step in self.steps))
+        runs = [[step for step in self.steps if step.chart is chart] for chart in charts]
+        return [_stretch(steps, times, k == 0) for k, steps in enumerate(runs)]
+
+    @property
+    def last(self) -> float:
+        """The time that is reached."""
+        return self.steps[-1].last if self.steps else 0.0
+
+
+def _stretch(steps: list[Step], times: Number, is_first: bool) -> ChartStretch:
+    """Return the states at times in the steps of one chart. A time at which charts change belongs to the first."""
+    first, last = steps[0].first, steps[-1].last
+    own = times[((times >= first) if is_first else (times > first)) & (times <= last)]
+    whole = np.unique(np.concatenate([[first], own, [last]]))
+    index = np.minimum(np.searchsorted([step.last for step in steps], whole), len(steps) - 1)
+    parts = [steps[k].between(whole[index == k]) for k in np.unique(index)]
+    return ChartStretch(steps[0].chart, whole, np.concatenate(parts, axis=1), np.isin(whole, own))
+
+
+def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
+    """Add the steps from a state of a chart on, and what happens."""
+    solver, n = _solver(chart, 0.0, state, course), len(chart.free)
+    while solver.status == "running":
+        solver.max_step = longest_step(chart, solver.y[n : 2 * n], solver.f[n : 2 * n])
+        solver.h_abs = min(solver.h_abs, solver.max_step)
+        solver.step()
+        if solver.status == "failed":
+            return _stop(course, "limit", "the motion comes to a limit position")
+        course.steps.append(Step(chart, float(solver.t_old), float(solver.t), solver.dense_output()))
+        passed = _passed(course) if course.watched else None
+        if passed is not None and (passed.state is None or passed.time >= course.until):
+            return None
+        if passed is None:
+            chart.accept(solver.t, solver.y[:n], solver.y[n : 2 * n])
+            changed = _changed(chart, solver, course)
+            if changed is not None:
+                chart, state = changed
+                solver = _solver(chart, course.last, state, course)
+        else:
+            solver = _solver(chart, passed.time, passed.state, course)
+        if progress is not None:
+            progress(int(PARTS * course.last / course.until), PARTS)
+    return None
+
+
+class _Turn(NamedTuple):
+    """Where the course is broken off, and the state with which it goes on. None where it ends."""
+
+    time: float
+    state: Number | None
+
+
+def _passed(course: SimulatedCourse) -> _Turn | None:
+    """Note what happened in the last step; return where that breaks the course off, None where it does not."""
+    step = course.steps[-1]
+    for one in first_passed(course.watched, step.chart, (step.first, step.last), step.between):
+        is_end, n = one.watch.name == END, len(step.chart.free)
+        here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]))
+        text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else one.watch.text
+        bounced = after_impact(here, course.restitution) if is_end and course.restitution is not None else None
+        stops = one.watch.stops and bounced is None
+        course.events.append(SimulationEvent(one.time, one.watch.name, text, stops))
+        if stops or bounced is not None:
+            course.steps[-1] = Step(step.chart, step.first, one.time, step.between)
+        if stops:
+            return _Turn(one.time, None)
+        if bounced is not None:
+            return _Turn(one.time, np.array([*one.state[:n], *bounced[0], one.state[-1] - bounced[1]]))
+    return None
+
+
+def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[DriverChart, Number] | None:
+    """Return a chart and its state with which to go on. None where this one is good, or where nothing is better."""
+    n = len(chart.free)
+    if chart.is_regular(solver.y[:n]):
+        return None
+    here = chart.state(solver.t, solver.y[:n], solver.y[n : 2 * n])
+    fast = fastest_pair(chart, here)
+    if fast is None or fast.ratio < FASTER:
+        return None
+    found = driven_there(chart, here, fast)
+    if found is None:
+        if fast.ratio > LIMIT:
+            solver.status = "finished"
+            _stop(course, "limit", f"{fast.driver} comes to a limit position, and no other pair can take its place")
+        return None
+    text = f"next to a limit position of {fast.driver}, {fast.pair.name} takes its place as the coordinate"
+    course.events.append(SimulationEvent(course.last, "coordinate", text, False))
+    return found[0], np.append(found[1], solver.y[-1])
+
+
+def _stop(course: SimulatedCourse, name: str, text: str) -> None:
+    course.events.append(SimulationEvent(course.last, name, text, True))
+
+
+def _solver(chart: DriverChart, time: float, state: Number, course: SimulatedCourse) -> Any:
+    """Return SciPy's integrator at a state of a chart."""
+    from scipy.integrate import DOP853
+
+    n = len(chart.free)
+
+    def grown(at: float, y: Number) -> Number:
+        course.evaluations += 1
+        found = chart.rates(at, y[:n], y[n : 2 * n])
+        return np.concatenate([y[n : 2 * n], found.accelerations, [found.power]])
+
+    rates = grown(time, state)
+    pace = _paces(chart, state[n : 2 * n], rates[n : 2 * n], course.until - time)
+    energy = chart.state(time, state[:n], pace).kinetic
+    allowed = np.concatenate([chart.scales, pace, [energy]]) * course.tolerance
+    return DOP853(grown, time, state, course.until, rtol=course.tolerance, atol=allowed)
+
+
+def _paces(chart: DriverChart, speeds: Number, accelerations: Number, duration: float) -> Number:
+    """Return about how fast each free driver will move: by its speed, or by its acceleration over its scale."""
+    quick = np.maximum(np.abs(speeds), np.sqrt(np.abs(accelerations) * chart.scales))
+    # one that is at rest without a load is measured against the others, and they against their scales in the whole time
+    found: Number = np.maximum(quick, chart.scales * max(np.max(quick / chart.scales), 1.0 / duration) * 1e-3)
+    return found
+
+
+def longest_step(chart: DriverChart, speeds: Number, accelerations: Number) -> float:
+    """Return the time in which no driver goes too far."""
+    rate = np.max(np.abs(speeds) / chart.scales)
+    growth = np.max(np.abs(accelerations) / chart.scales)
+    # s = v t + a t^2 / 2, solved for the time without cancellation
+    return float(2.0 * FARTHEST / (rate + np.sqrt(rate * rate + 2.0 * growth * FARTHEST) + np.finfo(float).tiny))

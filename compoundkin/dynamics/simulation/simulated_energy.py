@@ -1,0 +1,72 @@
+"""The energy of a simulated motion: kinetic, potential, the work of what has no potential, and what does not add up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.arrays import dot
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.dynamics.work.mass_motion import mass_motions
+from compoundkin.dynamics.work.moving_masses import free_fall, units_of
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.elements import Load
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SimulatedEnergy(PrintsShort):
+    """Energies at the times of a simulation, in units of force times length.
+
+    `work` is that of loads without a potential and of prescribed drivers since the start.
+    """
+
+    kinetic: Number
+    potential: Number
+    work: Number
+
+    @property
+    def total(self) -> Number:
+        """The kinetic and the potential energy."""
+        return self.kinetic + self.potential
+
+    @property
+    def error(self) -> Number:
+        """What does not add up: the change of the total less the work."""
+        return self.total - self.total[0] - self.work
+
+    @property
+    def peak(self) -> float:
+        """The greatest of the energies. Kinetic, a change of the potential, or the work."""
+        parts = (self.kinetic, self.potential - self.potential[0], self.work)
+        return max(float(np.max(np.abs(part))) for part in parts)
+
+    @property
+    def worst(self) -> float:
+        """The greatest error as a part of the peak."""
+        return float(np.max(np.abs(self.error))) / self.peak if self.peak else 0.0
+
+
+def simulated_energy(motion: Motion, work: Number) -> SimulatedEnergy:
+    """Return the energies of a motion of one design. Its mass centres tell them."""
+    mechanism = motion.mechanism
+    factor, fall = units_of(mechanism).inertia, free_fall(mechanism)
+    kinetic, potential = np.zeros(motion.shape), np.zeros(motion.shape)
+    for own in mass_motions(motion):
+        kinetic += np.ravel(own.product(1, own, 1)) * (factor / 2.0)
+        potential -= np.ravel(dot(fall, own.centre[0]) * own.mass) * factor
+    for loaded in loaded_blocks(motion):
+        for load in sorted_loads(motion)[0]:
+            energy: Number = load.energy(loaded)
+            potential[loaded.poses] += np.ravel(energy)
+    return SimulatedEnergy(kinetic, potential, work)
+
+
+def sorted_loads(motion: Motion) -> tuple[tuple[Load, ...], tuple[Load, ...]]:
+    """Return the loads that have a potential, and the others."""
+    first = next(iter(loaded_blocks(motion)))
+    loads = motion.mechanism.loads.values()
+    stored = [load for load in loads if load.energy(first) is not None]
+    return tuple(stored), tuple(load for load in loads if load not in stored)

@@ -1,0 +1,46 @@
+"""A simulated motion: its poses in time, the forces in it, its energy, and what happened."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.display import Shows, counted
+from compoundkin.base.series import Number
+from compoundkin.dynamics.force_analysis import force_analysis
+from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
+from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
+from compoundkin.kinematics.motion import Motion
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation(Shows):
+    """A mechanism that moved under its loads. `motion` is a motion in time, solved again at `times`.
+
+    `events` are in the order of time. `steps` and `evaluations` count those of the integration.
+    """
+
+    motion: Motion
+    energy: SimulatedEnergy
+    events: tuple[SimulationEvent, ...]
+    tolerance: float
+    steps: int
+    evaluations: int
+
+    @property
+    def times(self) -> Number:
+        """The times of the poses, seconds."""
+        return self.motion.time
+
+    @cached_property
+    def forces(self) -> Forces:
+        """The forces in all pairs. The efforts of free drivers are zero but for the tolerance."""
+        return force_analysis(self.motion)
+
+    def __repr__(self) -> str:
+        title, last = self.motion.mechanism.title, float(np.ravel(self.times)[-1])
+        told = f", {counted(len(self.events), 'event')}" if self.events else ""
+        return f"Simulation({title!r} over {last:.6g} s in {counted(self.steps, 'step')}{told})"

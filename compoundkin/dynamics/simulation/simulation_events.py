@@ -1,0 +1,165 @@
+"""What happens in a simulation: limit positions, ends of guides, lift-off, and what a user asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.dynamics.force_analysis import force_analysis
+from compoundkin.dynamics.simulation.driver_chart import DriverChart
+from compoundkin.dynamics.simulation.state_motion import SimulatedState
+from compoundkin.kinematics.passed_ends import AT_END
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.guide_ends import as_ended
+from compoundkin.model.pairs.profile_contact import as_profiled
+
+# Within a step what is watched is looked at in so many places, so that what comes and goes is found as well.
+LOOKS = 4
+
+# An impact slower than this part of the drivers' speeds, each by its scale, is the last one.
+SLOW = 1e-6
+# What coming to an end of a guide is called.
+END = "end"
+
+Function = Callable[[SimulatedState], Any]
+
+
+@dataclass(frozen=True)
+class SimulationEvent:
+    """Something that happened. When, what it is called, and whether the simulation stopped there."""
+
+    time: float
+    name: str
+    text: str
+    stops: bool
+
+    def __repr__(self) -> str:
+        return f"SimulationEvent({self.name!r} at {self.time:.6g} s: {self.text})"
+
+
+@dataclass(frozen=True, eq=False)
+class Watch:
+    """A function of the state that passes through zero, and what that means.
+
+    Where it `falls` only passing downwards counts.
+    """
+
+    name: str
+    function: Function
+    text: str
+    stops: bool
+    falls: bool = False
+
+    def value(self, chart: DriverChart, time: float, state: Number) -> float:
+        """Return the function at a state. Raises InvalidInput where it returns no number."""
+        n = len(chart.free)
+        here = SimulatedState(chart.state(time, state[:n], state[n : 2 * n]))
+        try:
+            found = float(np.ravel(self.function(here))[0])
+        except CompoundkinError:
+            raise
+        except Exception as error:  # whatever a user's function does
+            remedy = 'give a function of the state that passes through zero: lambda state: state["B.y"] - 20'
+            raise InvalidInput(Problem(f"events.{self.name}", f"its function fails: {error}", remedy)) from error
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Passed:
+    """Something watched that passes through zero at a time, and the state there."""
+
+    watch: Watch
+    time: float
+    state: Number
+
+
+def watches(mechanism: Mechanism, events: Mapping[str, Any], stop: tuple[str, ...]) -> tuple[Watch, ...]:
+    """Return what is watched. Ends of guides, contacts that are not held, and a user's own events."""
+    for name, function in events.items():
+        if not callable(function):
+            remedy = 'give a function of the state: lambda state: state["B.y"] - 20'
+            raise InvalidInput(Problem(f"events.{name}", f"{function!r} is no function", remedy))
+    for name in stop:
+        if name not in events:
+            raise InvalidInput(Problem("stop", f"there is no event {name!r}", f"known: {', '.join(events) or 'none'}"))
+    own = [Watch(name, function, "as asked for", name in stop) for name, function in events.items()]
+    return (*_of_pairs(mechanism), *own)
+
+
+def _of_pairs(mechanism: Mechanism) -> Iterator[Watch]:
+    if any(as_ended(pair) is not None for pair in mechanism.written_pairs):
+        yield Watch(END, _to_end, "a guide ends", True, True)
+    for pair in mechanism.written_pairs:
+        contact = as_profiled(pair)
+        # in a groove the roller goes over to the other flank
+        if contact is not None and not contact.has_ends:
+            text = f"the contact at {pair.name} lets go"
+            yield Watch(f"{pair.name} lift-off", _pressing(pair.name), text, True, True)
+
+
+def _to_end(state: SimulatedState) -> float:
+    # where it is reached, no pose is beyond it yet
+    return float(np.ravel(state.order.guide_ends.margin(state.block))[-1]) - AT_END
+
+
+def ended_pair(state: SimulatedState) -> Pair:
+    """Return the pair that is nearest to an end of its guide."""
+    ends = state.order.guide_ends
+    return ends.pairs[int(np.ravel(ends.nearest(state.block))[-1])]
+
+
+def _pressing(name: str) -> Function:
+    return lambda state: force_analysis(state.motion).pairs[name].normal
+
+
+def first_passed(
+    watched: tuple[Watch, ...], chart: DriverChart, times: tuple[float, float], between: Callable[[float], Number]
+) -> list[Passed]:
+    """Return what passes through zero in a step, in the order of time."""
+    found = []
+    looks = np.linspace(*times, LOOKS + 1)
+    for watch in watched:
+
+        def value(time: float, watch: Watch = watch) -> float:
+            return watch.value(chart, time, between(time))
+
+        known = [value(float(time)) for time in looks]
+        for k in range(LOOKS):
+            if known[k] > 0.0 >= known[k + 1] or (not watch.falls and known[k] < 0.0 <= known[k + 1]):
+                time = _zero(value, float(looks[k]), float(looks[k + 1]))
+                found.append(Passed(watch, time, between(time)))
+    return sorted(found, key=lambda one: one.time)
+
+
+def _zero(function: Callable[[float], float], low: float, high: float) -> float:
+    from scipy.optimize import brentq
+
+    # the far side of a zero that is met: what is done there must not meet it again
+    return float(brentq(function, low, high, xtol=1e-14 * max(abs(high), 1e-300), rtol=1e-14))
+
+
+def after_impact(here: SimulatedState, restitution: float) -> tuple[Number, float] | None:
+    """Return the speeds of the free drivers after an impact.
+
+    With them comes the energy that is lost. None where what comes to the end hardly moves. The impulse acts along the
+    coordinate that ends, M (v+ - v-) = n p with n . v+ = -e n . v-.
+
+    Source: Newton's law of impact in generalized coordinates, D. T. Greenwood, Principles of Dynamics, section 4.8.
+    """
+    state, pair = here.state, ended_pair(here)
+    n = len(state.chart.free)
+    along, speeds = state.slopes(pair), state.speeds
+    approach = float(along @ speeds)
+    if abs(approach) <= SLOW * float(np.abs(along) @ np.abs(speeds)):
+        return None
+    push = np.linalg.solve(state.terms.matrix[:n, :n], along[:n])
+    after = speeds.copy()
+    after[:n] -= (1.0 + restitution) * approach / float(along[:n] @ push) * push
+    matrix = state.terms.matrix
+    return after[:n], float(speeds @ matrix @ speeds - after @ matrix @ after) / 2.0

@@ -1,0 +1,1 @@
+"""Work and power, masses in motion, and efforts without reactions."""
