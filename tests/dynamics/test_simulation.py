@@ -201,3 +201,20 @@ def test_block_falls_to_the_end_of_its_guide() -> None:
     top = back.motion.points["P"].y[back.times > 1.2 * first].max()
     assert top == pytest.approx(-0.75, abs=1e-4)
     assert back.energy.worst < 1e-9
+
+
+def test_contact_of_a_cam_lets_go_where_the_follower_falls_freely() -> None:
+    """Without a spring the roller leaves the cam where its follower would have to fall faster than freely."""
+    cam = ck.catalog.load_named("disc-cam-offset-roller").replace(
+        ck.mass("cam", 2.0, at="A", inertia=500.0),
+        ck.mass("follower", 0.3, at="T", inertia=0.0),
+        ck.gravity(0, -9.81),
+        unit="",
+        units={"length": "mm", "mass": "kg", "force": "N"},
+    )
+    found = ck.simulate(cam, start={"cam": (-np.pi / 2, 40.0)}, until=1.0)
+    assert [event.name for event in found.events] == ["roller/cam lift-off"]
+    assert found.motion.points["P"].acceleration.imag[-1] == pytest.approx(-9810.0, rel=1e-8)
+    slow = ck.simulate(cam, start={"cam": (-np.pi / 2, 10.0)}, until=1.0)
+    assert slow.events == ()
+    assert slow.energy.worst < 1e-9
