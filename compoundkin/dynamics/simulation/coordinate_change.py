@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.errors import CompoundkinError
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import DriverState
+from compoundkin.dynamics.simulation.rubbed_chart import RubbedChart
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
@@ -23,7 +24,7 @@ from compoundkin.model.elements import Drive, Expectation, Item, Mode
 from compoundkin.model.laws import Law
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.optional_answers import Drivable, as_drivable
+from compoundkin.model.pairs.optional_answers import Drivable, as_accompanied, as_drivable
 
 
 class FastPair(NamedTuple):
@@ -97,5 +98,15 @@ def as_driven(pair: Pair) -> Drivable:
 
 
 def chart_of(start: Motion, free: tuple[str, ...], laws: Mapping[str, Law]) -> DriverChart:
-    """Return the chart around a pose. It has a table where a single driver moves everything."""
-    return DriverChart(start, free, laws) if len(free) + len(laws) > 1 else TabulatedChart(start, free, laws)
+    """Return the chart around a pose. It has a table where a single driver moves everything.
+
+    Raises InvalidInput for friction with several drivers, or with gears, whose flank goes by the force.
+    """
+    frictions, only = start.mechanism.frictions, len(free) + len(laws) == 1
+    if not frictions:
+        return TabulatedChart(start, free, laws) if only else DriverChart(start, free, laws)
+    geared = any(as_accompanied(pair) for pair in start.solving_order.pairs.values())
+    if geared or not only:
+        what = f"friction ({', '.join(frictions)}) is followed in mechanisms of one driver and without gears"
+        raise InvalidInput(Problem("frictions", what, "leave it out, or write dampers"))
+    return RubbedChart(start, free, laws)

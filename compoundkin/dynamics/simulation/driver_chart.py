@@ -84,6 +84,22 @@ class DriverChart:
         """Return what a state grows by."""
         return self.state(time, values, speeds).rates
 
+    def accelerated(self, state: DriverState) -> Number:
+        """Return the accelerations of the free drivers at a state."""
+        return state.dry
+
+    def begin(self, time: float, values: Number, speeds: Number) -> bool:
+        """Begin to move from a state. Tell whether it moves, which friction may hinder."""
+        return True
+
+    def released(self, time: float, values: Number, until: float) -> float:
+        """Return when a mechanism that is held goes on. It is the end at the latest."""
+        return until
+
+    def told(self, time: float, values: Number, speeds: Number) -> Number:
+        """Return the accelerations of the free drivers at a state that was found."""
+        return self.rates(time, values, speeds).accelerations
+
     def is_regular(self, values: Number) -> bool:
         """Tell whether it is known that no pair moves much faster than a driver."""
         return False

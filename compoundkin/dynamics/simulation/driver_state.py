@@ -46,6 +46,9 @@ class StateChart(Protocol):
     gravity: complex
     loads: tuple[tuple[Load, ...], tuple[Load, ...]]  # those that have a potential, and the others
 
+    def accelerated(self, state: DriverState) -> Number:
+        """Return the accelerations of the free drivers at a state."""
+
     def turns_of(self, pair: str, angle: float, values: Number) -> float:
         """Return an angle of a pair with its turns. It is at values of the drivers."""
 
@@ -105,7 +108,12 @@ class DriverState:
 
     @cached_property
     def accelerations(self) -> Number:
-        """The accelerations of the free drivers."""
+        """The accelerations of the free drivers, friction heeded."""
+        return self.chart.accelerated(self)
+
+    @property
+    def dry(self) -> Number:
+        """The accelerations of the free drivers without friction."""
         n, (matrix, bias, _) = len(self.chart.free), self.terms
         push = self.push[:n] - bias[:n]
         if len(self.prescribed):

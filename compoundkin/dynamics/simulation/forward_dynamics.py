@@ -13,7 +13,8 @@ from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.coordinate_change import chart_of
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.integration import PARTS, SimulatedCourse, Step, integrate
+from compoundkin.dynamics.simulation.integration import PARTS, integrate
+from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse, Step
 from compoundkin.dynamics.simulation.simulated_energy import simulated_energy
 from compoundkin.dynamics.simulation.simulated_motion import simulated_motion
 from compoundkin.dynamics.simulation.simulation import Simulation
@@ -91,12 +92,6 @@ def _hold(mechanism: Mechanism, until: float, tolerance: float, restitution: flo
         raise InvalidInput(Problem("units", "forces need units of length, mass and force", remedy))
     if not mechanism.masses:
         raise InvalidInput(Problem("masses", "nothing has a mass", 'write mass("link", 0.2, at=..., inertia=...)'))
-    if mechanism.frictions:
-        told = ", ".join(mechanism.frictions)
-        what = f"friction ({told}) is not followed by a simulation yet"
-        raise InvalidInput(
-            Problem("frictions", what, "leave it out, or write dampers; force_analysis() knows friction")
-        )
     if not 0.0 < until < np.inf:
         raise InvalidInput(Problem("until", f"{until:g} is no end", "give seconds after the start, more than 0"))
     if restitution is not None and not 0.0 <= restitution <= 1.0:

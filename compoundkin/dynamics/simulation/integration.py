@@ -7,7 +7,6 @@ section II.10: the method of Dormand and Prince of order 8, as SciPy has it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,10 +14,11 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.coordinate_change import driven_there, fastest_pair
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
+from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse, Step
 from compoundkin.dynamics.simulation.simulation_events import (
     END,
+    REST,
     SimulationEvent,
-    Watch,
     after_impact,
     ended_pair,
     first_passed,
@@ -30,73 +30,19 @@ from compoundkin.dynamics.simulation.tabulated_chart import FASTER
 FARTHEST = 1.0
 # Where a pair moves so many times as fast as a driver and cannot take its place, the motion ends.
 LIMIT = 1e4
+# What is said where friction holds a mechanism.
+STICKS = "sticks"
 # What is told of progress: so many parts of the whole.
 PARTS = 1000
 
 Progress = Callable[[int, int], None]
 
 
-@dataclass(frozen=True, eq=False)
-class Step:
-    """A step of the integration. Its chart, its times, and the state in between as a function of time."""
-
-    chart: DriverChart
-    first: float
-    last: float
-    between: Callable[[Number], Number]
-
-
-@dataclass(frozen=True, eq=False)
-class ChartStretch:
-    """The course in one chart. The states at times are in columns, its first and last among them.
-
-    `asked` tells which of the times were asked for.
-    """
-
-    chart: DriverChart
-    times: Number
-    states: Number
-    asked: Number
-
-
-@dataclass(eq=False)
-class SimulatedCourse:
-    """The steps from the start on. A state is the free drivers' values, their speeds, and the work done."""
-
-    until: float
-    tolerance: float
-    watched: tuple[Watch, ...] = ()
-    restitution: float | None = None
-    steps: list[Step] = field(default_factory=list)
-    events: list[SimulationEvent] = field(default_factory=list)
-    evaluations: int = 0
-
-    def at(self, times: Number) -> list[ChartStretch]:
-        """Return the states at times in order, chart by chart."""
-        charts = list(dict.fromkeys(step.chart for step in self.steps))
-        runs = [[step for step in self.steps if step.chart is chart] for chart in charts]
-        return [_stretch(steps, times, k == 0) for k, steps in enumerate(runs)]
-
-    @property
-    def last(self) -> float:
-        """The time that is reached."""
-        return self.steps[-1].last if self.steps else 0.0
-
-
-def _stretch(steps: list[Step], times: Number, is_first: bool) -> ChartStretch:
-    """Return the states at times in the steps of one chart. A time at which charts change belongs to the first."""
-    first, last = steps[0].first, steps[-1].last
-    own = times[((times >= first) if is_first else (times > first)) & (times <= last)]
-    whole = np.unique(np.concatenate([[first], own, [last]]))
-    index = np.minimum(np.searchsorted([step.last for step in steps], whole), len(steps) - 1)
-    parts = [steps[k].between(whole[index == k]) for k in np.unique(index)]
-    return ChartStretch(steps[0].chart, whole, np.concatenate(parts, axis=1), np.isin(whole, own))
-
-
 def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progress: Progress | None) -> None:
     """Add the steps from a state of a chart on, and what happens."""
-    solver, n = _solver(chart, 0.0, state, course), len(chart.free)
-    while solver.status == "running":
+    n = len(chart.free)
+    solver = _begun(chart, 0.0, state, course)
+    while solver is not None and solver.status == "running":
         solver.max_step = longest_step(chart, solver.y[n : 2 * n], solver.f[n : 2 * n])
         solver.h_abs = min(solver.h_abs, solver.max_step)
         solver.step()
@@ -111,12 +57,33 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
             changed = _changed(chart, solver, course)
             if changed is not None:
                 chart, state = changed
-                solver = _solver(chart, course.last, state, course)
+                solver = _begun(chart, course.last, state, course)
         else:
-            solver = _solver(chart, passed.time, passed.state, course)
+            solver = _begun(chart, passed.time, passed.state, course)
         if progress is not None:
             progress(int(PARTS * course.last / course.until), PARTS)
     return None
+
+
+def _begun(chart: DriverChart, time: float, state: Number, course: SimulatedCourse) -> Any:
+    """Return the integrator from a state on. A mechanism that friction holds rests first; None where it stays so."""
+    n = len(chart.free)
+    values, speeds = state[:n], state[n : 2 * n]
+    if chart.begin(time, values, speeds):
+        return _solver(chart, time, state, course)
+    last = chart.released(time, values, course.until)
+    course.events.append(SimulationEvent(time, STICKS, "friction holds the mechanism", False))
+    course.steps.append(Step(chart, time, last, _resting(state)))
+    if last >= course.until:
+        return None
+    course.events.append(SimulationEvent(last, "slips", "the loads overcome friction", False))
+    chart.begin(last, values, speeds)
+    return _solver(chart, last, state, course)
+
+
+def _resting(state: Number) -> Callable[[Number], Number]:
+    """Return a state that stays, as a function of time."""
+    return lambda times: np.repeat(state[:, None], len(times), axis=1) if np.ndim(times) else state
 
 
 class _Turn(NamedTuple):
@@ -131,6 +98,9 @@ def _passed(course: SimulatedCourse) -> _Turn | None:
     step = course.steps[-1]
     for one in first_passed(course.watched, step.chart, (step.first, step.last), step.between):
         is_end, n = one.watch.name == END, len(step.chart.free)
+        if one.watch.name == REST:
+            course.steps[-1] = Step(step.chart, step.first, one.time, step.between)
+            return _Turn(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
         here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]))
         text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else one.watch.text
         bounced = after_impact(here, course.restitution) if is_end and course.restitution is not None else None

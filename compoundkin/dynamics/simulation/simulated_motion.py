@@ -12,7 +12,7 @@ from compoundkin.base.arrays import whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
-from compoundkin.dynamics.simulation.integration import ChartStretch
+from compoundkin.dynamics.simulation.simulated_course import ChartStretch
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.motion import Motion
@@ -106,7 +106,7 @@ def _moved(stretch: ChartStretch) -> dict[str, Moved]:
     chart, n = stretch.chart, len(stretch.chart.free)
     values, speeds = stretch.states[:n], stretch.states[n : 2 * n]
     states = zip(stretch.times, values.T, speeds.T, strict=True)
-    rates = np.array([chart.rates(t, q, v).accelerations for t, q, v in states])
+    rates = np.array([chart.told(t, q, v) for t, q, v in states])
     return {name: (values[k], speeds[k], rates[:, k]) for k, name in enumerate(chart.free)}
 
 

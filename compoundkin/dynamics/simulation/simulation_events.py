@@ -26,6 +26,8 @@ LOOKS = 4
 SLOW = 1e-6
 # What coming to an end of a guide is called.
 END = "end"
+# What a driver that comes to rest is called, where friction changes its direction.
+REST = "rest"
 
 Function = Callable[[SimulatedState], Any]
 
@@ -89,7 +91,12 @@ def watches(mechanism: Mechanism, events: Mapping[str, Any], stop: tuple[str, ..
         if name not in events:
             raise InvalidInput(Problem("stop", f"there is no event {name!r}", f"known: {', '.join(events) or 'none'}"))
     own = [Watch(name, function, "as asked for", name in stop) for name, function in events.items()]
-    return (*_of_pairs(mechanism), *own)
+    rest = [Watch(REST, _speed, "it comes to rest", False)] if mechanism.frictions else []
+    return (*rest, *_of_pairs(mechanism), *own)
+
+
+def _speed(state: SimulatedState) -> float:
+    return float(state.state.speeds[0])
 
 
 def _of_pairs(mechanism: Mechanism) -> Iterator[Watch]:

@@ -50,19 +50,30 @@ class SimulatedState:
 def motion_at(state: DriverState, start: Motion) -> Motion:
     """Return a state as a motion of one pose. Its free drivers are accelerated."""
     second = np.concatenate([state.accelerations, state.prescribed])
-    told = zip(state.chart.names, state.values, state.speeds, second, strict=True)
-    drives: dict[str, tuple[Number, ...]] = {name: tuple(np.array([[one]]) for one in own) for name, *own in told}
+    return accelerated_motion(state, start, state.speeds, second[:, None])
+
+
+def accelerated_motion(state: DriverState, start: Motion, speeds: Number, second: Number) -> Motion:
+    """Return a state as a motion whose poses differ in their accelerations (drivers, poses). Speeds are given anew."""
+    count = second.shape[1]
+    told = zip(state.chart.names, state.values, speeds, second, strict=True)
+    drives: dict[str, tuple[Number, ...]] = {
+        name: (np.array([[value]]), np.array([[speed]]), row[None]) for name, value, speed, row in told
+    }
+    # the bias goes with the squares and products of speeds, as they are in the state
+    is_own = speeds is state.speeds
 
     def true(series: Series) -> Series:
         if len(series.c) < 3:
             return Series((_entry(series.c[0]), *[0.0 * _entry(series.c[0])] * 2))
         rows = np.broadcast_to(series.c[1], (len(second) + 1, 1))[:-1, 0]
-        return Series((_entry(series.c[0]), _entry(series.c[1]), _entry(series.c[2]) + (rows @ second) / 2.0))
+        bias = _entry(series.c[2]) if is_own else 0.0
+        return Series((_entry(series.c[0]), np.reshape(rows @ speeds, (1, 1)), bias + (rows @ second)[None] / 2.0))
 
     poses = {name: pose if pose is FIXED else _moved(pose, true) for name, pose in state.block.world.items()}
-    time = np.array([state.time])
-    inputs = replace(start.inputs.driven(drives), shape=(1,))
-    return replace(start, order=2, inputs=inputs, poses=poses, failed=np.zeros((1, 1), dtype=int), time=time)
+    inputs = replace(start.inputs.driven(drives), shape=(count,))
+    time, failed = np.full(count, state.time), np.zeros((1, count), dtype=int)
+    return replace(start, order=2, inputs=inputs, poses=poses, failed=failed, time=time)
 
 
 def _moved(pose: Pose, true: Any) -> Pose:
