@@ -131,7 +131,7 @@ class Forces(Shows, FoundForces):
         >>> units = {"length": "m", "mass": "kg", "force": "N"}
         >>> crank = Mechanism("m", *items, gravity(0, -9.81), units=units)
         >>> force_analysis(solve(crank, {"crank": [0.0]}, speed=3.0)).on("crank")
-        LinkForces(crank: pair A, effort crank, weight crank, inertia crank)
+        LinkForces(crank: pair A, driver crank, weight crank, inertia crank)
         """
         known = self.mechanism.links
         if link not in known:

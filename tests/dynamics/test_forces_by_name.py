@@ -30,7 +30,7 @@ def test_all_that_acts_on_a_link_is_in_balance() -> None:
     assert np.allclose(bar["force on bar"].place, forces.motion.points["G"].position, rtol=0, atol=1e-15)
     assert np.allclose(bar[3].force, 0.06 * -9.81j)
     crank = forces.on("crank")
-    assert [one.kind for one in crank] == ["pair", "pair", "effort", "weight", "inertia"]
+    assert [one.kind for one in crank] == ["pair", "pair", "driver", "weight", "inertia"]
     assert np.max(np.abs(crank["E"].moment)) < 1e-15
     assert np.array_equal(crank["crank"].moment, forces.drives["crank"].effort)
     assert forces.on("bar") is bar
@@ -88,7 +88,7 @@ def test_shaking_force_is_that_of_the_masses() -> None:
     forces = case.forces
     total = sum(
         one.force for link in forces.mechanism.links if link != "frame"
-        for one in forces.on(link) if one.kind not in ("pair", "effort")
+        for one in forces.on(link) if one.kind not in ("pair", "driver")
     )  # fmt: skip
     assert np.allclose(forces.shaking.force, total, rtol=0, atol=1e-13)
     expected = [row["on_frame"]["moment_about_origin"] for row in case.rows]
@@ -98,6 +98,14 @@ def test_shaking_force_is_that_of_the_masses() -> None:
     pushed = ck.force_analysis(ck.solve(case.mechanism.replace(ck.force("frame", (5, 0), at="B")), case.values))
     assert [one.name for one in pushed.shaking.external] == ["force on frame"]
     assert np.allclose(pushed.on("frame").force - pushed.shaking.force, 5.0)
+
+
+def test_an_effort_along_a_pair_is_a_load_and_no_driver() -> None:
+    forces = ck.force_analysis(ck.solve(ck.catalog.load_named("engine-gas-pressure"), {"crank": [1.0]}))
+    assert [one.kind for one in forces.on("piston")] == ["pair", "pair", "effort", "inertia"]
+    assert [one.name for one in forces.shaking.reactions] == ["crank"]
+    drawn = ck.draw(forces, kind="free-bodies", link="piston").svg
+    assert "gas " in drawn and "loads and weights" in drawn
 
 
 def test_power_and_units() -> None:

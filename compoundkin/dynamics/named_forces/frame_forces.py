@@ -11,7 +11,7 @@ from compoundkin.base.arrays import Number, Vectors
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.named_forces.link_forces import link_forces
-from compoundkin.dynamics.named_forces.link_wrench import EFFORT, PAIR, LinkWrench, as_vectors, moment_about
+from compoundkin.dynamics.named_forces.link_wrench import DRIVER, PAIR, LinkWrench, as_vectors, moment_about
 from compoundkin.kinematics.results import told
 from compoundkin.model.elements import FRAME
 
@@ -40,7 +40,7 @@ class ShakingForce:
     @property
     def reactions(self) -> tuple[LinkWrench, ...]:
         """The drivers' reactions."""
-        return self._of(EFFORT)
+        return self._of(DRIVER)
 
     @property
     def external(self) -> tuple[LinkWrench, ...]:

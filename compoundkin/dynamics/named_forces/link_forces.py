@@ -13,7 +13,7 @@ from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.named_forces.driver_efforts import DriverEffort
 from compoundkin.dynamics.named_forces.link_wrench import (
-    EFFORT,
+    DRIVER,
     INERTIA,
     WEIGHT,
     LinkWrench,
@@ -102,7 +102,7 @@ def _of_pairs(forces: FoundForces, link: str) -> Iterator[LinkWrench]:
         effort = efforts[name]
         held = effort.wrench if found.on(link).side else -effort.wrench
         yield replace(one, whole=one.whole - held)
-        driven.append(replace(one, kind=EFFORT, name=effort.name, whole=held, open=None))
+        driven.append(replace(one, kind=DRIVER, name=effort.name, whole=held, open=None))
     yield from driven
 
 

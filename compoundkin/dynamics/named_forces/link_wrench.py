@@ -16,7 +16,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.model.geometry import vector
 
 # What may act on a link, in the order in which it is told.
-PAIR, EFFORT, LOAD, WEIGHT, INERTIA, FRICTION = "pair", "effort", "load", "weight", "inertia", "friction"
+PAIR, DRIVER, LOAD, WEIGHT, INERTIA, FRICTION = "pair", "driver", "load", "weight", "inertia", "friction"
 
 NOTHING = complex(np.nan, np.nan)
 
@@ -25,7 +25,7 @@ NOTHING = complex(np.nan, np.nan)
 class LinkWrench(PrintsShort):
     """A wrench on a link, in the mechanism's units.
 
-    Arrays have the motion's shape, NaN where not assembled. `kind` is "pair", "effort", "weight", "inertia",
+    Arrays have the motion's shape, NaN where not assembled. `kind` is "pair", "driver", "weight", "inertia",
     "friction" or the kind of a load; `by` is the link it comes from, if it comes from one; `at` names the point of
     attack; `whole` is the wrench about the world's origin (designs, poses), `attack` the point of attack in the world.
     What equilibrium leaves `open` is told as NaN; `whole` is then one of all that are possible.

@@ -12,7 +12,7 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.named_forces.link_wrench import EFFORT, LinkWrench
+from compoundkin.dynamics.named_forces.link_wrench import DRIVER, LinkWrench
 from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.work.virtual_work import virtual_efforts
 from compoundkin.kinematics.extremes.dead_points import moving_driver
@@ -94,7 +94,7 @@ def held_wrenches(motion: Motion, held: HoldingEffort) -> Iterator[LinkWrench]:
     letter = "" if meant is None else meant[0].letters[0]
     place = np.asarray(motion.points[letter].position).reshape(motion.failed.shape)
     for (link, by), wrench in store.wrenches().items():
-        yield LinkWrench(motion, EFFORT, held.name, link, by, letter, wrench, place)
+        yield LinkWrench(motion, DRIVER, held.name, link, by, letter, wrench, place)
 
 
 def holds(wrenches: tuple[LinkWrench, ...], designs: slice, poses: slice) -> dict[str, Wrench]:

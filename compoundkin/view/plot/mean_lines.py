@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.model.attributes import EFFORT, POWER
 from compoundkin.view.plot.plotted_rows import Plotted
+from compoundkin.view.plot.point_labels import number
 from compoundkin.view.plot.solved_courses import PlottedCourse
 
 # A mean nearer to zero than this part of the greatest value is zero but for rounding.
@@ -21,7 +22,7 @@ def mean_lines(axes: Any, course: PlottedCourse, curves: Sequence[Plotted], shad
         if len(curve.values) == 1 and curve.name.rpartition(".")[2] in (EFFORT, POWER):
             mean = _mean(*course.line(curve, 0))
             if np.isfinite(mean):
-                axes.axhline(mean, color=shades[k], linestyle=(0, (5, 3)), linewidth=1.0, label=f"mean {mean:.4g}")
+                axes.axhline(mean, color=shades[k], linestyle=(0, (5, 3)), linewidth=1.0, label=f"mean {number(mean)}")
 
 
 def _mean(x: Any, y: Any) -> float:

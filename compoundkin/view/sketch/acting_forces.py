@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.named_forces.link_wrench import EFFORT, FRICTION, PAIR, WEIGHT, LinkWrench
+from compoundkin.dynamics.named_forces.link_wrench import DRIVER, FRICTION, PAIR, WEIGHT, LinkWrench
 from compoundkin.dynamics.named_forces.link_wrench import INERTIA as OF_INERTIA
 from compoundkin.model.elements import FRAME
 from compoundkin.view.sketch.scene import Scene
@@ -40,7 +40,7 @@ class ShownForce:
     at: complex
     force: complex
     moment: float
-    is_effort: bool = False
+    is_driver: bool = False
     is_open: bool = False
 
 
@@ -119,7 +119,7 @@ def _courses(forces: Forces, scene: Scene, link: str, design: int) -> Iterator[F
     for letter in pins:
         pin = _course(forces.pins[letter].on(link), design, f"F{_lowered(scene, link)}({letter})", "M")
         # the torque of a driver at the pin is told by itself
-        turned = [_course(one, design, "", "").moment for one in acting if one.kind == EFFORT and one.at == letter]
+        turned = [_course(one, design, "", "").moment for one in acting if one.kind == DRIVER and one.at == letter]
         yield replace(pin, moment=pin.moment - sum(turned)) if turned else pin
     for one in acting:
         if one.kind != PAIR or one.at not in pins:
@@ -132,7 +132,7 @@ def _names(scene: Scene, one: LinkWrench, several: bool) -> tuple[str, str]:
     if one.kind == PAIR:
         both = _lowered(scene, one.by, one.on)
         return f"F{both}" + (f"({one.name})" if several else ""), f"M{both}"
-    if one.kind == EFFORT:
+    if one.kind == DRIVER:
         return f"P{own}", f"T{own}"
     if one.kind == WEIGHT:
         return f"m{own}g", f"m{own}g"
@@ -150,8 +150,8 @@ def _lowered(scene: Scene, *links: str) -> str:
 
 def _course(one: LinkWrench, design: int, name: str, turning: str) -> ForceCourse:
     told = f"{one.kind} {one.name} on {one.on}" + (f" by {one.by}" if one.by else "")
-    kind = REACTION if one.kind in (PAIR, EFFORT, FRICTION) else INERTIA if one.kind == OF_INERTIA else LOAD
-    shown = ShownForce(name, turning, told, one.on, one.by, kind, 0j, 0j, 0.0, one.kind == EFFORT)
+    kind = REACTION if one.kind in (PAIR, DRIVER, FRICTION) else INERTIA if one.kind == OF_INERTIA else LOAD
+    shown = ShownForce(name, turning, told, one.on, one.by, kind, 0j, 0j, 0.0, one.kind == DRIVER)
 
     def row(values: Any) -> Number:
         rows = np.broadcast_to(values, one.motion.shape).reshape(one.motion.inputs.designs, one.motion.inputs.poses)

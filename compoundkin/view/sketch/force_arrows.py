@@ -99,7 +99,7 @@ def moments(
     taken: list[complex] = []
     for k, one in enumerate(one for one in forces if one.moment):
         at = place(one.at)
-        radius = first if one.is_effort else ROUND
+        radius = first if one.is_driver else ROUND
         radius += NEXT * sum(abs(other - at) < 1.0 for other in taken)
         taken.append(at)
         way = toward - at if abs(toward - at) > CLEAR else -1j
