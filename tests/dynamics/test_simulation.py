@@ -218,3 +218,30 @@ def test_contact_of_a_cam_lets_go_where_the_follower_falls_freely() -> None:
     slow = ck.simulate(cam, start={"cam": (-np.pi / 2, 10.0)}, until=1.0)
     assert slow.events == ()
     assert slow.energy.worst < 1e-9
+
+
+def test_parallelogram_passes_its_change_points() -> None:
+    """The coupler of a parallelogram does not turn: it is a pendulum, that of both cranks and the coupler's mass."""
+    from scipy.special import ellipk
+
+    linkage = ck.Mechanism(
+        "Parallelogram",
+        ck.link("frame", O=(0, 0), C=(2, 0)),
+        ck.link("crank", O=(0, 0), A=(1, 0)),
+        ck.link("coupler", A=(0, 0), B=(2, 0)),
+        ck.link("rocker", C=(0, 0), B=(1, 0)),
+        ck.drive("crank"),
+        ck.mass("crank", 1.0, inertia=0.1),
+        ck.mass("coupler", 1.0, inertia=0.1),
+        ck.mass("rocker", 1.0, inertia=0.1),
+        ck.gravity(0, -9.81),
+        units=SI,
+    )
+    # half cranks and a whole coupler fall, 2 (1/4 + 0.1) + 1 = 1.7 kg m^2 turn
+    swing, pace = np.pi / 2 + 0.5, np.sqrt(2.0 * 9.81 / 1.7)
+    half = 2.0 / pace * ellipk(np.sin(swing / 2) ** 2)
+    found = ck.simulate(linkage, start=0.5, until=2.0 * half, times=np.linspace(0.0, 2.0 * half, 101))
+    assert found.motion.drives["crank"].value[50] == pytest.approx(-np.pi - 0.5, abs=1e-7)
+    assert found.motion.drives["crank"].value[-1] == pytest.approx(0.5, abs=1e-7)
+    assert found.energy.worst < 1e-8
+    assert np.max(np.abs(found.motion.links["coupler"].angle)) < 1e-9

@@ -33,6 +33,8 @@ from compoundkin.model.pairs import Pair
 POINTS, PIECES, HALVED = 24, 16, 7
 # Polynomials hold where their last coefficients are this part of the largest: some hundred units of rounding.
 HOLDS, LAST = 3e-14, 3
+# Next to a change point accelerations have some ten digits; a corner of a load is still far above this.
+HOLDS_NEAR = 1e-8
 # Poses of the motion by which the configuration is kept.
 POSES = 145
 
@@ -95,6 +97,11 @@ class DriveTable:
         found = self.pieces[k] if k >= 0 else None
         return found if found is not None and value <= found.high else None
 
+    def sign(self, k: int, value: float) -> float:
+        """Return the sign of a dyad's mode at a value."""
+        place = _places(np.array([[value]]), (self.low, self.high))
+        return float(np.ravel(self.motion.tracker.sign(k, np.array([[0]]), place))[0])
+
 
 def drive_table(
     first: Configuration, driver: str, low: float, high: float, loads: Sequence[Sequence[Load]], pairs: Sequence[Pair]
@@ -121,18 +128,21 @@ def _pieces(
     for _ in range(HALVED + 1):
         made = _solved(motion, todo, (low, high), loads, pairs)
         found += [piece for piece in made if _holds(piece)]
-        broken = [(piece.low, piece.high) for piece in made if not _holds(piece)]
-        todo = [part for a, b in broken for part in ((a, (a + b) / 2), ((a + b) / 2, b))]
+        broken = [piece for piece in made if not _holds(piece)]
+        todo = [part for one in broken for part in pairwise([one.low, (one.low + one.high) / 2, one.high])]
         if not todo:
             break
+    else:
+        if motion.change_points:
+            found += [piece for piece in broken if _holds(piece, HOLDS_NEAR)]
     return sorted(found, key=lambda piece: piece.low)
 
 
-def _holds(piece: TablePiece) -> bool:
+def _holds(piece: TablePiece, part: float = HOLDS) -> bool:
     scales = np.max(np.abs(piece.terms), axis=1)
     # the bias is a derivative of the inertia, and the forces are alike
     scales = np.array([scales[:2].max()] * 2 + [scales[2:].max()] * 2)
-    return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= HOLDS * scales[:, None]))
+    return bool(np.all(np.abs(piece.terms[:, -LAST:]) <= part * scales[:, None]))
 
 
 def _solved(
@@ -144,8 +154,7 @@ def _solved(
 ) -> list[TablePiece]:
     """Return pieces, solved all at once."""
     values = np.concatenate([(a + b) / 2.0 + (b - a) / 2.0 * NODES for a, b in parts])
-    places = np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0) * (POSES - 1)
-    at = between(motion, 0, places)
+    at = between(motion, 0, _places(values, ends))
     rows = _terms(at, loads)
     # beyond an end of a guide groups close all the same
     rows[:, (at.failed[0] > 0) & (at.failed[0] <= len(motion.structure.groups))] = np.nan
@@ -153,6 +162,12 @@ def _solved(
     cuts = [slice(k * POINTS, (k + 1) * POINTS) for k in range(len(parts))]
     return [TablePiece(float(a), float(b), rows[:, cut] @ _TO_COEFFICIENTS.T, float(np.max(ratios[cut])), at.poses, cut)
             for (a, b), cut in zip(parts, cuts, strict=True)]  # fmt: skip
+
+
+def _places(values: Number, ends: tuple[float, float]) -> Number:
+    """Return where along the motion of a table values are."""
+    places: Number = np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0) * (POSES - 1)
+    return places
 
 
 def _terms(motion: Motion, loads: Sequence[Sequence[Load]]) -> Number:

@@ -35,7 +35,7 @@ class DriverChart:
     start: Motion
     free: tuple[str, ...]
     laws: Mapping[str, Law]
-    signs: dict[int, Number] = field(init=False)
+    signs: dict[int, float] = field(init=False)
     states: dict[int, Number] = field(init=False)
     near: dict[str, LinearAngle] = field(init=False)
     turned: dict[str, LinearAngle] = field(init=False)
@@ -100,6 +100,10 @@ class DriverChart:
         """Return the accelerations of the free drivers at a state that was found."""
         return self.rates(time, values, speeds).accelerations
 
+    def sign(self, k: int, values: Number) -> float:
+        """Return the sign of a dyad's mode at values of the drivers."""
+        return self.signs[k]
+
     def is_regular(self, values: Number) -> bool:
         """Tell whether it is known that no pair moves much faster than a driver."""
         return False
@@ -156,7 +160,7 @@ class _Held:
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the sign or the state."""
-        return self.chart.states[solver.index] if solver.is_numbered else self.chart.signs[solver.index]
+        return self.chart.states[solver.index] if solver.is_numbered else self.chart.sign(solver.index, self.values)
 
     def angle(self, solver: GroupSolver, link: str) -> Number | None:
         """Return about where a counted angle is."""

@@ -88,6 +88,14 @@ class TabulatedChart(DriverChart):
         if table is not None and not self.wraps and not table.low < value < table.high:
             self._tabulate(value, self.state(time, values, speeds).block.world)
 
+    def sign(self, k: int, values: Number) -> float:
+        """Return the sign of a dyad's mode. It changes where the motion of the table passes a change point."""
+        table = self.table
+        if table is None or k not in table.motion.change_points:
+            return super().sign(k, values)
+        value = table.low + (float(values[0]) - table.low) % TURN if self.wraps else float(values[0])
+        return table.sign(k, value)
+
     def is_regular(self, values: Number) -> bool:
         """Tell whether no pair moves much faster than the driver."""
         piece, _ = self._piece(float(values[0]))
