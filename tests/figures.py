@@ -116,6 +116,7 @@ FIGURES: dict[str, Callable[[], ck.results.Picture | ck.results.Animation]] = {
     "velocities": lambda: ck.draw(SIX_BAR, AT, kind="polygon"),
     "conjugate-cams": lambda: ck.draw(load_named("conjugate-cams"), ck.deg(60)),
     "constant-breadth-yoke": lambda: ck.draw(load_named("constant-breadth-yoke"), ck.deg(60)),
+    "free-bodies": lambda: ck.draw(load_named("engine-gas-pressure"), ck.deg(30), kind="free-bodies"),
     "accelerations": lambda: ck.draw(SIX_BAR, AT, kind="polygon", vectors="acceleration"),
 }
 

@@ -8,13 +8,14 @@ from pathlib import Path
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 
 
-def test_the_example_prints_what_the_readme_shows():
-    code = re.search(r"```python\n(.*?)```", README, re.DOTALL).group(1)
-    shown = re.search(r"```text\n(.*?)```", README, re.DOTALL).group(1)
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        exec(compile(code, "README.md", "exec"), {})
-    assert printed.getvalue() == shown
+def test_the_examples_print_what_the_readme_shows():
+    names = {}
+    codes, texts = (re.findall(rf"```{kind}\n(.*?)```", README, re.DOTALL) for kind in ("python", "text"))
+    for code, shown in zip(codes, texts, strict=True):
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(compile(code, "README.md", "exec"), names)
+        assert printed.getvalue() == shown
 
 
 def test_every_page_it_names_exists():

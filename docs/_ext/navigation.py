@@ -10,7 +10,10 @@ from sphinx.application import Sphinx
 
 # Headings and the pages below them; a pattern stands for the pages that are there.
 CONTENTS: dict[str, tuple[str, ...]] = {
-    "Start": ("Quickstart <self>", "notebooks/first*", "notebooks/*", "press-drive", "loads", "machine"),
+    "Start": (
+        *("Quickstart <self>", "notebooks/first*", "notebooks/*"),
+        *("press-drive", "loads", "machine", "simulation"),
+    ),
     "Use it": (
         *("pairs", "cams", "laws", "circuits", "composing", "pictures", "animation", "plots", "page"),
         *("cli", "file-format"),

@@ -13,7 +13,7 @@ import compoundkin as ck
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs" / "notebooks").glob("*.ipynb"))
 # The last lines of cells that show a picture.
-DRAWS = re.compile(r"(ck\.draw|motion\.plot|plt\.show)")
+DRAWS = re.compile(r"(ck\.draw|ck\.plots|ck\.animate|.*\bmotion\.plot|plt\.show)")
 PICTURES = ("image/svg+xml", "image/png")
 
 
@@ -43,7 +43,7 @@ def assert_it_ran(path: Path) -> None:
 
 
 def test_there_are_notebooks() -> None:
-    assert [path.stem for path in NOTEBOOKS] == ["compound-mechanism", "design-sweep", "first-mechanism"]
+    assert [path.stem for path in NOTEBOOKS] == ["compound-mechanism", "design-sweep", "first-mechanism", "forces"]
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from compoundkin.analysis.checks import verify
-from compoundkin.base.arrays import degrees, first_entry
+from compoundkin.base.arrays import first_entry
 from compoundkin.dynamics.forces import Forces
 from compoundkin.view.report.findings_table import findings_table
 from compoundkin.view.report.force_tables import (
@@ -123,9 +123,8 @@ def _speeds(sample: Sample) -> Iterator[str]:
     motion = sample.motion
     for name, drive in motion.drives.items() if motion.order else ():
         rates = np.asarray(sample.of(drive.rate))
-        unit = "deg/s" if drive.is_angle else f"{motion.mechanism.unit}/s"
-        shown = degrees(rates) if drive.is_angle else rates
-        low, high = float(np.nanmin(shown)), float(np.nanmax(shown))
+        unit = "rad/s" if drive.is_angle else f"{motion.mechanism.unit}/s"
+        low, high = float(np.nanmin(rates)), float(np.nanmax(rates))
         if high - low <= STEADY * max(abs(low), abs(high)):
             yield f"{name} at {number(low)} {unit}"
         else:
