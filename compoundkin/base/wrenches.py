@@ -58,10 +58,9 @@ class Wrench(PrintsShort):
         turning = cross(pose.u.c[0], pose.u.c[1]) if len(pose.u.c) > 1 else 0.0
         return dot(self.force, speed) + self.about(origin) * turning
 
-    @property
-    def is_nothing(self) -> bool:
-        """Whether it is known to be zero at every pose, without looking."""
-        return is_number(self.force, 0) and is_number(self.moment, 0)
+    def part(self, designs: slice, poses: slice) -> Wrench:
+        """Return what of it belongs to some designs and poses."""
+        return Wrench(self.force[designs, poses], self.moment[designs, poses])
 
     def __getstate__(self) -> Any:
         return self.force, self.moment

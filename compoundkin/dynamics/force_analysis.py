@@ -12,7 +12,7 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.rubbed_motion import with_friction
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.reactions.held_pair import held_wrenches, holding_effort, holds
+from compoundkin.dynamics.reactions.held_pair import held_wrenches, holding_effort
 from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.reactions.redundant_reactions import own_wrenches
 from compoundkin.dynamics.reactions.reverse_pass import found_reactions
@@ -54,8 +54,8 @@ def _wrenches(motion: Motion, inertia: bool, holding: str) -> dict[str, Wrench]:
     with np.errstate(all="ignore"):
         for loaded in loaded_blocks(motion):
             known = loaded.known(inertia)
-            for link, wrench in holds(more, loaded.designs, loaded.poses).items():
-                known[link] = known.get(link, Wrench()) + wrench
+            for one in more:
+                known[one.on] = known.get(one.on, Wrench()) + one.whole.part(loaded.designs, loaded.poses)
             reactions = found_reactions(loaded, known)
             for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():
                 store.take(name, wrench, loaded.designs, loaded.poses)
@@ -70,9 +70,7 @@ def _wrenches(motion: Motion, inertia: bool, holding: str) -> dict[str, Wrench]:
 def _hold(motion: Motion, inertia: bool) -> None:
     """Raise InvalidInput for a mechanism and a motion of which no forces can be told."""
     mechanism = motion.mechanism
-    if mechanism.units is None:
-        remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
-        raise InvalidInput(Problem("units", "forces need units of length, mass and force", remedy))
+    _ = mechanism.stated_units
     if inertia and mechanism.masses and motion.order < 2:
         what = f"the motion was solved to order {motion.order}, and inertia takes accelerations"
         raise InvalidInput(Problem("motion", what, "solve(..., order=2), or inertia=False for statics"))

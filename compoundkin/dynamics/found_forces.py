@@ -59,9 +59,7 @@ class FoundForces(CopiesFields):
 
         Moments are in `units.moment`, powers in `units.power`.
         """
-        units = self.mechanism.units
-        assert units is not None
-        return units
+        return self.mechanism.stated_units
 
     @cached_property
     def largest(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -15,7 +15,7 @@ from compoundkin.kinematics.block import Block, blocks
 from compoundkin.kinematics.extremes import given_over
 from compoundkin.kinematics.inputs import fit, mapped, rectangle
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import FRAME, Load, Mass
+from compoundkin.model.elements import Load, Mass
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pin_pairs import meant_pair
@@ -35,9 +35,7 @@ class LoadedBlock:
     @cached_property
     def units(self) -> Units:
         """The mechanism's units."""
-        units = self.motion.mechanism.units
-        assert units is not None
-        return units
+        return self.motion.mechanism.stated_units
 
     @property
     def time(self) -> Number | None:
@@ -135,10 +133,16 @@ class LoadedBlock:
         for mass in mechanism.masses.values() if mechanism.gravity != 0 else ():
             yield mass, mass.link, self.weight(mass)
 
+    def freed(self, link: str, wrench: Wrench) -> Wrench:
+        """Return a wrench on a link. What would turn a link that turns freely, such as a roller, is left aside."""
+        for spin in self.motion.structure.passive:
+            if spin.link == link:
+                return Wrench.at(self.place(link, spin.at).c[0], wrench.force)
+        return wrench
+
     def weight(self, mass: Mass) -> Wrench:
         """Return the weight of a link."""
-        free_fall = self.motion.mechanism.gravity * self.units.metre
-        pull = self.fitted(mass.mass) * (self.units.inertia * free_fall)
+        pull = self.fitted(mass.mass) * (self.units.inertia * self.motion.mechanism.free_fall)
         return Wrench.at(self.place(mass.link, mass.at).c[0], pull)
 
     def inertia(self, mass: Mass) -> Wrench:
@@ -164,12 +168,6 @@ def loaded_blocks(motion: Motion) -> Iterator[LoadedBlock]:
         world = {name: _pose(pose, designs, poses) for name, pose in motion.poses.items()}
         shape = (designs.stop - designs.start, poses.stop - poses.start)
         yield LoadedBlock(motion, Block(shape, cut.ends, world, {}, motion.order), designs, poses, counted)
-
-
-def without_rates(block: LoadedBlock) -> LoadedBlock:
-    """Return a block at rest: the same poses, all rates zero."""
-    still = {name: pose if name == FRAME else pose.trimmed(0) for name, pose in block.block.world.items()}
-    return replace(block, block=replace(block.block, world=still, order=0))
 
 
 def _pose(pose: Pose, designs: slice, poses: slice) -> Pose:

@@ -5,16 +5,27 @@ from __future__ import annotations
 from abc import abstractmethod
 from functools import cached_property
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.model.elements import Friction, Gravity, Item, Load, Mass, Pretension
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.loads.contract import WrittenNames
+from compoundkin.model.units import Units
 
 
 class WrittenLoads:
     """The masses, the gravity and the loads of a mechanism, checked or not."""
 
     items: tuple[Item, ...]
+    units: Units | None
+
+    @property
+    def stated_units(self) -> Units:
+        """The units of length, mass and force, which forces need. Raises InvalidInput where they are not stated."""
+        if self.units is None:
+            remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
+            raise InvalidInput(Problem("units", "forces need units of length, mass and force", remedy))
+        return self.units
 
     @property
     @abstractmethod
@@ -37,6 +48,15 @@ class WrittenLoads:
     def gravity(self) -> Number:
         """The acceleration of free fall, m/s^2; zero where none is written."""
         return next((item.vector for item in self.items if isinstance(item, Gravity)), 0j)
+
+    @property
+    def free_fall(self) -> Number:
+        """The acceleration of free fall in the mechanism's own unit of length."""
+        return self.gravity * self.stated_units.metre
+
+    def mass_centre(self, mass: Mass) -> Number:
+        """Return the place of a mass centre in its link's frame."""
+        return self.geometry.points[mass.link][mass.at] if isinstance(mass.at, str) else mass.at
 
     @cached_property
     def loads(self) -> dict[str, Load]:

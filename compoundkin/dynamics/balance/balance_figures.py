@@ -73,8 +73,7 @@ def balance_figures(motion: Motion, about: complex) -> tuple[BalanceFigure, ...]
 
 
 def _measures(motion: Motion, about: complex) -> Iterator[Measure]:
-    units = motion.mechanism.units
-    assert units is not None
+    units = motion.mechanism.stated_units
     alone = InertiaAlone(about, units.inertia)
     scale = float(np.nanmax(sum(np.abs(mass.force) for mass in mass_motions(motion)))) * units.inertia
     yield Measure("shaking force", units.force, 2, alone.length, squared=True, scale=scale)

@@ -40,9 +40,7 @@ class DriverCourse(PrintsShort):
     @property
     def units(self) -> Units:
         """The mechanism's units."""
-        units = self.motion.mechanism.units
-        assert units is not None
-        return units
+        return self.motion.mechanism.stated_units
 
     @property
     def unit(self) -> str:

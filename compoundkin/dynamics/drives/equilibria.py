@@ -110,9 +110,7 @@ def equilibria(mechanism: Mechanism, values: Any = None) -> EquilibriumPositions
 
 
 def _hold(mechanism: Mechanism) -> None:
-    if mechanism.units is None:
-        remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
-        raise InvalidInput(Problem("units", "forces need units of length, mass and force", remedy))
+    _ = mechanism.stated_units
     if not mechanism.loads and not (mechanism.masses and mechanism.gravity != 0):
         remedy = "write gravity(...) and masses, spring(...), force(...)"
         raise InvalidInput(Problem("loads", "nothing acts on the mechanism: it stays everywhere", remedy))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import TURN
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
@@ -19,9 +20,10 @@ from compoundkin.model.attributes import SHAKING_FORCE
 from compoundkin.model.elements import FRAME
 
 SHAKING = f"{FRAME}.{SHAKING_FORCE}"
+# A driver whose way differs from a full turn by so many radians makes one: sums of steps round.
+WHOLE = 1e-9
 # A cycle is sampled at twice as many places until no coefficient changes by more than this part of the largest.
 SETTLED, FEWEST, MOST = 1e-12, 64, 4096
-TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -126,7 +128,7 @@ class _Cycle:
             )
         span = self.along[:, -1] - self.along[:, 0]
         is_turn = driver is not None and motion.drives[driver].is_angle
-        self.start = np.where(is_turn & (np.abs(np.abs(span) - TURN) < 1e-9), self.along[:, 0] * np.sign(span), 0.0)
+        self.start = np.where(is_turn & (np.abs(np.abs(span) - TURN) < WHOLE), self.along[:, 0] * np.sign(span), 0.0)
 
     def coefficients(self, name: str, orders: int, count: int) -> tuple[Number, Number]:
         """Return the coefficients of both senses, (designs, orders + 1)."""

@@ -15,8 +15,8 @@ from compoundkin.kinematics.extremes import given_over
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.geometry import vector
 
-# What may act on a link, in the order in which it is told.
-PAIR, DRIVER, LOAD, WEIGHT, INERTIA, FRICTION = "pair", "driver", "load", "weight", "inertia", "friction"
+# What may act on a link beside loads, which have kinds of their own.
+PAIR, DRIVER, WEIGHT, INERTIA, FRICTION = "pair", "driver", "weight", "inertia", "friction"
 
 NOTHING = complex(np.nan, np.nan)
 

@@ -10,7 +10,6 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
-from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.named_forces.link_wrench import DRIVER, LinkWrench
 from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
@@ -95,11 +94,6 @@ def held_wrenches(motion: Motion, held: HoldingEffort) -> Iterator[LinkWrench]:
     place = np.asarray(motion.points[letter].position).reshape(motion.failed.shape)
     for (link, by), wrench in store.wrenches().items():
         yield LinkWrench(motion, DRIVER, held.name, link, by, letter, wrench, place)
-
-
-def holds(wrenches: tuple[LinkWrench, ...], designs: slice, poses: slice) -> dict[str, Wrench]:
-    """Return what of efforts on links belongs to a block."""
-    return {one.on: Wrench(one.whole.force[designs, poses], one.whole.moment[designs, poses]) for one in wrenches}
 
 
 def _hold(motion: Motion, name: str) -> None:

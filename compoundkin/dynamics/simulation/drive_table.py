@@ -16,12 +16,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import CompoundkinError
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.work.mass_motion import mass_motions
-from compoundkin.dynamics.work.moving_masses import free_fall, units_of
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.extremes import between
@@ -173,7 +173,7 @@ def _places(values: Number, ends: tuple[float, float]) -> Number:
 def _terms(motion: Motion, loads: Sequence[Sequence[Load]]) -> Number:
     """Return inertia, bias, stored forces and others at all poses of a motion at unit speed."""
     mechanism = motion.mechanism
-    factor, fall = units_of(mechanism).inertia, free_fall(mechanism)
+    factor, fall = mechanism.stated_units.inertia, complex(first_entry(mechanism.free_fall))
     rows = np.zeros((4, motion.failed.shape[1]))
     for own in mass_motions(motion):
         rows[0] += np.ravel(own.product(1, own, 1)) * factor
@@ -183,7 +183,7 @@ def _terms(motion: Motion, loads: Sequence[Sequence[Load]]) -> Number:
         for row, some in zip(rows[2:], loads, strict=True):
             for load in some:
                 for link, wrench in load.wrenches(loaded):
-                    row[loaded.poses] += np.ravel(wrench.power(loaded.pose(link)))
+                    row[loaded.poses] += np.ravel(loaded.freed(link, wrench).power(loaded.pose(link)))
     return rows
 
 

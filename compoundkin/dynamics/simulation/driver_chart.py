@@ -8,12 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
-from compoundkin.base.arrays import whole_turns
+from compoundkin.base.arrays import first_entry, whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.driver_state import DriverState, LinearAngle, Rates, by_drivers
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
-from compoundkin.dynamics.work.moving_masses import free_fall, moving_masses
+from compoundkin.dynamics.work.moving_masses import moving_masses
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.contract import equations_of
@@ -44,7 +44,8 @@ class DriverChart:
         self.names = (*self.free, *self.laws)
         self.mechanism = self.start.mechanism
         self.order = self.start.solving_order
-        self.masses, self.gravity = moving_masses(self.mechanism), free_fall(self.mechanism)
+        self.masses = moving_masses(self.start.structure)
+        self.gravity = complex(first_entry(self.mechanism.free_fall))
         self.loads = sorted_loads(self.start)
         self.ends = self.start.inputs.cut(slice(0, 1), slice(0, 1)).ends
         self.signs = {s.index: float(self.start.sign(s.index, 0)) for s in self.order.solvers if not s.is_numbered}

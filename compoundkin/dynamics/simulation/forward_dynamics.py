@@ -87,9 +87,7 @@ def simulate(
 
 def _hold(mechanism: Mechanism, until: float, tolerance: float, restitution: float | None) -> None:
     """Raise InvalidInput for what cannot be simulated."""
-    if mechanism.units is None:
-        remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
-        raise InvalidInput(Problem("units", "forces need units of length, mass and force", remedy))
+    _ = mechanism.stated_units
     if not mechanism.masses:
         raise InvalidInput(Problem("masses", "nothing has a mass", 'write mass("link", 0.2, at=..., inertia=...)'))
     if not 0.0 < until < np.inf:

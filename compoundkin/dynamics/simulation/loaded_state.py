@@ -65,7 +65,7 @@ class LoadedState(LoadedBlock):
         total = np.zeros(self.count)
         for load in loads:
             for link, wrench in load.wrenches(self):
-                total += np.ravel(wrench.power(self._unit(link)))
+                total += np.ravel(self.freed(link, wrench).power(self._unit(link)))
         return total
 
     def _unit(self, link: str) -> Pose:

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compoundkin.base.arrays import dot
+from compoundkin.base.arrays import dot, first_entry
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.work.mass_motion import mass_motions
-from compoundkin.dynamics.work.moving_masses import free_fall, units_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import Load
 
@@ -52,7 +51,7 @@ class SimulatedEnergy(PrintsShort):
 def simulated_energy(motion: Motion, work: Number) -> SimulatedEnergy:
     """Return the energies of a motion of one design. Its mass centres tell them."""
     mechanism = motion.mechanism
-    factor, fall = units_of(mechanism).inertia, free_fall(mechanism)
+    factor, fall = mechanism.stated_units.inertia, complex(first_entry(mechanism.free_fall))
     kinetic, potential = np.zeros(motion.shape), np.zeros(motion.shape)
     for own in mass_motions(motion):
         kinetic += np.ravel(own.product(1, own, 1)) * (factor / 2.0)

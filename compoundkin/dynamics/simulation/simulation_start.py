@@ -19,7 +19,6 @@ from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solving_order_of
-from compoundkin.model.elements import Drive
 from compoundkin.model.laws import Law, as_law, constant_speed
 from compoundkin.model.mechanism import Mechanism
 
@@ -119,8 +118,3 @@ def _shown(mechanism: Mechanism) -> dict[str, float]:
         value = drawn_value(order, given, own.name, shown.poses, shown.beside) if own.values is None else own.values
         found[own.name] = 0.0 if value is None else float(np.ravel(value)[0])
     return found
-
-
-def free_items(mechanism: Mechanism) -> dict[str, Drive]:
-    """Return the drivers that are written as such, by name."""
-    return {item.name: item for item in mechanism.items if isinstance(item, Drive)}

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.dynamics.simulation.driver_state import DriverState
+from compoundkin.dynamics.simulation.driver_state import DriverState, by_drivers
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
@@ -66,7 +66,7 @@ def accelerated_motion(state: DriverState, start: Motion, speeds: Number, second
     def true(series: Series) -> Series:
         if len(series.c) < 3:
             return Series((_entry(series.c[0]), *[0.0 * _entry(series.c[0])] * 2))
-        rows = np.broadcast_to(series.c[1], (len(second) + 1, 1))[:-1, 0]
+        rows = by_drivers(series.c[1], state.chart.names)
         bias = _entry(series.c[2]) if is_own else 0.0
         return Series((_entry(series.c[0]), np.reshape(rows @ speeds, (1, 1)), bias + (rows @ second)[None] / 2.0))
 

@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.work.virtual_work import free_link, virtual_efforts
+from compoundkin.dynamics.work.virtual_work import virtual_efforts
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.unit_rates import moved_alone, moved_together
 
@@ -53,6 +53,6 @@ class HeldEfforts(PrintsShort):
             with np.errstate(all="ignore"):
                 for at, unit in zip(loaded_blocks(motion), loaded_blocks(moved_alone(motion, name)), strict=True):
                     for _, link, wrench in at.named_loads():
-                        power = np.abs(free_link(at, link, wrench).power(unit.pose(link)))
+                        power = np.abs(at.freed(link, wrench).power(unit.pose(link)))
                         found[k] = max(found[k], float(np.max(power, initial=0.0, where=np.isfinite(power))))
         return found

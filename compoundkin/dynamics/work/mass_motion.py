@@ -55,8 +55,7 @@ def mass_motions(motion: Motion) -> Iterator[MassMotion]:
 
 def place_of(motion: Motion, mass: Mass) -> Number:
     """Return the place of a mass centre in its link's frame."""
-    own = motion.mechanism.geometry.points[mass.link][mass.at] if isinstance(mass.at, str) else mass.at
-    return given_over(motion, own)
+    return given_over(motion, motion.mechanism.mass_centre(mass))
 
 
 def _turning(motion: Motion, pose: Pose) -> tuple[Number, ...]:
@@ -66,9 +65,7 @@ def _turning(motion: Motion, pose: Pose) -> tuple[Number, ...]:
 
 def units_of_masses(motion: Motion) -> Units:
     """Return the units of a mechanism with masses. Raises InvalidInput where it has no units, or no masses."""
-    if motion.mechanism.units is None:
-        remedy = 'write Mechanism(..., units={"length": "mm", "mass": "kg", "force": "N"})'
-        raise InvalidInput(Problem("units", "masses need units of length, mass and force", remedy))
+    units = motion.mechanism.stated_units
     if not motion.mechanism.masses:
         raise InvalidInput(Problem("masses", "no link has a mass", 'write mass("bar", 0.2, at=(50, 0), inertia=40)'))
-    return motion.mechanism.units
+    return units

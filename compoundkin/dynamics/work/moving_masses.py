@@ -20,14 +20,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
-from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.units import Units
-
-
-def units_of(mechanism: Mechanism) -> Units:
-    """Return the units of a mechanism that has some."""
-    assert mechanism.units is not None
-    return mechanism.units
+from compoundkin.structure.kinematic_structure import Structure
 
 
 class MovingMass(NamedTuple):
@@ -42,17 +35,22 @@ class MovingMass(NamedTuple):
     inertia: float
 
 
-def moving_masses(mechanism: Mechanism) -> tuple[MovingMass, ...]:
-    """Return the masses of the links. Raises InvalidInput for those that are arrays over designs."""
-    factor, found = units_of(mechanism).inertia, []
+def moving_masses(structure: Structure) -> tuple[MovingMass, ...]:
+    """Return the masses of the links. Raises InvalidInput for those that are arrays over designs.
+
+    A link that may turn freely, such as a roller, is not turned: its inertia does nothing.
+    """
+    mechanism, free = structure.mechanism, {spin.link for spin in structure.passive}
+    factor, found = mechanism.stated_units.inertia, []
     for own in mechanism.masses.values():
-        at = mechanism.geometry.points[own.link][own.at] if isinstance(own.at, str) else own.at
+        at = mechanism.mass_centre(own)
         if any(np.size(value) > 1 for value in (own.mass, own.inertia, at)):
             what = "its numbers are arrays, and one design is simulated at a time"
             raise InvalidInput(Problem(f"masses.{own.link}", what, "give single numbers"))
         mass, inertia = (float(np.ravel(value)[0]) * factor for value in (own.mass, own.inertia))
         if own.link != FRAME:
-            found.append(MovingMass(own.link, complex(np.ravel(at)[0]), mass, inertia))
+            turned = 0.0 if own.link in free else inertia
+            found.append(MovingMass(own.link, complex(np.ravel(at)[0]), mass, turned))
     return tuple(found)
 
 
@@ -65,11 +63,6 @@ class InertiaTerms(NamedTuple):
     matrix: Number
     bias: Number
     weight: Number
-
-
-def free_fall(mechanism: Mechanism) -> complex:
-    """Return the acceleration of gravity in the mechanism's own unit of length."""
-    return complex(np.ravel(mechanism.gravity)[0]) * units_of(mechanism).metre
 
 
 def inertia_terms(

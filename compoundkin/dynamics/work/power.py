@@ -16,7 +16,6 @@ from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.named_forces.driver_efforts import DriverEffort
 from compoundkin.dynamics.named_forces.link_wrench import FRICTION
-from compoundkin.dynamics.work.virtual_work import cut, free_link
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import Table, table_of
@@ -51,8 +50,7 @@ class Powers(Shows, CopiesFields):
     def table(self) -> Table:
         """All of it as columns, a row for each pose."""
         drivers = table_of(self.motion, *self.motion.drives)
-        units = self.motion.mechanism.units
-        assert units is not None
+        units = self.motion.mechanism.stated_units
         named = {
             **{f"{name}.power": value for name, value in (*self.drives.items(), *self.loads.items())},
             "gravity.power": self.gravity,
@@ -102,27 +100,27 @@ def _loads(at: LoadedBlock) -> dict[str, Number]:
     found: dict[str, Number] = {}
     for load in at.motion.mechanism.loads.values():
         for link, wrench in load.wrenches(at):
-            found[load.name] = found.get(load.name, 0.0) + free_link(at, link, wrench).power(at.pose(link))
+            found[load.name] = found.get(load.name, 0.0) + at.freed(link, wrench).power(at.pose(link))
     return found
 
 
 def _sums(at: LoadedBlock, forces: FoundForces) -> dict[str, Number]:
     """Return what is summed over masses and frictions. The power of weights, of inertia, of friction; the energies."""
     found: dict[str, Number] = dict.fromkeys(("gravity", "friction", "rate", "kinetic", "potential"), 0.0)
-    free_fall = at.motion.mechanism.gravity * at.units.metre
+    free_fall = at.motion.mechanism.free_fall
     for load in at.motion.mechanism.loads.values():
         energy = load.energy(at)
         found["potential"] += 0.0 if energy is None else energy
     for mass in at.motion.mechanism.masses.values():
         heavy = at.fitted(mass.mass) * at.units.inertia
         centre = at.place(mass.link, mass.at)
-        found["gravity"] += free_link(at, mass.link, at.weight(mass)).power(at.pose(mass.link))
+        found["gravity"] += at.freed(mass.link, at.weight(mass)).power(at.pose(mass.link))
         found["potential"] -= heavy * (np.conj(free_fall) * centre.c[0]).real
         found["kinetic"] += _kinetic(at, mass)
         if forces.inertia:
-            found["rate"] -= free_link(at, mass.link, at.inertia(mass)).power(at.pose(mass.link))
+            found["rate"] -= at.freed(mass.link, at.inertia(mass)).power(at.pose(mass.link))
     for one in (one for one in forces.more if one.kind == FRICTION):
-        found["friction"] += cut(one.whole, at).power(at.pose(one.on))
+        found["friction"] += one.whole.part(at.designs, at.poses).power(at.pose(one.on))
     return found
 
 

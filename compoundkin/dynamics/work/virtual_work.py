@@ -34,7 +34,7 @@ def virtual_efforts(motion: Motion, inertia: bool, more: Iterable[LinkWrench] = 
             for name, unit in zip(alone, units, strict=True):
                 found[name][at.designs, at.poses] = -work(known, unit)
                 for one in more:
-                    found[name][at.designs, at.poses] -= cut(one.whole, at).power(unit.pose(one.on))
+                    found[name][at.designs, at.poses] -= one.whole.part(at.designs, at.poses).power(unit.pose(one.on))
     return found
 
 
@@ -48,17 +48,4 @@ def work(wrenches: Mapping[str, Wrench], moving: LoadedBlock) -> Number:
 
 def free_wrenches(at: LoadedBlock, inertia: bool) -> dict[str, Wrench]:
     """Return what is known to act on every link."""
-    return {link: free_link(at, link, wrench) for link, wrench in at.known(inertia).items()}
-
-
-def free_link(at: LoadedBlock, link: str, wrench: Wrench) -> Wrench:
-    """Return a wrench on a link. What would turn a link that turns freely, such as a roller, is left aside."""
-    for spin in at.motion.structure.passive:
-        if spin.link == link:
-            return Wrench.at(at.place(link, spin.at).c[0], wrench.force)
-    return wrench
-
-
-def cut(wrench: Wrench, at: LoadedBlock) -> Wrench:
-    """Return what of a wrench over the whole motion belongs to a block."""
-    return Wrench(wrench.force[at.designs, at.poses], wrench.moment[at.designs, at.poses])
+    return {link: at.freed(link, wrench) for link, wrench in at.known(inertia).items()}

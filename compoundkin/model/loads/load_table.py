@@ -88,7 +88,7 @@ class LoadTable(PrintsShort, Compared, CopiesFields):
             return Problem("table.over", f"{self.over!r} is no name", 'write "time", a driver or a pair')
         if len(shapes[0]) != 1 or shapes[0] != shapes[1]:
             return Problem(
-                "values", f"places and values have shapes {shapes[0]} and {shapes[1]}", "give as many of each"
+                "table.values", f"places and values have shapes {shapes[0]} and {shapes[1]}", "give as many of each"
             )
         if len(self.at) < 2 or not np.isfinite(self.at).all() or np.any(np.diff(self.at) <= 0.0):
             return Problem("table.at", "they do not increase", "give two or more increasing places")

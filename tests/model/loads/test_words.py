@@ -249,3 +249,8 @@ def test_every_load_is_told_in_a_report() -> None:
     told = " ".join(ck.report(loaded).text().split())
     for words in ("amount a function", "torque 1 to 8, a table over crank", "rate 2"):
         assert words in told
+
+
+def test_a_table_of_unequal_lists_is_named_by_its_place() -> None:
+    with pytest.raises(InvalidMechanism, match=r"torques.crank.torque.values: places and values have shapes"):
+        ck.torque("crank", {"at": [0.0, 1.0], "values": [1.0]})
