@@ -11,10 +11,11 @@ import click
 from click.shell_completion import CompletionItem
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.suffixes import SUFFIXES, form_of
+from compoundkin.base.suffixes import SUFFIXES, alternatives, form_of
 from compoundkin.cli.shell import has_colour, put, say, width
 
 if TYPE_CHECKING:
+    from compoundkin.kinematics.table import Table
     from compoundkin.model.mechanism import Mechanism
     from compoundkin.view.page import Page
     from compoundkin.view.report import Report
@@ -92,10 +93,19 @@ def report_options(command: F) -> F:
     """Add the options --format, -o and --whole to a command that prints a report."""
     here = "Write the report here instead of printing it."
     file = click.option("-o", "--to-file", "path", type=TO_FILE, metavar="PATH", callback=_checked, help=here)
+    return _with_format(file(whole_option(command)))
+
+
+def report_or_table_options(command: F) -> F:
+    """Add the options of a report to a command that may print a table instead; it judges the suffix itself."""
+    here = f"Write the report here, or a table: {alternatives('table')}."
+    return _with_format(to_file(here)(whole_option(command)))
+
+
+def _with_format(command: F) -> F:
     told = "Text unless PATH ends in .md, .json or .html."
     # it is read first: a form that is given rules, whatever the suffix
-    form = click.option("--format", "form", type=click.Choice(FORMATS), is_eager=True, help=told)
-    return form(file(whole_option(command)))
+    return click.option("--format", "form", type=click.Choice(FORMATS), is_eager=True, help=told)(command)
 
 
 def whole_option(command: F) -> F:
@@ -127,6 +137,19 @@ def put_report(report: Report, form: str | None, path: str | None) -> None:
     content = _written(report, form or form_of("report", path)).encode("utf-8")
     write_atomically(path, lambda file: file.write(content))
     say(f"Wrote {path}.")
+
+
+def put_table(table: Table, path: str | None) -> None:
+    """Print a table as CSV, or write it as the suffix of a file tells."""
+    from compoundkin.files import save
+    from compoundkin.files.saved_files import csv_text
+
+    if path is None:
+        put(csv_text(table).encode("utf-8"))
+        return
+    save(table, path)
+    rows = f"{len(table):,} {'row' if len(table) == 1 else 'rows'}"
+    say(f"Wrote {rows} of {len(table.columns)} columns to {path}.")
 
 
 def made_page(report: Report) -> Page:

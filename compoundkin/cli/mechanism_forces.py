@@ -1,4 +1,4 @@
-"""`compoundkin forces`: what acts in all pairs, drivers' efforts, and what the frame is shaken by."""
+"""`compoundkin forces`: what acts in all pairs or on a link, drivers' efforts, what the frame is shaken by."""
 
 from __future__ import annotations
 
@@ -6,14 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from compoundkin.base.suffixes import SUFFIXES, form_of, suffix_of
 from compoundkin.cli.drive_options import DESIGN, drive_options, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, report_options
+from compoundkin.cli.file_options import loaded, mechanism_argument, put_report, put_table, report_or_table_options
 from compoundkin.cli.force_options import HOLDING, STATICS, forces_of
 from compoundkin.cli.shell import NOT_ASSEMBLED
+from compoundkin.cli.solve import explained
 from compoundkin.cli.structure import unsolvable
 
 if TYPE_CHECKING:
+    from compoundkin.dynamics.forces import Forces
     from compoundkin.view.report import Report
+
+ON = click.option("--on", "on", default="", metavar="LINK", help="Print all that acts on a link: its free body.")
 
 
 @click.command(
@@ -22,6 +27,8 @@ Examples:
   compoundkin forces linkage.toml
   compoundkin forces linkage.toml --speed 300rpm --step 1
   compoundkin forces linkage.toml --at 35 --statics
+  compoundkin forces linkage.toml --at 35 --on rod
+  compoundkin forces linkage.toml --output crank.effort,A.force -o forces.csv
   compoundkin forces linkage.toml -o forces.md
 """
 )
@@ -30,27 +37,54 @@ Examples:
 @DESIGN
 @STATICS
 @HOLDING
-@report_options
+@ON
+@report_or_table_options
 def command(
-    file: str, design: int, statics: bool, holding: str, form: str | None, path: str | None, **asked: Any
+    file: str, design: int, statics: bool, holding: str, on: str, form: str | None, path: str | None, **asked: Any
 ) -> int:
     """Print forces in all pairs, efforts of drivers, the force on the frame.
 
     The mechanism states its units of length, mass and force, and has masses or loads. What is assumed comes first.
-    Exit code 3: some poses cannot be assembled.
+    With --output or -o PATH.csv it is a table with a row per pose. Exit code 3: some poses cannot be assembled.
     """
-    from compoundkin.cli.progress import working
     from compoundkin.structure import decompose
     from compoundkin.view.report import report
-    from compoundkin.view.report.forces_section import forces_report
 
+    tabulated = is_table(form, path, on, asked["outputs"])
     structure = decompose(loaded(file))
     if structure.faults:
-        put_report(report(structure), form, path)
+        put_report(report(structure), form, path if not tabulated else None)
         return unsolvable(len(structure.faults))
+    if on:
+        structure.mechanism.link(on)
     forces = forces_of(solved(structure, asked), statics, holding)
+    if not tabulated:
+        return _reported(forces, design, on, form, path)
+    put_table(forces.table(*asked["outputs"]), path)
+    return 0 if forces.motion.assembled.all() else explained(forces.motion)
+
+
+def is_table(form: str | None, path: str | None, on: str, outputs: tuple[str, ...]) -> bool:
+    """Tell whether a table is asked for. Raises InvalidInput for options that exclude each other, and suffixes."""
+    from compoundkin.base.errors import InvalidInput, Problem
+
+    only_table = path is not None and suffix_of(path) in SUFFIXES["table"].keys() - SUFFIXES["report"].keys()
+    tabulated = bool(outputs) or (only_table and form is None and not on)
+    other = f"--format {form}" if form else f"--on {on}" if on else ""
+    if tabulated and other:
+        raise InvalidInput(Problem(other, "it does not go with --output, which is a table", "leave one of them out"))
+    if path is not None and (tabulated or form is None):
+        form_of("table" if tabulated else "report", path)
+    return tabulated
+
+
+def _reported(forces: Forces, design: int, on: str, form: str | None, path: str | None) -> int:
+    """Print or write the report, and return the exit code."""
+    from compoundkin.cli.progress import working
+    from compoundkin.view.report.forces_section import forces_report
+
     with working("finding extremes"):
-        made = forces_report(forces, design)
+        made = forces_report(forces, design, on)
     put_report(made, form, path)
     return _missing(made)
 

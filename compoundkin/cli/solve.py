@@ -8,7 +8,7 @@ import click
 
 from compoundkin.base.suffixes import alternatives, form_of
 from compoundkin.cli.drive_options import drive_options, names, solved
-from compoundkin.cli.file_options import loaded, mechanism_argument, to_file
+from compoundkin.cli.file_options import loaded, mechanism_argument, put_table, to_file
 from compoundkin.cli.shell import NOT_ASSEMBLED, put, say
 
 if TYPE_CHECKING:
@@ -44,8 +44,6 @@ def command(file: str, path: str | None, forward: tuple[str, ...], **asked: Any)
     Without --output, everything there is. Angles are in degrees in CSV and JSON, in radians in NPZ and Parquet.
     Where a pose cannot be assembled its numbers are nan (null in JSON); stderr says why, and the exit code is 3.
     """
-    from compoundkin.files import save
-    from compoundkin.files.saved_files import csv_text
     from compoundkin.structure import decompose
 
     if path is not None:
@@ -54,13 +52,7 @@ def command(file: str, path: str | None, forward: tuple[str, ...], **asked: Any)
     motion = solved(structure, asked)
     if forward:
         return _driven(motion, forward, path)
-    table = motion.table(*asked["outputs"])
-    if path is None:
-        put(csv_text(table).encode("utf-8"))
-    else:
-        save(table, path)
-        rows = f"{len(table):,} {'row' if len(table) == 1 else 'rows'}"
-        say(f"Wrote {rows} of {len(table.columns)} columns to {path}.")
+    put_table(motion.table(*asked["outputs"]), path)
     return 0 if motion.assembled.all() else explained(motion)
 
 

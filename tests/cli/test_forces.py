@@ -53,6 +53,30 @@ def test_quantities_of_forces_are_columns(run: Run) -> None:
     assert float(values["A.force.x"]) == pytest.approx(forces.pairs["A"].force[0].real)
 
 
+def test_a_free_body_is_a_table(run: Run) -> None:
+    told = json.loads(run("forces", "loaded", "--at", "35", "--on", "plate", "--format", "json").stdout)
+    (table,) = [block for block in told["sections"]["free-body"]["blocks"] if block["kind"] == "table"]
+    *acting, whole = table["rows"]
+    forces = np.array([row[4] for row in acting])
+    assert whole[0] == "sum"
+    assert len(acting) >= 4
+    assert np.allclose(forces.sum(0), whole[4], atol=1e-9 * np.abs(forces).max())
+    assert np.allclose(whole[4], 0.0, atol=1e-9 * np.abs(forces).max())
+    assert "the first of" in run("forces", "loaded", "--on", "plate").stdout
+
+
+def test_forces_are_a_table(run: Run, tmp_path: Path) -> None:
+    named = "--output", "crank.effort,A.force"
+    still = run("forces", "loaded", "--at", "0,35", "--statics", *named).stdout.splitlines()
+    expected = ck.force_analysis(ck.solve(six_bar(), {"crank": ck.deg([0, 35])}), inertia=False).drives["crank"].effort
+    column = [name.partition(" ")[0] for name in still[0].split(",")].index("crank.effort")
+    assert [float(row.split(",")[column]) for row in still[1:]] == pytest.approx(list(expected))
+    assert run("forces", "loaded", "--at", "35", "-o", "forces.csv").exit_code == 0
+    assert "A.moment" in (tmp_path / "forces.csv").read_text(encoding="utf-8")
+    assert run("forces", "loaded", "--at", "35", *named, "-o", "forces.json").exit_code == 0
+    assert "columns" in json.loads((tmp_path / "forces.json").read_text(encoding="utf-8"))
+
+
 @pytest.mark.parametrize("option", [("--forces",), ("--free-bodies",), ("--free-body", "plate"),
                                     ("--force-polygons",), ("--force-polygon", "bar")])  # fmt: skip
 def test_pictures_of_forces(run: Run, tmp_path: Path, option: tuple[str, ...]) -> None:
@@ -86,6 +110,9 @@ def test_a_pendulum_is_let_go(run: Run, tmp_path: Path) -> None:
         (("draw", "loaded", "--forces", "--ghosts", "3"), "does not go with"),
         (("draw", "loaded", "--statics"), "give --forces too"),
         (("forces", "loaded", "--at", "35", "--holding", "Z"), "Z"),
+        (("forces", "loaded", "--on", "plat"), "did you mean"),
+        (("forces", "loaded", "--on", "plate", "--output", "A.force"), "does not go with --output"),
+        (("forces", "loaded", "--output", "A.force", "-o", "forces.html"), "a table is not saved"),
         (("plot", "loaded", "--bearing", "Z"), "there is no such pair"),
         (("simulate", "pendulum", "--until", "1", "--start", "arm.speed=5"), "give --start arm=VALUE too"),
         (("simulate", "pendulum", "--until", "1", "--start", "arn=5"), "did you mean"),

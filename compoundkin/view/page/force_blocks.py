@@ -9,8 +9,8 @@ from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.view.page.html_blocks import plain_block, plain_figure, plain_sections
 from compoundkin.view.page.markup import safe
 from compoundkin.view.page.player import framed
+from compoundkin.view.report.force_assumptions import assumptions
 from compoundkin.view.report.force_tables import drives_blocks, reactions_blocks
-from compoundkin.view.report.forces_section import assumptions
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.simulation_report import simulation_report
 from compoundkin.view.sketch import draw

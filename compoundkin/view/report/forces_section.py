@@ -7,24 +7,23 @@ from collections.abc import Iterator
 import numpy as np
 
 from compoundkin.analysis.checks import verify
-from compoundkin.base.arrays import first_entry
 from compoundkin.dynamics.forces import Forces
 from compoundkin.view.report.findings_table import findings_table
+from compoundkin.view.report.force_assumptions import assumptions
 from compoundkin.view.report.force_tables import (
     drives_blocks,
     reactions_blocks,
     shaking_blocks,
 )
-from compoundkin.view.report.friction_blocks import friction_blocks, friction_words
+from compoundkin.view.report.free_body_section import free_body_section
+from compoundkin.view.report.friction_blocks import friction_blocks
 from compoundkin.view.report.load_tables import loads_table, masses_table
 from compoundkin.view.report.report_data import Alert, Block, Outcome, Paragraph, Section
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
-from compoundkin.view.report.wording import listed, number
+from compoundkin.view.report.wording import listed
 
 BALANCES = "balances written anew by Newton and Euler, and virtual work"
-# Speeds that differ by less than this part of the greatest are constant.
-STEADY = 1e-9
 # So many singular poses are told one by one.
 SHOWN = 8
 
@@ -34,13 +33,14 @@ def forces_section(forces: Forces, design: int = 0) -> Section:
     return Section("forces", "Forces", tuple(_blocks(Sample(forces.motion, design), forces)))
 
 
-def forces_report(forces: Forces, design: int = 0) -> Report:
-    """Report forces alone."""
+def forces_report(forces: Forces, design: int = 0, on: str = "") -> Report:
+    """Report forces alone, or the free body of one link. Raises UnknownName for a link that there is not."""
     motion, check = forces.motion, verify(forces)
     poses, closed, count = motion.failed.size, np.count_nonzero(motion.failed == 0), len(check.findings)
     passed = count - len(check.failed)
     outcome = Outcome(True, int(poses), int(closed), count, passed, 0, 0, check.passed, check.verdict)
-    return Report(motion.mechanism.title, (forces_section(forces, design),), outcome, motion, design=design)
+    section = free_body_section(forces, on, design) if on else forces_section(forces, design)
+    return Report(motion.mechanism.title, (section,), outcome, motion, design=design)
 
 
 def _blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
@@ -71,24 +71,6 @@ def force_checks_sections(sample: Sample, forces: Forces | None) -> tuple[Sectio
     return (Section("force-checks", "Checks of forces", blocks),)
 
 
-def assumptions(sample: Sample, forces: Forces) -> Iterator[str]:
-    """Yield what the numbers stand on, one clause each."""
-    units, mechanism = forces.units, forces.motion.mechanism
-    yield f"lengths in {units.length}, masses in {units.mass}, forces in {units.force}, moments in {units.moment}"
-    free_fall = complex(first_entry(mechanism.gravity)) if np.ndim(mechanism.gravity) else complex(mechanism.gravity)
-    told = f"({number(free_fall.real)}, {number(free_fall.imag)}) m/s^2"
-    yield f"gravity {told}" if free_fall else "no gravity"
-    massless = [name for name in mechanism.links if name not in mechanism.masses and name != "frame"]
-    if mechanism.masses and massless:
-        yield f"no mass on {listed(massless)}"
-    yield "accelerations cause inertia forces" if forces.inertia else "statics: no inertia"
-    yield from _speeds(sample)
-    held = forces.motion.loading.get("holding")
-    if held:
-        yield f"{held} holds in the drivers' place"
-    yield friction_words(forces)
-
-
 def _assumed_masses(forces: Forces) -> Iterator[Block]:
     """What of masses was left out, and is that of uniform bodies."""
     told = [f"{one.link}: {one.assumed}" for one in forces.mechanism.masses.values() if one.assumed]
@@ -116,16 +98,3 @@ def _singular(sample: Sample, forces: Forces) -> Iterator[Block]:
         yield Paragraph(
             f"Forces at singular poses: {told}{more}. Finite ones are what they come to from beside the pose."
         )
-
-
-def _speeds(sample: Sample) -> Iterator[str]:
-    """How each driver moves."""
-    motion = sample.motion
-    for name, drive in motion.drives.items() if motion.order else ():
-        rates = np.asarray(sample.of(drive.rate))
-        unit = "rad/s" if drive.is_angle else f"{motion.mechanism.unit}/s"
-        low, high = float(np.nanmin(rates)), float(np.nanmax(rates))
-        if high - low <= STEADY * max(abs(low), abs(high)):
-            yield f"{name} at {number(low)} {unit}"
-        else:
-            yield f"{name} from {number(low)} to {number(high)} {unit}"
