@@ -97,7 +97,10 @@ def report_options(command: F) -> F:
 
 
 def report_or_table_options(command: F) -> F:
-    """Add the options of a report to a command that may print a table instead; it judges the suffix itself."""
+    """Add the options of a report, or of a table instead.
+
+    The command judges the suffix itself.
+    """
     here = f"Write the report here, or a table: {alternatives('table')}."
     return _with_format(to_file(here)(whole_option(command)))
 
@@ -140,7 +143,7 @@ def put_report(report: Report, form: str | None, path: str | None) -> None:
 
 
 def put_table(table: Table, path: str | None) -> None:
-    """Print a table as CSV, or write it as the suffix of a file tells."""
+    """Print a table as CSV, or write it to a file."""
     from compoundkin.files import save
     from compoundkin.files.saved_files import csv_text
 
