@@ -49,7 +49,7 @@ orphan: true
 ## Try it
 
 ```sh
-compoundkin report {name}
+compoundkin report {name}{forces}
 ```
 
 ```python
@@ -79,7 +79,7 @@ def files() -> dict[str, str]:
 def files_of(name: str, mechanism: ck.Mechanism) -> dict[str, str]:
     """A mechanism's page and its pictures; one that cannot be solved is shown as drawn."""
     shown = solved_over(mechanism) or mechanism
-    picture, apart = ck.draw(shown, paths=True), taken_apart(shown)
+    picture, apart = drawn(shown, True), taken_apart(shown)
     page = PAGE.format(
         name=name,
         title=plain(mechanism.title),
@@ -87,13 +87,21 @@ def files_of(name: str, mechanism: ck.Mechanism) -> dict[str, str]:
         description=plain(mechanism.description),
         structure=plain(structure_of(mechanism)),
         source=plain(mechanism.source),
+        forces=f"\ncompoundkin forces {name}" if mechanism.units else "",
     )
-    small = ck.draw(shown, paths=True, labels=False)
+    small = drawn(shown, False)
     found = {f"{name}.md": page, f"{name}.svg": picture.svg, f"{name}-small.svg": small.svg}
     if apart is not None:
         found[f"{name}.md"] += APART.format(name=name, title=plain(mechanism.title))
         found[f"{name}-apart.svg"] = apart.svg
     return found
+
+
+def drawn(shown: ck.results.Motion | ck.Mechanism, labels: bool) -> ck.results.Picture:
+    """The sketch with its paths; of a mechanism with masses and loads with its forces."""
+    if isinstance(shown, ck.results.Motion) and shown.mechanism.units:
+        return ck.draw(shown.forces, labels=labels)
+    return ck.draw(shown, paths=True, labels=labels)
 
 
 def taken_apart(shown: ck.results.Motion | ck.Mechanism) -> ck.results.Picture | None:
