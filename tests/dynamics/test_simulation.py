@@ -184,16 +184,7 @@ def test_events_of_a_user_are_found_and_stop() -> None:
 
 def test_block_falls_to_the_end_of_its_guide() -> None:
     """A block in free fall: where it meets the end, and how high it comes back with a coefficient of restitution."""
-    fall = ck.Mechanism(
-        "Block in a shaft",
-        ck.link("frame", O=(0, 0), L=(0, -1), H=(0, 1)),
-        ck.link("block", P=(0, 0)),
-        ck.slide("block", on="frame", at="P", through="O", angle=np.pi / 2, name="shaft", reach=("L", "H")),
-        ck.drive("block"),
-        ck.mass("block", 2.0, at="P", inertia=0.0),
-        ck.gravity(0, -9.81),
-        units=SI,
-    )
+    fall = shaft()
     first = np.sqrt(2 / 9.81)
     stopped = ck.simulate(fall, start={"block": 0.0}, until=3.0)
     assert stopped.times[-1] == pytest.approx(first, rel=1e-9)
@@ -264,3 +255,51 @@ def test_a_roller_on_a_swinging_follower_does_not_turn() -> None:
         forces = ck.force_analysis(moved)
         assert abs(forces.drives["cam"].effort[0]) < 1e-12 * forces.largest * motion.size
         assert found.power == 0.0
+
+
+def shaft(*more: object) -> ck.Mechanism:
+    """A block that falls in a shaft of 2 m."""
+    return ck.Mechanism(
+        "Block in a shaft",
+        ck.link("frame", O=(0, 0), L=(0, -1), H=(0, 1)),
+        ck.link("block", P=(0, 0)),
+        ck.slide("block", on="frame", at="P", through="O", angle=np.pi / 2, name="shaft", reach=("L", "H")),
+        ck.drive("block"),
+        ck.mass("block", 2.0, at="P", inertia=0.0),
+        ck.gravity(0, -9.81),
+        *more,
+        units=SI,
+    )
+
+
+def test_a_block_that_bounces_comes_to_rest() -> None:
+    """All its bounces take t (1 + e) / (1 - e), however small the last are; with e = 0 it stays at once."""
+    first = np.sqrt(2 / 9.81)
+    found = ck.simulate(shaft(), start=0.0, until=3.0, restitution=0.5)
+    assert found.times[-1] == pytest.approx(3.0 * first, rel=1e-5)
+    assert [event.stops for event in found.events] == [False] * (len(found.events) - 1) + [True]
+    assert found.motion.assembled.all()
+    assert found.energy.worst < 1e-12
+    stays = ck.simulate(shaft(), start=0.0, until=3.0, restitution=0.0)
+    assert stays.times[-1] == pytest.approx(first, rel=1e-9)
+    assert stays.energy.worst < 1e-12
+
+
+def test_starts_that_end_at_once() -> None:
+    """A block lies on the end of its guide; rates are infinite at a limit position."""
+    with pytest.raises(InvalidInput, match="comes to an end of its guide at once"):
+        ck.simulate(shaft(), start=-1.0, until=1.0)
+    assert ck.simulate(shaft(), start=(-1.0, 3.0), until=1.0).times[-1] == pytest.approx(6.0 / 9.81, rel=1e-9)
+    with pytest.raises(InvalidInput, match="limit position"):
+        ck.simulate(slider_crank(ck.drive("piston")), start={"piston": 0.45}, until=0.1)
+
+
+def test_events_are_told_from_those_of_the_simulation_and_give_numbers() -> None:
+    """An event may be called as it likes, NaN and vectors are refused; arrays of gravity are designs."""
+    found = ck.simulate(shaft(), start=0.0, until=3.0, events={"end": lambda state: state["P.y"] + 0.5})
+    assert [event.stops for event in found.events] == [False, True]
+    for told in (np.nan, 1j):
+        with pytest.raises(InvalidInput, match=r"events\.wrong"):
+            ck.simulate(shaft(), start=0.0, until=1.0, events={"wrong": lambda _, told=told: told})
+    with pytest.raises(InvalidInput, match="gravity: its numbers are arrays"):
+        ck.simulate(shaft().replace(ck.gravity([[0], [1]], -9.81)), start=0.0, until=1.0)

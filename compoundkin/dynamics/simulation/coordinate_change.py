@@ -6,12 +6,13 @@ and is regular there: the driver's coordinate is then a smooth function of it.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
+from compoundkin.base.errors import CompoundkinError, FewDigits, InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import DriverState
@@ -67,7 +68,11 @@ def driven_there(chart: DriverChart, state: DriverState, fast: FastPair) -> tupl
     del values[fast.driver]
     try:
         mechanism = _written(chart.mechanism, items)
-        start = solve(mechanism, {one: [value] for one, value in values.items()}, order=1, modes=_here(state, values))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", FewDigits)  # of those rates that are left behind
+            start = solve(
+                mechanism, {one: [value] for one, value in values.items()}, order=1, modes=_here(state, values)
+            )
         found = chart_of(start, free, chart.laws)
     except CompoundkinError:
         return None

@@ -109,9 +109,12 @@ def _hold_progress(progress: Callable[[int, int], None] | None) -> None:
 
 
 def _hold_moving(chart: DriverChart, state: Number) -> None:
-    """Raise InvalidInput where a free driver moves no mass."""
+    """Raise InvalidInput where a free driver moves no mass, and where rates are not finite."""
     n = len(chart.free)
     matrix = chart.state(0.0, state[:n], state[n : 2 * n]).terms.matrix[:n, :n]
+    if not (np.isfinite(matrix).all() and chart.start.regular.all()):
+        what = "drivers are at a limit position or a change point there"
+        raise InvalidInput(Problem("start", what, "start a little beside it, or drive another link"))
     heaviest = max(own.mass * chart.order.size**2 + own.inertia for own in chart.masses)
     sizes = np.diag(matrix) * (chart.scales / chart.scales.max()) ** 2
     for name, one in zip(chart.free, sizes, strict=True):

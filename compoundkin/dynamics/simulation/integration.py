@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.coordinate_change import driven_there, fastest_pair
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
@@ -97,21 +98,26 @@ def _passed(course: SimulatedCourse) -> _Turn | None:
     """Note what happened in the last step; return where that breaks the course off, None where it does not."""
     step = course.steps[-1]
     for one in first_passed(course.watched, step.chart, (step.first, step.last), step.between):
-        is_end, n = one.watch.name == END, len(step.chart.free)
-        if one.watch.name == REST:
-            course.steps[-1] = Step(step.chart, step.first, one.time, step.between)
+        n, watch = len(step.chart.free), one.watch
+        if watch.name == REST and not watch.asked:
+            course.cut(one.time)
             return _Turn(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
         here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]))
-        text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else one.watch.text
-        bounced = after_impact(here, course.restitution) if is_end and course.restitution is not None else None
-        stops = one.watch.stops and bounced is None
-        course.events.append(SimulationEvent(one.time, one.watch.name, text, stops))
-        if stops or bounced is not None:
-            course.steps[-1] = Step(step.chart, step.first, one.time, step.between)
+        is_end = watch.name == END and not watch.asked
+        text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else watch.text
+        if watch.falls and one.time <= 0.0:
+            raise InvalidInput(Problem("start", f"{text} at once", "start elsewhere, or with other loads"))
+        rebounds = is_end and course.restitution is not None
+        impact = after_impact(here, course.restitution or 0.0, course.fastest) if rebounds else None
+        stops = watch.stops and impact is None
+        course.events.append(SimulationEvent(one.time, watch.name, text, stops))
+        if stops or impact is not None:
+            course.cut(one.time)
         if stops:
             return _Turn(one.time, None)
-        if bounced is not None:
-            return _Turn(one.time, np.array([*one.state[:n], *bounced[0], one.state[-1] - bounced[1]]))
+        if impact is not None:
+            course.fastest = max(course.fastest, impact.approach)
+            return _Turn(one.time, np.array([*one.state[:n], *impact.speeds, one.state[-1] - impact.lost]))
     return None
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -37,7 +37,10 @@ class ChartStretch:
 
 @dataclass(eq=False)
 class SimulatedCourse:
-    """The steps from the start on. A state is the free drivers' values, their speeds, and the work done."""
+    """The steps from the start on. A state is the free drivers' values, their speeds, and the work done.
+
+    `fastest` is the approach of the fastest impact.
+    """
 
     until: float
     tolerance: float
@@ -46,12 +49,19 @@ class SimulatedCourse:
     steps: list[Step] = field(default_factory=list)
     events: list[SimulationEvent] = field(default_factory=list)
     evaluations: int = 0
+    fastest: float = 0.0
 
     def at(self, times: Number) -> list[ChartStretch]:
         """Return the states at times in order, chart by chart."""
         charts = list(dict.fromkeys(step.chart for step in self.steps))
         runs = [[step for step in self.steps if step.chart is chart] for chart in charts]
         return [_stretch(steps, times, k == 0) for k, steps in enumerate(runs)]
+
+    def cut(self, time: float) -> None:
+        """Let the last step end at a time. It is left out where nothing is left of it."""
+        step = self.steps.pop()
+        if time > step.first or not self.steps:
+            self.steps.append(replace(step, last=time))
 
     @property
     def last(self) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,10 @@ from compoundkin.model.pairs.profile_contact import as_profiled
 
 # Within a step what is watched is looked at in so many places, so that what comes and goes is found as well.
 LOOKS = 4
+# What begins below zero is looked at these parts of a step as well: a bounce may be far shorter than the step.
+EARLY = 2.0 ** np.arange(-44.0, -2.0)
 
-# An impact slower than this part of the drivers' speeds, each by its scale, is the last one.
+# An impact slower than this part of the fastest, or of the drivers' speeds, each by its scale, is the last one.
 SLOW = 1e-6
 # What coming to an end of a guide is called.
 END = "end"
@@ -49,7 +51,7 @@ class SimulationEvent:
 class Watch:
     """A function of the state that passes through zero, and what that means.
 
-    Where it `falls` only passing downwards counts.
+    Where it `falls` only passing downwards counts, or being below from the start. A user's own is `asked` for.
     """
 
     name: str
@@ -57,13 +59,17 @@ class Watch:
     text: str
     stops: bool
     falls: bool = False
+    asked: bool = False
 
     def value(self, chart: DriverChart, time: float, state: Number) -> float:
         """Return the function at a state. Raises InvalidInput where it returns no number."""
         n = len(chart.free)
         here = SimulatedState(chart.state(time, state[:n], state[n : 2 * n]))
         try:
-            found = float(np.ravel(self.function(here))[0])
+            told = np.ravel(self.function(here))[0]
+            if self.asked and (np.iscomplexobj(told) or np.isnan(told)):
+                raise ValueError(f"it returns {told}")
+            found = float(told)
         except CompoundkinError:
             raise
         except Exception as error:  # whatever a user's function does
@@ -90,7 +96,7 @@ def watches(mechanism: Mechanism, events: Mapping[str, Any], stop: tuple[str, ..
     for name in stop:
         if name not in events:
             raise InvalidInput(Problem("stop", f"there is no event {name!r}", f"known: {', '.join(events) or 'none'}"))
-    own = [Watch(name, function, "as asked for", name in stop) for name, function in events.items()]
+    own = [Watch(name, function, "as asked for", name in stop, asked=True) for name, function in events.items()]
     rest = [Watch(REST, _speed, "it comes to rest", False)] if mechanism.frictions else []
     return (*rest, *_of_pairs(mechanism), *own)
 
@@ -129,33 +135,55 @@ def first_passed(
     watched: tuple[Watch, ...], chart: DriverChart, times: tuple[float, float], between: Callable[[float], Number]
 ) -> list[Passed]:
     """Return what passes through zero in a step, in the order of time."""
-    found = []
-    looks = np.linspace(*times, LOOKS + 1)
-    for watch in watched:
-
-        def value(time: float, watch: Watch = watch) -> float:
-            return watch.value(chart, time, between(time))
-
-        known = [value(float(time)) for time in looks]
-        for k in range(LOOKS):
-            if known[k] > 0.0 >= known[k + 1] or (not watch.falls and known[k] < 0.0 <= known[k + 1]):
-                time = _zero(value, float(looks[k]), float(looks[k + 1]))
-                found.append(Passed(watch, time, between(time)))
+    found = [Passed(one, time, between(time)) for one in watched for time in _zeros(one, chart, times, between)]
     return sorted(found, key=lambda one: one.time)
+
+
+def _zeros(
+    watch: Watch, chart: DriverChart, times: tuple[float, float], between: Callable[[float], Number]
+) -> Iterator[float]:
+    """Yield the times at which a function passes through zero; the first where it is below all the time."""
+
+    def value(time: float) -> float:
+        return watch.value(chart, time, between(time))
+
+    looks = np.linspace(*times, LOOKS + 1)
+    known = [value(float(time)) for time in looks]
+    if watch.falls and known[0] <= 0.0:
+        early = times[0] + (times[1] - times[0]) * EARLY
+        looks = np.concatenate([looks[:1], early, looks[1:]])
+        known = [known[0], *(value(float(time)) for time in early), *known[1:]]
+        if max(known) <= 0.0 > min(known):
+            yield times[0]
+    for low, high, first, last in zip(looks[:-1], looks[1:], known[:-1], known[1:], strict=True):
+        if first > 0.0 >= last or (not watch.falls and first < 0.0 <= last):
+            yield _zero(value, float(low), float(high))
 
 
 def _zero(function: Callable[[float], float], low: float, high: float) -> float:
     from scipy.optimize import brentq
 
+    fine = 1e-14 * max(abs(high), 1e-300)
+    found, is_above = float(brentq(function, low, high, xtol=fine, rtol=1e-14)), function(low) > 0.0
     # the far side of a zero that is met: what is done there must not meet it again
-    return float(brentq(function, low, high, xtol=1e-14 * max(abs(high), 1e-300), rtol=1e-14))
+    while found < high and (function(found) > 0.0) is is_above:
+        found, fine = min(found + fine, high), 2.0 * fine
+    return found
 
 
-def after_impact(here: SimulatedState, restitution: float) -> tuple[Number, float] | None:
-    """Return the speeds of the free drivers after an impact.
+class Impact(NamedTuple):
+    """An impact at an end of a guide. How fast it was met, the free drivers' speeds afterwards, the lost energy."""
 
-    With them comes the energy that is lost. None where what comes to the end hardly moves. The impulse acts along the
-    coordinate that ends, M (v+ - v-) = n p with n . v+ = -e n . v-.
+    approach: float
+    speeds: Number
+    lost: float
+
+
+def after_impact(here: SimulatedState, restitution: float, fastest: float) -> Impact | None:
+    """Return what follows from an impact, `fastest` being the approach of the fastest before.
+
+    None where what comes to the end hardly moves. The impulse acts along the coordinate that ends,
+    M (v+ - v-) = n p with n . v+ = -e n . v-.
 
     Source: Newton's law of impact in generalized coordinates, D. T. Greenwood, Principles of Dynamics, section 4.8.
     """
@@ -163,10 +191,10 @@ def after_impact(here: SimulatedState, restitution: float) -> tuple[Number, floa
     n = len(state.chart.free)
     along, speeds = state.slopes(pair), state.speeds
     approach = float(along @ speeds)
-    if abs(approach) <= SLOW * float(np.abs(along) @ np.abs(speeds)):
+    if abs(approach) <= SLOW * max(fastest, float(np.abs(along) @ np.abs(speeds))):
         return None
     push = np.linalg.solve(state.terms.matrix[:n, :n], along[:n])
     after = speeds.copy()
     after[:n] -= (1.0 + restitution) * approach / float(along[:n] @ push) * push
     matrix = state.terms.matrix
-    return after[:n], float(speeds @ matrix @ speeds - after @ matrix @ after) / 2.0
+    return Impact(abs(approach), after[:n], float(speeds @ matrix @ speeds - after @ matrix @ after) / 2.0)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.argument_forms import is_finite_real
-from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses, UnknownName, nearest
+from compoundkin.base.errors import FewDigits, InvalidInput, Problem, UnassembledPoses, UnknownName, nearest
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.chosen_modes import shown_by
@@ -75,6 +75,7 @@ def _first_pose(
     values |= {name: float(np.ravel(law.coordinate(np.zeros(1), 0).c[0])[0]) for name, law in laws.items()}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnassembledPoses)
+        warnings.simplefilter("ignore", FewDigits)  # another pair takes the driver's place there
         motion = solve(mechanism, {name: [value] for name, value in values.items()}, order=1, modes=modes)
     if motion.failed.any():
         reasons = "; ".join(gap.reason for gap in gaps(motion))

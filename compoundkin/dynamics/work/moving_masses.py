@@ -22,6 +22,9 @@ from compoundkin.base.series import Number
 from compoundkin.model.elements import FRAME
 from compoundkin.structure.kinematic_structure import Structure
 
+# What is said of arrays.
+OF_DESIGNS = "its numbers are arrays, and one design is simulated at a time"
+
 
 class MovingMass(NamedTuple):
     """The mass of a link that moves, and its centre in the link's frame.
@@ -41,12 +44,13 @@ def moving_masses(structure: Structure) -> tuple[MovingMass, ...]:
     A link that may turn freely, such as a roller, is not turned: its inertia does nothing.
     """
     mechanism, free = structure.mechanism, {spin.link for spin in structure.passive}
+    if np.size(mechanism.gravity) > 1:
+        raise InvalidInput(Problem("gravity", OF_DESIGNS, "give single numbers"))
     factor, found = mechanism.stated_units.inertia, []
     for own in mechanism.masses.values():
         at = mechanism.mass_centre(own)
         if any(np.size(value) > 1 for value in (own.mass, own.inertia, at)):
-            what = "its numbers are arrays, and one design is simulated at a time"
-            raise InvalidInput(Problem(f"masses.{own.link}", what, "give single numbers"))
+            raise InvalidInput(Problem(f"masses.{own.link}", OF_DESIGNS, "give single numbers"))
         mass, inertia = (float(np.ravel(value)[0]) * factor for value in (own.mass, own.inertia))
         if own.link != FRAME:
             turned = 0.0 if own.link in free else inertia
