@@ -30,6 +30,11 @@ class PinForces:
         return self.forces.mechanism.real_pins[self.letter]
 
     @property
+    def all_links(self) -> tuple[str, ...]:
+        """The links that it joins, with the one that is only thought to lead it."""
+        return self.forces.mechanism.pins[self.letter]
+
+    @property
     def pairs(self) -> tuple[Pair, ...]:
         """The pairs that stand for it, one less than its links."""
         written = {pair.name for pair in self.forces.mechanism.written_pairs}
@@ -40,9 +45,10 @@ class PinForces:
         """Return the force of the pin on a link.
 
         Raises UnknownName for a link that is not at it. It has `force`, `moment` about the pin, which is that of
-        drivers, and `wrench`. A load on the pin itself is passed on by the pin to the link that carries it.
+        drivers, and `wrench`. A load on the pin itself is passed on by the pin to the link that carries it. What leads
+        the pin is one of `all_links`.
         """
-        if link not in self.links:
+        if link not in self.all_links:
             what = f"the pin {self.letter} does not join it"
             raise UnknownName(Problem(str(link), what, f"known: {', '.join(self.links)}"))
         whole, parts = Wrench(), list[tuple[str, float]]()

@@ -77,12 +77,12 @@ def resistance(forces: FoundForces, mass: Mass) -> Wrench:
 
 
 def pin_balances(forces: FoundForces) -> Iterator[tuple[str, Wrench]]:
-    """Yield the sum of the forces of every pin, about it. A pin has no mass."""
+    """Yield the sum of the forces of every pin, about it. A pin has no mass. What leads it is among its links."""
     shape = forces.motion.failed.shape
     for letter in forces.mechanism.real_pins:
         pin = PinForces(forces, letter)
         total = Wrench()
-        for one in (pin.on(link) for link in pin.links):
+        for one in (pin.on(link) for link in pin.all_links):
             total = total + Wrench(np.reshape(one.force, shape), np.reshape(one.moment, shape))
         yield letter, total
 
