@@ -12,6 +12,7 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.rubbed_motion import with_friction
 from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.dynamics.reactions.free_links import refuse_turned
 from compoundkin.dynamics.reactions.held_pair import held_wrenches, holding_effort
 from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
 from compoundkin.dynamics.reactions.redundant_reactions import own_wrenches
@@ -30,10 +31,11 @@ def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -
     With ``inertia=False`` masses have weight only: statics. A pair, a pin or a driver named by `holding` holds in the
     place of the driver that moves: its effort is `forces.held.effort`, the driver's own is zero.
 
-    Raises InvalidInput for a mechanism without units, for a motion without accelerations where masses move, and for
-    what cannot hold; UnknownName for what there is not.
+    Raises InvalidInput for a mechanism without units, for a motion without accelerations where masses move, for
+    what cannot hold, and for what would turn a roller that turns freely; UnknownName for what there is not.
     """
     _hold(motion, inertia)
+    refuse_turned(motion)
     found = _wrenches(motion, inertia, holding)
     singular = at_singular_poses(motion, found, lambda other: _wrenches(other, inertia, holding))
     on_frame, told = found.pop(ON_FRAME), replace(motion, loading={"inertia": inertia, "holding": holding})

@@ -18,7 +18,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import Load, Mass
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pin_pairs import meant_pair
+from compoundkin.model.pin_pairs import meant_pair, pairs_like
 from compoundkin.model.units import Units
 
 
@@ -88,9 +88,8 @@ class LoadedBlock:
         if meant is None:
             raise UnknownName(Problem(name, "there is no such pair, pin or driver"))
         pair, sign = meant
-        for own in self.motion.solving_order.pairs.values():
-            if own.letters == pair.letters and set(own.members) == set(pair.members) and own.title == pair.title:
-                return own, sign * (1 if own.members == pair.members else -1)
+        for own in pairs_like(self.motion.solving_order.pairs, pair):
+            return own, sign * (1 if own.members == pair.members else -1)
         return pair, sign
 
     def _ends(self, pair: Pair) -> Ends:

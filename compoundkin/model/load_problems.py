@@ -37,7 +37,7 @@ def load_problems(mechanism: Written, names: WrittenNames, has_units: bool) -> l
             whole = item.completed(names) if isinstance(item, Load) else item
             found += whole.problems(names, where)
             found += _unknown_tables(where, item, names)
-    return [*found, *_used_twice(mechanism), *_gravities(mechanism), *_shapes(mechanism)]
+    return [*found, *_used_twice(mechanism, names), *_gravities(mechanism), *_shapes(mechanism)]
 
 
 def placed_loads(mechanism: Written) -> Iterator[tuple[str, Weighed]]:
@@ -101,18 +101,24 @@ def _unknown_tables(where: str, item: Weighed, names: WrittenNames) -> Iterator[
                 yield Problem(f"{where}.{key}.over", what, nearest(table.over, [TIME, *names.pairs]))
 
 
-def _used_twice(mechanism: Written) -> Iterator[Problem]:
-    """Find two masses of a link, two frictions of a pair, and names of two loads."""
-    seen: set[tuple[str, str]] = set()
+def _used_twice(mechanism: Written, names: WrittenNames) -> Iterator[Problem]:
+    """Find two masses of a link, two frictions of a pair by whichever names, and names of two loads."""
+    seen = set[tuple[str, object]]()
     for where, item in placed_loads(mechanism):
         kind = "load" if isinstance(item, Load) else item.title
         if isinstance(item, Load) and not (item.name.isprintable() and not set(item.name) & set(".,")):
             yield Problem(f"{where}.name", f"{item.name!r} is not a name", "use printable text without dots, commas")
-        if (kind, item.name) in seen and isinstance(item, Load):
+        if (kind, meant := _meant(item, names)) in seen and isinstance(item, Load):
             yield Problem(where, f"the name {item.name!r} is used twice", "names are unique: give one of them a name")
-        elif (kind, item.name) in seen:
+        elif (kind, meant) in seen:
             yield Problem(where, f"{item.name!r} has a {kind} already", "leave one of them out, or add them up")
-        seen.add((kind, item.name))
+        seen.add((kind, meant))
+
+
+def _meant(item: Weighed, names: WrittenNames) -> object:
+    """Return what an item may be once of: a name, or the two links of a pair and where."""
+    pair = names.pair(item.pair) if isinstance(item, Friction | Pretension) else None
+    return item.name if pair is None else (pair.title, pair.letters, frozenset(pair.members))
 
 
 def _gravities(mechanism: Written) -> Iterator[Problem]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, permutations
@@ -102,6 +103,13 @@ def meant_pair(mechanism: Written, name: str) -> tuple[Pair, int] | None:
     return pair, pair.driven_by(drive.link)
 
 
+def pairs_like(pairs: Mapping[str, Pair], meant: Pair) -> Iterator[Pair]:
+    """Yield those of a motion's pairs that join the same links in the same way, whichever comes first."""
+    for own in pairs.values():
+        if own.letters == meant.letters and set(own.members) == set(meant.members) and own.title == meant.title:
+            yield own
+
+
 def lasting_name(mechanism: Written, name: str) -> str:
     """Return a name of a driver's coordinate that lasts without the driver."""
     found = meant_pair(mechanism, name)
@@ -134,15 +142,15 @@ class NamesOfPairs:
 
         They are without those of two links of a multiple pin.
         """
-        pins = [letter for letter, links in self.mechanism.real_pins.items() if len(links) == 2]
+        pins = [letter for letter in self.mechanism.real_pins if len(self.mechanism.pins[letter]) == 2]
         written = [pair.name for pair in self.mechanism.real_pairs]
         return [*pins, *written, *(drive.name for drive in self.mechanism.drives)]
 
     def at_pin(self, letter: str) -> list[str]:
-        """Return the names of the pairs at a multiple pin."""
-        links = self.mechanism.real_pins.get(letter, ())
+        """Return the names of the pairs at a multiple pin, among its links what leads it."""
+        links, all_links = self.mechanism.real_pins.get(letter, ()), self.mechanism.pins.get(letter, ())
         pins = Pins(self.mechanism)
-        return [pins.pair(letter, *two).name for two in combinations(links, 2)] if len(links) > 2 else []
+        return [pins.pair(letter, *two).name for two in combinations(links, 2)] if len(all_links) > 2 else []
 
     def pair(self, name: str) -> Pair | None:
         """Return the pair that a name means, or None. Pairs that are only thought take no loads."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.loaded_block import LoadedBlock
@@ -15,6 +16,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import FRAME, Friction
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.dry_contacts import Rubbing, as_rubbing
+from compoundkin.model.pin_pairs import meant_pair, pairs_like
 
 # What rubs slower than this part of the fastest link rests in its pair: rounding of a rate that is zero.
 AT_REST = 1e-12
@@ -64,24 +66,39 @@ class Rub:
 
 
 def rubs_of(motion: Motion) -> tuple[Rub, ...]:
-    """Return all pairs that rub, in the order in which frictions are written."""
-    pairs = motion.solving_order.pairs
-    return tuple(
-        Rub(pair, friction)
-        for friction in motion.mechanism.frictions.values()
-        for name in _named(motion, friction.pair)
-        if (pair := as_rubbing(pairs[name]))
-    )
+    """Return all pairs that rub, in the order in which frictions are written.
+
+    Raises InvalidInput for a pair that is meant by two names.
+    """
+    pairs, found = motion.solving_order.pairs, dict[str, Rub]()
+    for friction in motion.mechanism.frictions.values():
+        for name in _named(motion, friction.pair):
+            if name in found:
+                what = f"{name} has a friction already, by the name {found[name].friction.pair!r}"
+                raise InvalidInput(Problem(f"frictions.{friction.pair}", what, "leave one of them out"))
+            if pair := as_rubbing(pairs[name]):
+                found[name] = Rub(pair, friction)
+    return tuple(found.values())
 
 
 def _named(motion: Motion, name: str) -> Iterator[str]:
-    """Yield the pairs of a name: itself, or all of a multiple pin by its letter."""
-    pairs = motion.solving_order.pairs
+    """Yield the pairs of a name: itself, that of a full name or of a driver, or all of a multiple pin by its letter.
+
+    Raises InvalidInput where no pair of the motion joins the two links of a multiple pin.
+    """
+    pairs, mechanism = motion.solving_order.pairs, motion.mechanism
     if name in pairs:
         yield name
         return
-    pins = (pair for pair in pairs.values() if pair.letters == (name,) and name in motion.mechanism.pins)
-    yield from (pair.name for pair in pins)
+    meant = meant_pair(mechanism, name)
+    own = pairs_like(pairs, meant[0]) if meant else (pair for pair in pairs.values() if pair.letters == (name,))
+    found = [pair.name for pair in own]
+    if not found:
+        letter = name if meant is None else meant[0].letters[0]
+        known = ", ".join(pair.name for pair in pairs.values() if pair.letters == (letter,))
+        what = "no pair of this motion joins these two links, so that what presses between them is not known"
+        raise InvalidInput(Problem(f"frictions.{name}", what, f"name {known}, or {letter} for all of them"))
+    yield from found
 
 
 def senses(rubs: tuple[Rub, ...], at: LoadedBlock) -> Number:

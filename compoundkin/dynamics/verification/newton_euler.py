@@ -5,11 +5,11 @@ Accelerations of mass centres are found from those of origins and angles, not as
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 import numpy as np
 
-from compoundkin.base.arrays import cross
+from compoundkin.base.arrays import Number, cross
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.found_forces import FoundForces
 from compoundkin.dynamics.loaded_block import loaded_blocks
@@ -69,22 +69,35 @@ def resistance(forces: FoundForces, mass: Mass) -> Wrench:
     arm = pose.u.c[0] * given_over(motion, at)
     heavy = given_over(motion, mass.mass) * units.inertia
     force, moment = -heavy * mechanism.gravity * units.metre, 0.0
+    free = {spin.link for spin in motion.structure.passive}
     if forces.inertia:
         turn, speed_up = cross(pose.u.c[0], pose.u.derivative(1)), cross(pose.u.c[0], pose.u.derivative(2))
         force = force + heavy * (pose.z.derivative(2) + (1j * speed_up - turn**2) * arm)
-        moment = given_over(motion, mass.inertia) * units.inertia * speed_up
+        # what turns freely, such as a roller, is not turned
+        moment = 0.0 if mass.link in free else given_over(motion, mass.inertia) * units.inertia * speed_up
     return Wrench.at(pose.z.c[0] + arm, force, moment)
 
 
 def pin_balances(forces: FoundForces) -> Iterator[tuple[str, Wrench]]:
-    """Yield the sum of the forces of every pin, about it. A pin has no mass. What leads it is among its links."""
+    """Yield the sum of the forces of every pin less loads on it. It has no mass; what leads it is among its links."""
     shape = forces.motion.failed.shape
     for letter in forces.mechanism.real_pins:
         pin = PinForces(forces, letter)
         total = Wrench()
         for one in (pin.on(link) for link in pin.all_links):
             total = total + Wrench(np.reshape(one.force, shape), np.reshape(one.moment, shape))
-        yield letter, total
+        on_pin = {name for name, load in forces.mechanism.loads.items() if load.pin == letter}
+        yield letter, Wrench(total.force - applied_force(forces, on_pin), total.moment)
+
+
+def applied_force(forces: FoundForces, names: Collection[str]) -> Number:
+    """Return the sum of the forces of some loads, (designs, poses)."""
+    total = np.zeros(forces.motion.failed.shape, dtype=complex)
+    for at in loaded_blocks(forces.motion) if names else ():
+        for name in names:
+            for _, wrench in forces.mechanism.loads[name].wrenches(at):
+                total[at.designs, at.poses] += wrench.force
+    return total
 
 
 def frame_balance(forces: FoundForces) -> Wrench:

@@ -49,6 +49,9 @@ class Friction(PrintsShort):
         pair = written.pair(several[0] if several else self.pair)
         if pair is None:
             yield Problem(f"{where}.pair", f"there is no pair {self.pair!r}", nearest(self.pair, written.pairs))
+        elif not set(written.carriers.get(pair.letters[0], ())) <= set(written.letters) and pair.is_simple:
+            what = f"the pin {pair.letters[0]} is led: what presses there is not known"
+            yield Problem(f"{where}.pair", what, "leave it out")
         elif self.title not in pair.takes:
             what = f"{self.pair!r} is a {pair.title}, whose friction is not known here"
             yield Problem(f"{where}.pair", what, "name a pin, a slide, a slot or a cam")
