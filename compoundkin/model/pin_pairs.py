@@ -104,7 +104,7 @@ def meant_pair(mechanism: Written, name: str) -> tuple[Pair, int] | None:
 
 
 def pairs_like(pairs: Mapping[str, Pair], meant: Pair) -> Iterator[Pair]:
-    """Yield those of a motion's pairs that join the same links in the same way, whichever comes first."""
+    """Yield those of a motion's pairs that join the same links alike. Either link may come first."""
     for own in pairs.values():
         if own.letters == meant.letters and set(own.members) == set(meant.members) and own.title == meant.title:
             yield own
@@ -147,7 +147,7 @@ class NamesOfPairs:
         return [*pins, *written, *(drive.name for drive in self.mechanism.drives)]
 
     def at_pin(self, letter: str) -> list[str]:
-        """Return the names of the pairs at a multiple pin, among its links what leads it."""
+        """Return the names of the pairs at a multiple pin. What leads it counts as a link."""
         links, all_links = self.mechanism.real_pins.get(letter, ()), self.mechanism.pins.get(letter, ())
         pins = Pins(self.mechanism)
         return [pins.pair(letter, *two).name for two in combinations(links, 2)] if len(all_links) > 2 else []

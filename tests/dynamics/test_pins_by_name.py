@@ -56,12 +56,12 @@ def test_frictions_at_a_pin_that_no_pair_has_are_refused() -> None:
 
 def led_five_bar(*more: Any) -> ck.Mechanism:
     """A five-bar whose pin P is led by both of its coordinates."""
-    around = {"x": lambda t: 60 + 10 * np.sin(t), "y": lambda t: 140 + 10 * np.cos(t)}
     masses = [ck.mass(name, 1.0, at=(40, 7), inertia=800) for name in ("left", "right", "outer", "other")]
     return ck.Mechanism(
         "Led", ck.link("frame", A=0, E=118), ck.link("left", A=0, B=90), ck.link("right", E=0, D=90),
         ck.link("outer", B=0, P=90), ck.link("other", D=0, P=90), ck.drawn(B=(-20, 80), D=(130, 80), P=(60, 150)),
-        ck.drive("P", **around), *masses, GRAVITY, *more, units=UNITS,
+        ck.drive("P", x=lambda t: 60 + 10 * np.sin(t), y=lambda t: 140 + 10 * np.cos(t)),
+        *masses, GRAVITY, *more, units=UNITS,
     )  # fmt: skip
 
 

@@ -31,7 +31,7 @@ class PinForces:
 
     @property
     def all_links(self) -> tuple[str, ...]:
-        """The links that it joins, with the one that is only thought to lead it."""
+        """The links that it joins, and what leads it."""
         return self.forces.mechanism.pins[self.letter]
 
     @property
