@@ -91,8 +91,9 @@ def test_what_rubs_at_a_led_pin_is_refused() -> None:
 )
 def test_what_would_turn_a_roller_is_refused(item: Any, message: str) -> None:
     plain = catalog.mechanism("disc-cam-offset-roller")
-    with pytest.raises(ck.errors.InvalidInput, match=message):
+    with pytest.raises(ck.errors.InvalidInput, match=message) as error:
         ck.force_analysis(ck.solve(plain.replace(item, unit="", units=UNITS)))
+    assert len(error.value.problems) == 1
 
 
 def test_rollers_do_not_turn() -> None:

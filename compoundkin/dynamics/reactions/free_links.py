@@ -20,19 +20,17 @@ def refuse_turned(motion: Motion) -> None:
     if motion.structure.passive:
         problems = dict.fromkeys(_problems(motion))
         if problems:
-            raise InvalidInput(*problems)
+            raise InvalidInput(problems)
 
 
 def _problems(motion: Motion) -> Iterator[Problem]:
     """Find mass centres off the pin, and moments about it."""
     mechanism = motion.mechanism
     for spin in motion.structure.passive:
-        mass, points = mechanism.masses.get(spin.link), mechanism.geometry.points[spin.link]
-        if mass is not None:
-            centre = points[mass.at] if isinstance(mass.at, str) else mass.at
-            if np.any(np.abs(centre - points[spin.at]) > SLIGHT * np.max(motion.size)):
-                what = f"{spin.link} turns freely about {spin.at}: where a mass centre off it goes is not known"
-                yield Problem(f"masses.{spin.link}.at", what, f'put it at the pin: at="{spin.at}"')
+        mass, middle = mechanism.masses.get(spin.link), mechanism.geometry.points[spin.link][spin.at]
+        if mass is not None and np.any(np.abs(mechanism.mass_centre(mass) - middle) > SLIGHT * motion.size):
+            what = f"{spin.link} turns freely about {spin.at}: where a mass centre off it goes is not known"
+            yield Problem(f"masses.{spin.link}.at", what, f'put it at the pin: at="{spin.at}"')
         yield from _turning_loads(motion, spin)
 
 
