@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -11,17 +12,14 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.rubbed_motion import with_friction
-from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
+from compoundkin.dynamics.named_forces.link_wrench import LinkWrench
 from compoundkin.dynamics.reactions.free_links import refuse_turned
 from compoundkin.dynamics.reactions.held_pair import held_wrenches, holding_effort
-from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
-from compoundkin.dynamics.reactions.redundant_reactions import own_wrenches
-from compoundkin.dynamics.reactions.reverse_pass import found_reactions
+from compoundkin.dynamics.reactions.joined_wrenches import ON_FRAME, joined_reactions
+from compoundkin.dynamics.reactions.reverse_pass import Reactions, found_reactions
 from compoundkin.dynamics.reactions.singular_poses import at_singular_poses
 from compoundkin.kinematics.motion import Motion
-
-# What the mechanism does to its frame, among the wrenches by pairs.
-ON_FRAME = ""
 
 
 @checked
@@ -52,21 +50,16 @@ def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -
 def _wrenches(motion: Motion, inertia: bool, holding: str) -> dict[str, Wrench]:
     """Return the wrenches in all pairs by their names, and that on the frame."""
     more = tuple(held_wrenches(motion, holding_effort(motion, inertia, holding))) if holding else ()
-    store: JoinedWrenches[str] = JoinedWrenches(motion.failed.shape)
     with np.errstate(all="ignore"):
-        for loaded in loaded_blocks(motion):
-            known = loaded.known(inertia)
-            for one in more:
-                known[one.on] = known.get(one.on, Wrench()) + one.whole.part(loaded.designs, loaded.poses)
-            reactions = found_reactions(loaded, known)
-            for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():
-                store.take(name, wrench, loaded.designs, loaded.poses)
-    found = store.wrenches()
-    if motion.structure.relaxation is not None:
-        found.update(own_wrenches(motion.structure, found, motion.failed.shape))
-    own = {pair.name for pair in motion.structure.pairs}
-    wrenches = {name: found[name] for name in motion.solving_order.pairs if name in found and name in own}
-    return {**wrenches, ON_FRAME: found[ON_FRAME]}
+        return joined_reactions(motion, ((at, _found(at, inertia, more)) for at in loaded_blocks(motion)))
+
+
+def _found(at: LoadedBlock, inertia: bool, more: Iterable[LinkWrench]) -> Reactions:
+    """Return the reactions of a block under all that is known to act, and more on links."""
+    known = at.known(inertia)
+    for one in more:
+        known[one.on] = known.get(one.on, Wrench()) + one.whole.part(at.designs, at.poses)
+    return found_reactions(at, known)
 
 
 def _hold(motion: Motion, inertia: bool) -> None:

@@ -18,6 +18,8 @@ from compoundkin.kinematics.solution import solve
 STEPS, LONGEST = 40, 2.0
 # Points nearer than this (radians, parts of the size) are one.
 SAME = 1e-6
+# Newton's last step leaves so many times the rounding of the efforts: slopes are differences.
+LEFT = 1e3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,7 +56,7 @@ def critical_points(motion: Motion, free: tuple[str, ...], rounding: float) -> C
         motion, places = again, places[kept]
         if np.max(np.abs(steps[kept]) / reach) <= rounding:
             break
-    small = np.all(np.abs(_efforts(held, motion)) <= 1e3 * rounding * scales, axis=1)
+    small = np.all(np.abs(_efforts(held, motion)) <= LEFT * rounding * scales, axis=1)
     within = np.all((places >= low - SAME * reach) & (places <= high + SAME * reach), axis=1)
     return CriticalPoints(_distinct(motion, held, places, small & within, scales), False)
 

@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
-from compoundkin.dynamics.drives.course_quadrature import Pieces, integrals, smooth_pieces
+from compoundkin.dynamics.drives.course_quadrature import Integrand, Pieces, integrals, smooth_pieces
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics.extremes import Measure, between, closed_cycles, given_over
@@ -88,6 +88,19 @@ class DriverCourse(PrintsShort):
         """Return how fast the driver goes, by the place."""
         found = inputs_between(self.motion, designs, places, 1, by_place=True).drives[self.driver][1]
         return np.broadcast_to(found, (len(places), 1))[:, 0]
+
+    def surplus(self, mean: Number) -> Integrand:
+        """Return what a constant effort gives beyond what is needed, by the place.
+
+        `mean` is the constant effort, one for each design.
+        """
+        constant = np.broadcast_to(mean, self.motion.inputs.designs)
+
+        def of(designs: Number, places: Number) -> Number:
+            effort = self.effort(between(self.motion, designs, places, self.order))
+            return ((constant[designs] - effort) * self.way_by_place(designs, places))[None]
+
+        return of
 
     def _rows(self, designs: Number, places: Number) -> Number:
         """Return by the place: way, work; then 1, effort, power and the squares of both, by what means are taken over.

@@ -14,10 +14,12 @@ from compoundkin.dynamics.drives.course_quadrature import integrals, smooth_piec
 from compoundkin.dynamics.drives.driver_course import DriverCourse, course_of
 from compoundkin.dynamics.drives.speed_fluctuation import SpeedFluctuation
 from compoundkin.dynamics.forces import Forces
-from compoundkin.kinematics.extremes import Places, between, zeros
+from compoundkin.kinematics.extremes import Places, zeros
 
 # Where the driver goes no further over a cycle than this part of its values' range, it only goes to and fro.
 NO_WAY = 1e-9
+# Places of a motion, counted in poses, are one within this.
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -101,14 +103,9 @@ def _speed(course: DriverCourse) -> Number:
 
 def _energies(course: DriverCourse, mean: Number, crossings: Places) -> tuple[Places, Number]:
     """Return the crossings in order, with the energy of the surplus there from the beginning of the cycle on."""
-
-    def surplus(designs: Number, places: Number) -> Number:
-        effort = course.effort(between(course.motion, designs, places, course.order))
-        return ((mean[designs] - effort) * course.way_by_place(designs, places))[None]
-
     pieces = smooth_pieces(course.motion, crossings)
-    (found,) = integrals(surplus, pieces)
+    (found,) = integrals(course.surplus(mean), pieces)
     energies = np.empty(len(crossings.place))
     for k, (design, place) in enumerate(zip(crossings.design, crossings.place, strict=True)):
-        energies[k] = np.sum(found[(pieces.design == design) & (pieces.high <= place + 1e-12)])
+        energies[k] = np.sum(found[(pieces.design == design) & (pieces.high <= place + ROUNDING)])
     return crossings, energies

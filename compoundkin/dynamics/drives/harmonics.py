@@ -12,7 +12,7 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.dynamics.drives.driver_course import driver_named
-from compoundkin.dynamics.forces import Forces
+from compoundkin.dynamics.forces import Forces, moved
 from compoundkin.kinematics.extremes import between, closed_cycles
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
@@ -89,7 +89,7 @@ def harmonics(of: Forces | Motion, name: str = SHAKING, *, orders: int = 6, driv
     >>> harmonics(solve(crank), "B.x", orders=2).amplitude.round(12).tolist()         # 3 + 2 cos
     [[3.0, 2.0, 0.0]]
     """
-    motion = of if isinstance(of, Motion) else of.motion
+    motion = moved(of)
     _hold(motion, orders)
     course = _Cycle(motion, driver_named(motion, driver) if motion.time is None else None)
     count, found = max(FEWEST, 4 * orders), None

@@ -26,12 +26,7 @@ class SpeedFluctuation:
     def __init__(self, course: DriverCourse, design: int, mean: float, speed: float) -> None:
         self.speed = speed
         pieces = _fine(course.pieces, design)
-
-        def surplus(designs: Number, places: Number) -> Number:
-            effort = course.effort(between(course.motion, designs, places, course.order))
-            return ((mean - effort) * course.way_by_place(designs, places))[None]
-
-        self.energy = np.cumsum(integrals(surplus, pieces)[0]) / course.units.inertia
+        self.energy = np.cumsum(integrals(course.surplus(mean), pieces)[0]) / course.units.inertia
         self.inertia = np.zeros(len(pieces))
         if course.motion.mechanism.masses:
             found = equivalent_inertia(between(course.motion, np.full(len(pieces), design), pieces.high, 2))

@@ -13,6 +13,9 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.linear import solve
 
+# Powers of the gains that tell the largest entry of Perron's vector, with a shift against vectors that alternate.
+ROUNDS, SHIFT = 50, 0.1
+
 
 @dataclass(frozen=True)
 class PressInfluence:
@@ -79,7 +82,3 @@ class PressInfluence:
             vector = np.einsum("pij,pj->pi", gains, vector) + SHIFT * vector
             vector = vector / vector.max(axis=-1, keepdims=True)
         return vector
-
-
-# Powers of the gains that tell the largest entry of Perron's vector, with a shift against vectors that alternate.
-ROUNDS, SHIFT = 50, 0.1

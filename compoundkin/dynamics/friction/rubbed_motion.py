@@ -18,12 +18,10 @@ from compoundkin.dynamics.friction.friction_pass import RubbedBlock, rubbed_bloc
 from compoundkin.dynamics.friction.rubs import Rub, flat, resting, rubs_of, senses
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.named_forces.link_wrench import FRICTION, LinkWrench
-from compoundkin.dynamics.reactions.joined_wrenches import JoinedWrenches
-from compoundkin.dynamics.reactions.redundant_reactions import own_wrenches
+from compoundkin.dynamics.reactions.joined_wrenches import ON_FRAME, joined_reactions
 from compoundkin.dynamics.reactions.reverse_pass import Reactions
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.unit_rates import moved_alone
-from compoundkin.model.elements import FRAME
 
 
 class RubbedMotion:
@@ -86,21 +84,13 @@ def with_friction(dry: Forces) -> Forces:
     """Return the forces of a motion with the frictions that its mechanism has."""
     motion = dry.motion
     rubbed = RubbedMotion(motion)
-    store: JoinedWrenches[str] = JoinedWrenches(motion.failed.shape)
     with np.errstate(all="ignore"):
-        for at, reactions in rubbed.blocks(dry.inertia):
-            for name, wrench in {**reactions.pairs, FRAME: reactions.on_frame}.items():
-                store.take(name, wrench, at.designs, at.poses)
-    found = store.wrenches()
-    with np.errstate(all="ignore"):
+        wrenches = joined_reactions(motion, rubbed.blocks(dry.inertia))
         all_frictions = replace(rubbed.found(), **_left_open(dry, rubbed.rubs))
-    if motion.structure.relaxation is not None:
-        found.update(own_wrenches(motion.structure, found, motion.failed.shape))
     for wedged in all_frictions.wedged:
         warn(f"{wedged}; forces are NaN there", WedgedPoses)
-    wrenches = {name: found[name] for name in dry.wrenches}
-    more = (*dry.more, *_acting(all_frictions))
-    return replace(dry, wrenches=wrenches, on_frame=found[FRAME], more=more, rubbed=all_frictions, dry=dry)
+    on_frame, more = wrenches.pop(ON_FRAME), (*dry.more, *_acting(all_frictions))
+    return replace(dry, wrenches=wrenches, on_frame=on_frame, more=more, rubbed=all_frictions, dry=dry)
 
 
 def _left_open(dry: Forces, rubs: tuple[Rub, ...]) -> dict[str, Any]:

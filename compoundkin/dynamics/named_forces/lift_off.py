@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.unit_rates import moved_together
 from compoundkin.model.attributes import NORMAL
+from compoundkin.model.loads.spring import PairSpring, Spring, as_spring
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contact import as_contact
 from compoundkin.model.pairs.profile_contact import as_profiled
@@ -176,15 +176,15 @@ def _inertia(loaded: LoadedBlock) -> dict[str, Wrench]:
     return {mass.link: loaded.inertia(mass) for mass in loaded.motion.mechanism.masses.values()}
 
 
-def _spring(motion: Motion, name: str) -> Any:
+def _spring(motion: Motion, name: str) -> Spring | PairSpring:
     """Return a spring by its name, as one that acts both ways. Raises UnknownName for what has no preload."""
-    known: dict[str, Any] = {key: load for key, load in motion.mechanism.loads.items() if hasattr(load, "preload")}
+    known = {key: spring for key, load in motion.mechanism.loads.items() if (spring := as_spring(load))}
     if name not in known:
         raise UnknownName(Problem(name, "there is no such spring", nearest(name, list(known))))
     return replace(known[name], only=None)
 
 
-def _unit_preload(spring: Any, loaded: LoadedBlock) -> dict[str, Wrench]:
+def _unit_preload(spring: Spring | PairSpring, loaded: LoadedBlock) -> dict[str, Wrench]:
     """Return what a unit of preload does to links. It is the difference that one makes."""
     found: dict[str, Wrench] = {}
     for one, sign in ((replace(spring, preload=spring.preload + 1.0), 1.0), (spring, -1.0)):

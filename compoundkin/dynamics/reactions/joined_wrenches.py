@@ -1,15 +1,21 @@
-"""Wrenches of a whole motion, by name: filled block by block."""
+"""Wrenches of a whole motion by name, put together of those of its blocks."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from typing import Generic, TypeVar
 
 import numpy as np
 
 from compoundkin.base.wrenches import Wrench
+from compoundkin.dynamics.loaded_block import LoadedBlock
+from compoundkin.dynamics.reactions.redundant_reactions import own_wrenches
+from compoundkin.dynamics.reactions.reverse_pass import Reactions
+from compoundkin.kinematics.motion import Motion
 
 Key = TypeVar("Key", bound=Hashable)
+# What the mechanism does to its frame, among the wrenches by pairs.
+ON_FRAME = ""
 
 
 class JoinedWrenches(Generic[Key]):
@@ -30,3 +36,20 @@ class JoinedWrenches(Generic[Key]):
     def wrenches(self) -> dict[Key, Wrench]:
         """Return the wrenches over all blocks."""
         return self._found
+
+
+def joined_reactions(motion: Motion, parts: Iterable[tuple[LoadedBlock, Reactions]]) -> dict[str, Wrench]:
+    """Return the wrenches in pairs and on the frame, of all blocks.
+
+    Pairs are the mechanism's own.
+    """
+    store: JoinedWrenches[str] = JoinedWrenches(motion.failed.shape)
+    for at, reactions in parts:
+        for name, wrench in {**reactions.pairs, ON_FRAME: reactions.on_frame}.items():
+            store.take(name, wrench, at.designs, at.poses)
+    found = store.wrenches()
+    if motion.structure.relaxation is not None:
+        found.update(own_wrenches(motion.structure, found, motion.failed.shape))
+    own = {pair.name for pair in motion.structure.pairs}
+    wrenches = {name: found[name] for name in motion.solving_order.pairs if name in found and name in own}
+    return {**wrenches, ON_FRAME: found[ON_FRAME]}

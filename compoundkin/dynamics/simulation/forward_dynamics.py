@@ -23,6 +23,8 @@ from compoundkin.dynamics.simulation.simulation_start import simulation_start
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
 
+# A driver that feels less than this part of the heaviest link, some rounding squared as speeds are, moves no mass.
+NO_MASS = 1e-20
 # From one pose of the result to the next drivers go so far at most (radians, or parts of the size), in so many poses.
 APART, FEWEST, MOST = np.deg2rad(5.0), 100, 20000
 
@@ -118,7 +120,7 @@ def _hold_moving(chart: DriverChart, state: Number) -> None:
     heaviest = max(own.mass * chart.order.size**2 + own.inertia for own in chart.masses)
     sizes = np.diag(matrix) * (chart.scales / chart.scales.max()) ** 2
     for name, one in zip(chart.free, sizes, strict=True):
-        if not one > 1e-20 * heaviest:
+        if not one > NO_MASS * heaviest:
             raise InvalidInput(
                 Problem(f"start.{name}", "this driver moves no mass", "give a link that it moves a mass")
             )

@@ -33,6 +33,8 @@ FARTHEST = 1.0
 LIMIT = 1e4
 # What is said where friction holds a mechanism.
 STICKS = "sticks"
+# Errors in speeds are measured against this part of the fastest driver's at least.
+SLOWEST = 1e-3
 # What is told of progress: so many parts of the whole.
 PARTS = 1000
 
@@ -167,7 +169,7 @@ def _paces(chart: DriverChart, speeds: Number, accelerations: Number, duration: 
     """Return about how fast each free driver will move: by its speed, or by its acceleration over its scale."""
     quick = np.maximum(np.abs(speeds), np.sqrt(np.abs(accelerations) * chart.scales))
     # one that is at rest without a load is measured against the others, and they against their scales in the whole time
-    found: Number = np.maximum(quick, chart.scales * max(np.max(quick / chart.scales), 1.0 / duration) * 1e-3)
+    found: Number = np.maximum(quick, chart.scales * max(np.max(quick / chart.scales), 1.0 / duration) * SLOWEST)
     return found
 
 

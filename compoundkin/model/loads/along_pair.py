@@ -43,6 +43,11 @@ def name_between(name: str, links: Mapping[str, str]) -> str:
     return name
 
 
+def renamed_pair(name: str, links: Mapping[str, str], coordinates: Mapping[str, str]) -> str:
+    """Return the name of a pair where links and coordinates have other names."""
+    return name_between(coordinates.get(name, name), links)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class AlongPair(Load):
     """A load along the free coordinate of a pair.
@@ -65,8 +70,7 @@ class AlongPair(Load):
 
     def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
         """Return it along a pair of another name."""
-        own = replace(super().renamed(links, coordinates), pair=coordinates.get(self.pair, self.pair))
-        return replace(own, pair=name_between(own.pair, links))
+        return replace(super().renamed(links, coordinates), pair=renamed_pair(self.pair, links, coordinates))
 
     def completed(self, written: WrittenNames) -> Load:
         """Return the load with the links of its pair."""

@@ -14,7 +14,7 @@ from compoundkin.base.errors import Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.model.fields import DeclaredKeys, value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.along_pair import name_between
+from compoundkin.model.loads.along_pair import renamed_pair
 from compoundkin.model.loads.contract import NO_NAMES, WrittenNames
 
 
@@ -41,7 +41,7 @@ class Friction(PrintsShort):
 
     def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
         """Return it in a pair of another name."""
-        return replace(self, pair=name_between(coordinates.get(self.pair, self.pair), links))
+        return replace(self, pair=renamed_pair(self.pair, links, coordinates))
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
         """Find an unknown pair, a pin without a radius, and what is negative."""

@@ -16,7 +16,7 @@ from compoundkin.model.geometry import FRAME, real
 from compoundkin.model.loads.along_pair import COORDINATE, VARIABLES, AlongPair, rate_of
 from compoundkin.model.loads.amounts import Amount, LoadFunction, as_amount, needs_rates, value_of
 from compoundkin.model.loads.between_points import BetweenPoints, EndGap, as_spot, hold_ends
-from compoundkin.model.loads.contract import LoadedPoses, WrittenNames
+from compoundkin.model.loads.contract import Load, LoadedPoses, WrittenNames
 from compoundkin.model.loads.load_table import LoadTable
 
 TENSION, COMPRESSION = "tension", "compression"
@@ -52,7 +52,7 @@ class Spring(BetweenPoints):
         return needs_rates(self.stiffness)
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
-        """Find unknown ends, a negative length, a stiffness that is none."""
+        """Find unknown ends, a negative length, a side that is none."""
         yield from super().problems(written, where)
         yield from side_problems(self.only, where)
         if np.any(np.asarray(self.free_length) < 0.0):
@@ -130,6 +130,11 @@ class PairSpring(AlongPair):
             return None
         extension = at.coordinate(self.pair).c[0] - at.fitted(self.free)
         return stored(at.fitted(self.stiffness), at.fitted(self.preload), extension, self.only)
+
+
+def as_spring(load: Load) -> Spring | PairSpring | None:
+    """Return a load as a spring, or None."""
+    return load if isinstance(load, Spring | PairSpring) else None
 
 
 def is_law(stiffness: Amount) -> bool:
