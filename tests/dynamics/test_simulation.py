@@ -303,3 +303,20 @@ def test_events_are_told_from_those_of_the_simulation_and_give_numbers() -> None
             ck.simulate(shaft(), start=0.0, until=1.0, events={"wrong": lambda _, told=told: told})
     with pytest.raises(InvalidInput, match="gravity: its numbers are arrays"):
         ck.simulate(shaft().replace(ck.gravity([[0], [1]], -9.81)), start=0.0, until=1.0)
+
+
+@pytest.mark.parametrize("name", ["parallelogram", "triple-rocker"])
+def test_change_points_and_limits_are_passed(name: str) -> None:
+    """Linkages that pass change points, or the limit of their driver: energy, and no effort of what is free."""
+    plain = ck.catalog.load_named(name)
+    size = plain.geometry.size
+    masses = [ck.mass(link, 1.0, at=(0.1 * size, 0.05 * size), inertia=0.05 * size**2)
+              for link in plain.links if link != "frame"]  # fmt: skip
+    heavy = plain.replace(*masses, ck.gravity(0, -9.81), unit="", units=SI, time=None)
+    (driver,) = ck.decompose(heavy).driven
+    first = float(ck.solve(heavy).drives[driver].value[5])
+    found = ck.simulate(heavy, start={driver: (first, 3.0)}, until=1.5)
+    assert found.motion.assembled.all()
+    assert found.energy.worst < 1e-9
+    effort = next(iter(found.forces.drives.values())).effort
+    assert np.max(np.abs(effort)) < 1e-9 * found.energy.peak

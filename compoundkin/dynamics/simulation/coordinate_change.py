@@ -42,7 +42,7 @@ def fastest_pair(chart: DriverChart, state: DriverState) -> FastPair | None:
 
 
 def _pairs(chart: DriverChart, state: DriverState) -> Iterator[FastPair]:
-    for pair in chart.candidates:
+    for pair in (one for one in chart.candidates if one.name not in chart.driven):
         slopes = np.abs(state.slopes(pair))[: len(chart.free)] * chart.scales
         slopes = slopes / (1.0 if pair.free_is_angle else chart.order.size)
         if np.isfinite(slopes).all():

@@ -10,17 +10,18 @@ from __future__ import annotations
 
 import warnings
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import CompoundkinError
-from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Number
 from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.dynamics.simulation.table_bridge import with_bridges
+from compoundkin.dynamics.simulation.table_piece import NODES, POINTS, TO_COEFFICIENTS, TablePiece
 from compoundkin.dynamics.work.mass_motion import mass_motions
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration
@@ -29,56 +30,14 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import Load
 from compoundkin.model.pairs import Pair
 
-# Points of a piece; pieces of a table to begin with, and how often they are halved.
-POINTS, PIECES, HALVED = 24, 16, 7
+# Pieces of a table to begin with, and how often they are halved.
+PIECES, HALVED = 16, 7
 # Polynomials hold where their last coefficients are this part of the largest: some hundred units of rounding.
 HOLDS, LAST = 3e-14, 3
 # Next to a change point accelerations have some ten digits; a corner of a load is still far above this.
 HOLDS_NEAR = 1e-8
 # Poses of the motion by which the configuration is kept.
 POSES = 145
-
-_ANGLES = (np.arange(POINTS) + 0.5) * np.pi / POINTS
-NODES = np.cos(_ANGLES)
-_TO_COEFFICIENTS = np.cos(np.outer(np.arange(POINTS), _ANGLES)) * (2.0 / POINTS)
-_TO_COEFFICIENTS[0] /= 2.0
-_DEGREES = np.arange(POINTS)
-
-
-@dataclass(eq=False)
-class TablePiece:
-    """A piece of a table. It has polynomials of inertia, bias, stored and other forces, and the poses at its points."""
-
-    low: float
-    high: float
-    terms: Number  # (4, POINTS)
-    ratio: float  # how fast the fastest pair moves, by the scales
-    nodes: Mapping[str, Pose]
-    place: slice
-    known: dict[str, Number] = field(default_factory=dict)
-
-    def basis(self, value: float) -> Number:
-        """Return Chebyshev's polynomials at a value."""
-        x = (2.0 * value - self.low - self.high) / (self.high - self.low)
-        found: Number = np.cos(_DEGREES * np.arccos(min(1.0, max(-1.0, x))))
-        return found
-
-    def pose(self, link: str, basis: Number, speed: float) -> Pose:
-        """Return the pose of a link. Its rates are those at unit rate and at a speed."""
-        if self.nodes[link] is FIXED:
-            return FIXED
-        if link not in self.known:
-            pose = self.nodes[link]
-            rows = [self._row(series, k) for series in (pose.z, pose.u) for k in (0, 1)]
-            self.known[link] = np.array(rows) @ _TO_COEFFICIENTS.T
-        z, moved, u, turned = self.known[link] @ basis
-        pace = np.array([1.0, speed])
-        return Pose(Series((complex(z), moved * pace)), Series((complex(u), turned * pace)))
-
-    def _row(self, series: Series, k: int) -> Number:
-        value = series.c[k] if k < len(series.c) else 0.0
-        row = np.ravel(value)
-        return np.broadcast_to(row, POINTS) if row.size == 1 else row[self.place]
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +94,7 @@ def _pieces(
     else:
         if motion.change_points:
             found += [piece for piece in broken if _holds(piece, HOLDS_NEAR)]
-    return sorted(found, key=lambda piece: piece.low)
+    return with_bridges(sorted(found, key=lambda piece: piece.low), high - low)
 
 
 def _holds(piece: TablePiece, part: float = HOLDS) -> bool:
@@ -160,7 +119,7 @@ def _solved(
     rows[:, (at.failed[0] > 0) & (at.failed[0] <= len(motion.structure.groups))] = np.nan
     ratios = _ratios(at, pairs)
     cuts = [slice(k * POINTS, (k + 1) * POINTS) for k in range(len(parts))]
-    return [TablePiece(float(a), float(b), rows[:, cut] @ _TO_COEFFICIENTS.T, float(np.max(ratios[cut])), at.poses, cut)
+    return [TablePiece(float(a), float(b), rows[:, cut] @ TO_COEFFICIENTS.T, float(np.max(ratios[cut])), at.poses, cut)
             for (a, b), cut in zip(parts, cuts, strict=True)]  # fmt: skip
 
 

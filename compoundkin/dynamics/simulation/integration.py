@@ -31,6 +31,8 @@ from compoundkin.dynamics.simulation.tabulated_chart import FASTER
 FARTHEST = 1.0
 # Where a pair moves so many times as fast as a driver and cannot take its place, the motion ends.
 LIMIT = 1e4
+# A step that is this part of the longest leads nowhere: the configuration cannot be followed any farther.
+STALLED = 1e-7
 # What is said where friction holds a mechanism.
 STICKS = "sticks"
 # Errors in speeds are measured against this part of the fastest driver's at least.
@@ -126,21 +128,31 @@ def _passed(course: SimulatedCourse) -> _Turn | None:
 def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[DriverChart, Number] | None:
     """Return a chart and its state with which to go on. None where this one is good, or where nothing is better."""
     n = len(chart.free)
-    if chart.is_regular(solver.y[:n]):
+    stalls = solver.step_size < STALLED * min(solver.max_step, course.until)
+    if chart.is_regular(solver.y[:n]) and not stalls:
         return None
     here = chart.state(solver.t, solver.y[:n], solver.y[n : 2 * n])
     fast = fastest_pair(chart, here)
-    if fast is None or fast.ratio < FASTER:
+    if fast is None or (fast.ratio < FASTER and not stalls):
+        if stalls:
+            _ended(solver, course, "no pair moves on from here")
         return None
-    found = driven_there(chart, here, fast)
+    is_new = course.last - course.changed > STALLED * course.until
+    found = driven_there(chart, here, fast) if is_new or not stalls else None
     if found is None:
-        if fast.ratio > LIMIT:
-            solver.status = "finished"
-            _stop(course, "limit", f"{fast.driver} comes to a limit position, and no other pair can take its place")
+        if fast.ratio > LIMIT or stalls:
+            _ended(solver, course, f"{fast.driver} comes to a limit position, and no other pair can take its place")
         return None
+    course.changed = course.last
     text = f"next to a limit position of {fast.driver}, {fast.pair.name} takes its place as the coordinate"
     course.events.append(SimulationEvent(course.last, "coordinate", text, False))
     return found[0], np.append(found[1], solver.y[-1])
+
+
+def _ended(solver: Any, course: SimulatedCourse, text: str) -> None:
+    """Stop the simulation where it is."""
+    solver.status = "finished"
+    _stop(course, "limit", text)
 
 
 def _stop(course: SimulatedCourse, name: str, text: str) -> None:

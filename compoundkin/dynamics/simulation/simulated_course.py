@@ -50,6 +50,7 @@ class SimulatedCourse:
     events: list[SimulationEvent] = field(default_factory=list)
     evaluations: int = 0
     fastest: float = 0.0
+    changed: float = -np.inf  # the time of the last change of coordinate
 
     def at(self, times: Number) -> list[ChartStretch]:
         """Return the states at times in order, chart by chart."""

@@ -91,12 +91,15 @@ def _followed(chart: DriverChart, name: str, parts: list[Motion], stretches: lis
     own = chart.start.structure.driven[name]
     sense, found, last = float(own.pair.driven_by(own.drive.link)), [], None
     for motion, one in zip(parts, stretches, strict=True):
-        pair = motion.pairs[own.pair.name]
-        value = np.ravel(pair.value) * sense
-        if last is not None and own.pair.free_is_angle:
-            value = value + whole_turns(last - value[0])
-        last = value[-1]
-        found.append(np.array([value, np.ravel(pair.rate) * sense, np.ravel(pair.second) * sense])[:, one.asked])
+        # by the poses: at a multiple pin another driver makes other pairs
+        ends = motion.inputs.ends.get(own.pair.name) or own.pair.ends(motion.mechanism.geometry)
+        series = own.pair.coordinate(ends, tuple(motion.poses[link] for link in own.pair.members))
+        rows = [np.broadcast_to(series.derivative(k), motion.failed.shape)[0] * sense for k in range(ORDER + 1)]
+        if own.pair.free_is_angle:
+            rows[0] = np.unwrap(rows[0])
+            rows[0] = rows[0] + (0.0 if last is None else whole_turns(last - rows[0][0]))
+        last = rows[0][-1]
+        found.append(np.array(rows)[:, one.asked])
     value, speed, acceleration = np.concatenate(found, axis=1)
     return value, speed, acceleration
 

@@ -12,10 +12,11 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number
 from compoundkin.dynamics.loaded_block import loaded_blocks
-from compoundkin.dynamics.simulation.drive_table import DriveTable, TablePiece, drive_table
+from compoundkin.dynamics.simulation.drive_table import DriveTable, drive_table
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import Rates
 from compoundkin.dynamics.simulation.loaded_state import loaded_state
+from compoundkin.dynamics.simulation.table_piece import TablePiece
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.model.elements import Load
