@@ -140,8 +140,8 @@ def written(found: Simulation, kind: Kind, path: str, outputs: Sequence[str]) ->
         with counting("drawing", "frames") as progress:
             animate(found.motion).save(path, progress)
     else:
-        from compoundkin.view.report import page
+        from compoundkin.view.report.simulation_report import whole_simulation_report
 
         with working("drawing"):
-            page(found.motion, outputs).save(path)
+            whole_simulation_report(found, outputs).page().save(path)
     say(f"Wrote {path}.")

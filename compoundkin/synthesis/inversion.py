@@ -19,6 +19,7 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.approach import column
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
+from compoundkin.model.kept_outputs import kept_outputs
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
 from compoundkin.synthesis.driver_places import is_driver, renamed, stays, without_driver
@@ -95,9 +96,8 @@ def with_driver(
         kept = [item for item in kept if not isinstance(item, Drawn)]
         if points := _assembled(mechanism):
             kept.append(drawn(**points))
-    known = [*mechanism.carriers, *mechanism.links, *(p.name for p in mechanism.written_pairs)]
-    drives = [item.name for item in kept if isinstance(item, Drive)]
-    outputs = [name for name in mechanism.outputs if name.split("(")[0].split(".")[0] in (*known, *drives)]
+    drives = [item.name for item in (*kept, new) if isinstance(item, Drive)]
+    outputs = kept_outputs(mechanism, drives)
     made = _written(mechanism, f"{mechanism.title}, {link} driven", [*kept, new], outputs)
     return _standing(made, new) if isinstance(new, Drive) and new.values is None and new.law is None else made
 

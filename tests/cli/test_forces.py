@@ -98,8 +98,13 @@ def test_a_pendulum_is_let_go(run: Run, tmp_path: Path) -> None:
     assert float(last.split(",")[1]) == pytest.approx(-89.0, abs=1e-4)
     told = run("simulate", "pendulum", "--until", "1", "--start", "arm=0", "--start", "arm.speed=60rpm").stdout
     assert "Free under masses and loads for 1 s" in told
+    # it starts at rest but for its turn of 2 pi rad/s: kinetic energy m v^2 / 2
+    kinetic = next(line for line in told.splitlines() if line.startswith("kinetic")).split()
+    assert float(kinetic[3]) == pytest.approx(2.0 * (np.pi) ** 2 / 2.0, rel=1e-5)
     assert run("simulate", "pendulum", "--until", "0.2", "--start", "arm=0", "-o", "arm.html").exit_code == 0
-    assert "ck-reaction" in (tmp_path / "arm.html").read_text(encoding="utf-8")
+    page = (tmp_path / "arm.html").read_text(encoding="utf-8")
+    assert "ck-reaction" in page
+    assert "the energy balance is off by at most" in page
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between, driver_dead_points
 from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.quantities import Quantity, quantity
+from compoundkin.model.attributes import order_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +39,9 @@ def limits_of(motion: Motion, design: int, outputs: Iterable[OutputFigures]) -> 
     if not len(places):
         return ()
     there = between(motion, design, places, 0)
-    known = [quantity(there, one.output.coordinate) for one in outputs if one.least is not None]
+    # what takes rates, such as a force, has no limit there
+    named = [one.output.coordinate for one in outputs if one.least is not None]
+    known = [quantity(there, name) for name in named if order_of(name) == 0]
     at = drivers_at(motion, design, places.tolist())
     return tuple(
         DriverDeadPoint(

@@ -22,6 +22,7 @@ from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import Drive, Expectation, Item, Mode
+from compoundkin.model.kept_outputs import kept_outputs
 from compoundkin.model.laws import Law
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
@@ -90,8 +91,7 @@ def _here(state: DriverState, values: dict[str, float]) -> Configuration:
 def _written(mechanism: Mechanism, items: list[Item]) -> Mechanism:
     """Return a mechanism driven elsewhere, without what was said of the old driver."""
     kept = [item for item in items if not isinstance(item, Mode | Expectation)]
-    known = {*mechanism.carriers, *mechanism.links, *(pair.name for pair in mechanism.written_pairs)}
-    outputs = [name for name in mechanism.outputs if name.split("(")[0].split(".")[0] in known]
+    outputs = kept_outputs(mechanism, [item.name for item in kept if isinstance(item, Drive)])
     return Mechanism(mechanism.title, *kept, units=mechanism.units, outputs=outputs, source=mechanism.source)
 
 

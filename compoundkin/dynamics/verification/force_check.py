@@ -43,7 +43,7 @@ def check_of(forces: FoundForces) -> Check:
     regular = np.array(motion.regular if motion.order else motion.failed == 0)
     for one in forces.singular:
         # what has no limit is not there to be checked
-        regular.reshape(motion.shape)[one.pose] &= one.forces == FINITE
+        regular.reshape(motion.shape or (1,))[one.pose] &= one.forces == FINITE
     closed = int(np.count_nonzero(motion.failed == 0))
     if not closed:
         return Check((), 0, 0)

@@ -19,8 +19,10 @@ from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.sketch_style import INERTIA, LOAD, REACTION
 
 LOWERED = str.maketrans("0123456789-", "₀₁₂₃₄₅₆₇₈₉₋")
-# What is below this part of the largest force, moments by the mechanism's size, is rounding.
+# What is below this part of the largest force is rounding.
 NOTHING = 1e-9
+# Arcs are not to scale: a moment below this part of the largest force by the size would look like any other.
+FAINT = 1e-5
 
 
 @dataclass(frozen=True)
@@ -81,9 +83,9 @@ def acting_forces(forces: Forces, scene: Scene) -> Mapping[str, tuple[ShownForce
     design, pose = scene.pose
     courses = force_courses(forces_in(forces, scene), scene, design)
     found = {link: tuple(one.at_pose(pose) for one in own) for link, own in courses.items()}
-    floor = largest(found) * NOTHING
-    size = scene.mechanism.geometry.size
-    return {link: tuple(_cleaned(one, floor, floor * size) for one in own) for link, own in found.items()}
+    force = largest(found)
+    turning = force * scene.mechanism.geometry.size * FAINT
+    return {link: tuple(_cleaned(one, force * NOTHING, turning) for one in own) for link, own in found.items()}
 
 
 def is_shown_once(one: ShownForce, legend: Mapping[str, int]) -> bool:

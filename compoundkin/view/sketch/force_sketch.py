@@ -159,7 +159,8 @@ def notes_below(
     texts, height = below(lines_of_text(notes, width - 2.0 * SIDE), height)
     if scale is None:
         return texts, height
-    kinds = dict.fromkeys(one.kind for one in shown if one.force)
+    seen = (one for one in shown if one.moment or abs(one.force) * scale.per_unit >= SHORTEST)
+    kinds = dict.fromkeys(one.kind for one in seen)
     keys = [(scale.amount * scale.per_unit, "drive", scale.text), *((KEY, kind, KINDS[kind]) for kind in kinds)]
     x = SIDE
     for length, kind, words in keys:
