@@ -73,6 +73,7 @@ def _energies(found: Simulation) -> TableBlock:
     energy, units = found.energy, found.motion.mechanism.units
     unit = "" if units is None else units.moment
     named = {"kinetic": energy.kinetic, "potential": energy.potential, "work": energy.work}
+    rows: list[tuple[Cell, ...]]
     rows = [(name, unit, *map(float, (own[0], own[-1], own.min(), own.max()))) for name, own in named.items()]
     numbers = (
         Column(word, style="each", floor=ROUNDING * energy.peak)
