@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.model.elements import Drawn, Drive, Expectation, Lead, Link
+from compoundkin.model.elements import Drawn, Drive, Expectation, Friction, Gravity, Lead, Link, Load, Mass, Pretension
 from compoundkin.model.laws.constant_laws import ConstantAcceleration, ConstantSpeed
 from compoundkin.model.laws.function_law import FunctionLaw
 from compoundkin.model.laws.motion_programs import Program
@@ -24,15 +24,16 @@ DIMENSIONS_OF_A_PROFILE = ("base", "roller", "offset", "arm", "face")
 
 
 def scaled(mechanism: ck.Mechanism, factor: float) -> ck.Mechanism:
-    """Return it with every length `factor` times as long; what was published of it is left out."""
+    """Return it with every length `factor` times as long; its masses and loads, and what was published of it, are left out."""
     drives = [driven for body in ck.decompose(mechanism).bodies for driven in body.driven if not driven.is_passive]
     lengths = {driven.drive.name for driven in drives if not driven.pair.free_is_angle}
     items = [
         _item(item, factor, isinstance(item, Drive) and (item.name or item.link) in lengths)
         for item in mechanism.items
-        if not isinstance(item, Expectation)
+        if not isinstance(item, Expectation | Mass | Gravity | Load | Friction | Pretension)
     ]
-    return ck.Mechanism(mechanism.title, *items, outputs=mechanism.outputs, time=mechanism.time)
+    outputs = mechanism.outputs if mechanism.units is None else ()
+    return ck.Mechanism(mechanism.title, *items, outputs=outputs, time=mechanism.time)
 
 
 def _item(item: Any, factor: float, is_length: bool) -> Any:

@@ -188,7 +188,9 @@ def shape_problems(mechanism: Written) -> Iterator[Problem]:
         shapes += [(f"links.{name}.points.{k}", np.shape(p)) for k, p in arrays]
     shapes += [(f"drawn.{k}", np.shape(p)) for k, p in mechanism.sketch.items()]
     for where, pair in mechanism.placed_pairs:
-        shapes += [(f"{where}.{key.name}", np.shape(value)) for key in pair.keys for value in _numbers_of(pair, key)]
+        numbers = ((key, value) for key in pair.keys for value in _numbers_of(pair, key))
+        # what is no array at all is told of already
+        shapes += [(f"{where}.{key.name}", np.shape(value)) for key, value in numbers if is_finite(value)]
     for place, drive in placed_drives(mechanism):
         shapes += [(f"{place}.{k}", np.shape(getattr(drive, k))) for k in DRIVEN if getattr(drive, k) is not None]
     total: tuple[int, ...] = ()

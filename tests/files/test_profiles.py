@@ -61,7 +61,7 @@ class Unchecked(Mechanism):
     def __init__(self, *items: Any) -> None:
         self.title, self.items = "m", items
         self.unit = self.source = self.description = ""
-        self.outputs, self.time = (), None
+        self.outputs, self.time, self.units = (), None, None
 
 
 @settings(max_examples=200, deadline=None)

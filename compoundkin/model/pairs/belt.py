@@ -89,8 +89,8 @@ class Belt(Geared, Strapped):
     def pulls(self, transmitted: Number, pretension: Number | None = None) -> tuple[Number, Number]:
         """Return the pulls of both strands. A negative one says that the belt is slack.
 
-        >>> belt("motor", "drum", radii=(30, 90)).pulls(-10.0)
-        (0.0, 10.0)
+        >>> [float(pull) for pull in belt("motor", "drum", radii=(30, 90)).pulls(-10.0)]
+        [0.0, 10.0]
         """
         if pretension is None:
             return np.maximum(transmitted, 0.0)[()], np.maximum(0.0 - transmitted, 0.0)[()]

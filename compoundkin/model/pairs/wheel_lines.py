@@ -35,7 +35,7 @@ def line_of_action(axes: tuple[Number, Number], radii: tuple[Number, Number], si
     It is the inner one; the outer one where the second radius is negative. It touches the first circle to the left of
     the way from axis to axis, or to the right for a `side` of -1.
 
-    >>> line_of_action((0j, 5 + 0j), (1.0, -1.0)).second
+    >>> complex(line_of_action((0j, 5 + 0j), (1.0, -1.0)).second)
     (5+1j)
     """
     (first, second), (one, two) = axes, radii

@@ -91,6 +91,9 @@ def test_it_is_drawn(mechanism: ck.Mechanism, kind: str) -> None:
         with pytest.raises(InvalidInput, match="there is no dyad"):
             ck.draw(ck.solve(mechanism), kind=kind)
         return
+    if kind in ("forces", "free-bodies", "force-polygon"):
+        units = {"length": "m", "mass": "kg", "force": "N"}
+        mechanism = mechanism.replace(ck.mass(mechanism.drives[0].link, 2.0), units=units)
     assert ck.draw(ck.solve(mechanism), kind=kind).svg.startswith("<svg")
 
 
