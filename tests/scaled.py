@@ -24,7 +24,7 @@ DIMENSIONS_OF_A_PROFILE = ("base", "roller", "offset", "arm", "face")
 
 
 def scaled(mechanism: ck.Mechanism, factor: float) -> ck.Mechanism:
-    """Return it with every length `factor` times as long; its masses and loads, and what was published of it, are left out."""
+    """Return it with every length `factor` times as long, without its masses and loads and what was published of it."""
     drives = [driven for body in ck.decompose(mechanism).bodies for driven in body.driven if not driven.is_passive]
     lengths = {driven.drive.name for driven in drives if not driven.pair.free_is_angle}
     items = [
