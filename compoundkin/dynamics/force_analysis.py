@@ -14,7 +14,7 @@ from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.rubbed_motion import with_friction
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.named_forces.link_wrench import LinkWrench
-from compoundkin.dynamics.reactions.free_links import refuse_turned
+from compoundkin.dynamics.reactions.free_links import refuse_off_pin
 from compoundkin.dynamics.reactions.held_pair import held_wrenches, holding_effort
 from compoundkin.dynamics.reactions.joined_wrenches import ON_FRAME, joined_reactions
 from compoundkin.dynamics.reactions.reverse_pass import Reactions, found_reactions
@@ -29,11 +29,12 @@ def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -
     With ``inertia=False`` masses have weight only: statics. A pair, a pin or a driver named by `holding` holds in the
     place of the driver that moves: its effort is `forces.held.effort`, the driver's own is zero.
 
-    Raises InvalidInput for a mechanism without units, for a motion without accelerations where masses move, for
-    what cannot hold, and for what would turn a roller that turns freely; UnknownName for what there is not.
+    Raises InvalidInput for a mechanism without units, for a motion without accelerations where masses move, or without
+    velocities where loads ask for them, for a mass centre off the pin of a roller that turns freely, and for what
+    cannot hold; UnknownName for what there is not.
     """
     _hold(motion, inertia)
-    refuse_turned(motion)
+    refuse_off_pin(motion)
     found = _wrenches(motion, inertia, holding)
     singular = at_singular_poses(motion, found, lambda other: _wrenches(other, inertia, holding))
     on_frame, told = found.pop(ON_FRAME), replace(motion, loading={"inertia": inertia, "holding": holding})
@@ -69,3 +70,8 @@ def _hold(motion: Motion, inertia: bool) -> None:
     if inertia and mechanism.masses and motion.order < 2:
         what = f"the motion was solved to order {motion.order}, and inertia takes accelerations"
         raise InvalidInput(Problem("motion", what, "solve(..., order=2), or inertia=False for statics"))
+    asking = [name for name, load in mechanism.loads.items() if load.needs_rates]
+    asking += [f"friction of {name}" for name in mechanism.frictions]
+    if asking and not motion.order:
+        what = f"the motion was solved to order 0, and its velocities are asked for by {', '.join(asking)}"
+        raise InvalidInput(Problem("motion", what, "solve(..., order=1), or 2"))

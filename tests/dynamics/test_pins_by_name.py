@@ -81,22 +81,54 @@ def test_what_rubs_at_a_led_pin_is_refused() -> None:
         led_five_bar(ck.damper(pair="P", rate=0.1))
 
 
+def with_roller(*items: Any) -> ck.results.Motion:
+    return ck.solve(catalog.mechanism("disc-cam-offset-roller").replace(*items, unit="", units=UNITS))
+
+
+def test_a_mass_centre_off_the_pin_of_a_roller_is_refused() -> None:
+    for mass in (ck.mass("roller", 1.0, at=(3, 1)), ck.mass("roller", 1.0)):
+        with pytest.raises(ck.errors.InvalidInput, match=r'roller turns freely about P.*put it at the pin: at="P"'):
+            ck.force_analysis(with_roller(mass))
+
+
+def test_what_would_turn_a_roller_is_left_aside() -> None:
+    loads = ck.torque("roller", 3), ck.force("roller", (1, 0), at=(2, 2)), ck.mass("roller", 1.0, at="P", inertia=500)
+    forces = ck.force_analysis(with_roller(*loads))
+    assert ck.verify(forces).passed
+
+
 @pytest.mark.parametrize(
-    ("item", "message"),
+    "load",
     [
-        (ck.mass("roller", 1.0, at=(3, 1)), 'masses.roller.at: roller turns freely about P.*put it at the pin: at="P"'),
-        (ck.torque("roller", 3), "loads.torque on roller: roller turns freely about P: nothing holds it"),
-        (ck.force("roller", (1, 0), at=(2, 2)), "loads.force on roller.*let it act at P, or on follower"),
+        ck.damper(pair="A", rate=1),
+        ck.force("b", (0, 4), at="B", while_moving=(0, -1)),
+        ck.effort("D", 3, only="back"),
+        ck.friction("C", 0.1, radius=3),
     ],
 )
-def test_what_would_turn_a_roller_is_refused(item: Any, message: str) -> None:
-    plain = catalog.mechanism("disc-cam-offset-roller")
-    with pytest.raises(ck.errors.InvalidInput, match=message) as error:
-        ck.force_analysis(ck.solve(plain.replace(item, unit="", units=UNITS)))
-    assert len(error.value.problems) == 1
+def test_loads_that_ask_for_velocities_need_some(load: Any) -> None:
+    motion = ck.solve(eight_bar_pin(load), order=0)
+    with pytest.raises(ck.errors.InvalidInput, match="solved to order 0, and its velocities are asked for by"):
+        ck.force_analysis(motion, inertia=False)
 
 
-def test_rollers_do_not_turn() -> None:
-    plain = catalog.mechanism("disc-cam-offset-roller")
-    weighty = plain.replace(ck.mass("roller", 1.0, at="P", inertia=500), unit="", units=UNITS)
-    assert ck.verify(ck.force_analysis(ck.solve(weighty))).passed
+def test_complex_numbers_are_no_torque() -> None:
+    motion = ck.solve(eight_bar_pin(ck.effort("D", lambda q: 1j * q)))
+    with pytest.raises(ck.errors.InvalidInput, match="effort along D: the function returns complex numbers"):
+        ck.force_analysis(motion)
+
+
+def test_wedged_poses_are_not_verified() -> None:
+    long_crank = ck.Mechanism(
+        "Nearly as long as its rod",
+        ck.link("frame", A=0), ck.link("crank", A=0, B=109), ck.link("rod", B=0, C=110), ck.link("ram", C=0),
+        ck.slide("ram", on="frame", through="A", angle=np.pi / 2, name="stroke"), ck.drive("crank", speed=8),
+        ck.mass("ram", 2.0), GRAVITY, ck.friction("stroke", 0.3, length=10), ck.friction("C", 0.1, radius=20),
+        units=UNITS,
+    )  # fmt: skip
+    with pytest.warns(ck.errors.WedgedPoses):
+        forces = ck.force_analysis(ck.solve(long_crank))
+    wedged = int(np.isnan(forces.drives["crank"].effort).sum())
+    check = ck.verify(forces)
+    assert check.passed
+    assert 0 < wedged == check.singular < check.poses

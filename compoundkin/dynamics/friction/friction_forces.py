@@ -94,8 +94,13 @@ class FrictionForces(CopiesFields):
         """The stretches of poses without forces, each with its pair and the reason."""
         return tuple(self._stretches())
 
+    @property
+    def is_wedged(self) -> Number:
+        """The poses at which it is wedged, (designs, poses)."""
+        return np.isin(self.state, tuple(REASONS)) & (self.motion.failed == 0)
+
     def _stretches(self) -> Iterator[Wedged]:
-        stuck = np.isin(self.state, tuple(REASONS)) & (self.motion.failed == 0)
+        stuck = self.is_wedged
         count = max(len(self.rubs), 1)
         for label, stretch in stretches_where(self.motion, np.where(stuck, self.state * count + self.worst, -1)):
             yield Wedged(self.rubs[label % count].name, stretch, REASONS[label // count])

@@ -44,6 +44,8 @@ def check_of(forces: FoundForces) -> Check:
     for one in forces.singular:
         # what has no limit is not there to be checked
         regular.reshape(motion.shape or (1,))[one.pose] &= one.forces == FINITE
+    # nor is what no forces, or several, satisfy the law of friction at
+    regular &= ~forces.friction.is_wedged
     closed = int(np.count_nonzero(motion.failed == 0))
     if not closed:
         return Check((), 0, 0)

@@ -49,12 +49,12 @@ def reported(forces: FoundForces, pair: str, link: str) -> Wrench:
 
 
 def applied_wrenches(forces: FoundForces) -> dict[str, Wrench]:
-    """Return what loads do to every link, (designs, poses)."""
+    """Return what loads do to every link, (designs, poses). What would turn one that turns freely is left aside."""
     store: JoinedWrenches[str] = JoinedWrenches(forces.motion.failed.shape)
     for at in loaded_blocks(forces.motion):
         for load in forces.motion.mechanism.loads.values():
             for link, wrench in load.wrenches(at):
-                store.take(link, wrench, at.designs, at.poses)
+                store.take(link, at.freed(link, wrench), at.designs, at.poses)
     return store.wrenches()
 
 

@@ -141,11 +141,19 @@ def _numbers(where: str, made: Any) -> Any:
 
 
 def value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables = MappingProxyType({})) -> Number:
-    """Return an amount at the poses of a block.
+    """Return an amount at the poses of a block, a real number.
 
     `variables` are those that a function takes before the time, the first of them what a table is over that names
-    nothing else.
+    nothing else. Raises InvalidInput naming `where`.
     """
+    found = _value_of(where, amount, at, variables)
+    if np.iscomplexobj(found):
+        raise InvalidInput(Problem(where, "the function returns complex numbers", "return real ones"))
+    return found
+
+
+def _value_of(where: str, amount: Amount, at: LoadedPoses, variables: Variables = MappingProxyType({})) -> Number:
+    """Return an amount, of functions of vectors complex."""
     if isinstance(amount, LoadFunction):
         asked: list[Callable[[], Number]] = [*variables.values(), lambda: time_of(where, at)]
         return amount.value(where, tuple(variable() for variable in asked[: amount.count]))
@@ -162,7 +170,7 @@ def planar_value_of(where: str, amount: Any, at: LoadedPoses) -> Number:
     """Return a vector at the poses of a block, complex."""
     if isinstance(amount, tuple):
         return joined(*np.broadcast_arrays(*(value_of(where, part, at) for part in amount)))
-    return value_of(where, amount, at)
+    return _value_of(where, amount, at)
 
 
 def time_of(where: str, at: LoadedPoses) -> Number:

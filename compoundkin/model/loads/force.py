@@ -73,6 +73,8 @@ class Force(Load):
         if self.fixed_in not in written.letters:
             what = f"there is no link {self.fixed_in!r}"
             yield Problem(f"{where}.fixed_in", what, nearest(self.fixed_in, list(written.letters)))
+        if self.while_moving is not None and np.any(np.asarray(self.while_moving) == 0):
+            yield Problem(f"{where}.while_moving", "it has no direction", "write (dx, dy), or leave it out")
 
     @property
     def pin(self) -> str:
