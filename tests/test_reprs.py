@@ -28,7 +28,8 @@ def answers(name: str) -> Iterator[tuple[str, Any]]:
         yield word, getattr(ck, word)(motion)
     yield "plot", ck.plot(motion, f"{link}.angle")
     units = {"length": "mm", "mass": "kg", "force": "N"}
-    weighed = mechanism.replace(ck.mass(link, 0.1), ck.gravity(0, -9.81), unit="", units=units)
+    weight = ck.mass(link, 0.1, at=mechanism.links[link].letters[0])
+    weighed = mechanism.replace(weight, ck.gravity(0, -9.81), unit="", units=units)
     forces = ck.force_analysis(ck.solve(weighed))
     yield from {"force_analysis": forces, "on": forces.on(link), "shaking": forces.shaking, "pins": forces.pins}.items()
     yield "power", forces.power
