@@ -12,7 +12,7 @@ from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.lost_digits import uncertain
 from compoundkin.kinematics.quantities import Quantity, owner_of, quantity
-from compoundkin.model.attributes import TIME, VALUE, unit_of
+from compoundkin.model.attributes import OF_FORCES, TIME, VALUE, unit_of
 from compoundkin.view.report.report_data import Column
 from compoundkin.view.report.wording import listed, number
 
@@ -110,8 +110,10 @@ class Sample:
     def floor(self, found: Quantity) -> float:
         """Return the bound below which a quantity is rounding.
 
-        It goes by the mechanism's size, its drivers' rates, and its own vectors.
+        It goes by the mechanism's size, its drivers' rates, and its own vectors; of forces by the largest of all.
         """
+        if found.dimension in OF_FORCES:
+            return ROUNDING * found.scale
         size = 1.0 if found.dimension in ("angle", "number") else self.motion.mechanism.geometry.size
         values = np.abs(found.values)
         largest = float(np.max(values, initial=0.0, where=np.isfinite(values))) if found.is_vector else 0.0
