@@ -37,7 +37,10 @@ class Efficiency(PrintsShort):
 
     @property
     def over_motion(self) -> Number:
-        """The work out over the work in of the whole motion, for each design. Each driver and load counts once."""
+        """The work out over the work in of the whole motion, for each design. Each driver and load counts once.
+
+        Works are sums over the poses, by the trapezoidal rule.
+        """
         works = [self._integrated(power) for power in self._all]
         return np.reshape(_ratio(works, self._least), self.forces.motion.shape[:-1])[()]
 
