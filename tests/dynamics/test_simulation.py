@@ -8,7 +8,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
-from compoundkin.errors import InvalidInput, UnknownName
+from compoundkin.errors import FewDigits, InvalidInput, UnknownName
 from tests.dynamics.cases import SI
 from tests.dynamics.moving_cases import (
     ENTRY,
@@ -255,6 +255,15 @@ def test_a_roller_on_a_swinging_follower_does_not_turn() -> None:
         forces = ck.force_analysis(moved)
         assert abs(forces.drives["cam"].effort[0]) < 1e-12 * forces.largest * motion.size
         assert found.power == 0.0
+
+
+def test_energies_that_do_not_add_up_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A warning says so, here of what is allowed else. What only rounds is no error."""
+    for name in ("LOST", "WORSE"):
+        monkeypatch.setattr(f"compoundkin.dynamics.simulation.forward_dynamics.{name}", 0.0)
+    with pytest.warns(FewDigits, match="energies do not add up"):
+        ck.simulate(slider_crank(), start=1.0, until=0.1)
+    assert ck.simulate(ck.catalog.load_named("balanced-lamp"), until=0.3).energy.worst == 0.0
 
 
 def shaft(*more: object) -> ck.Mechanism:

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import FewDigits, InvalidInput, Problem, warn
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.dynamics.simulation.coordinate_change import chart_of
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.integration import PARTS, integrate
 from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse, Step
-from compoundkin.dynamics.simulation.simulated_energy import simulated_energy
+from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, simulated_energy
 from compoundkin.dynamics.simulation.simulated_motion import simulated_motion
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import watches
@@ -27,6 +27,8 @@ from compoundkin.model.mechanism import Mechanism
 NO_MASS = 1e-20
 # From one pose of the result to the next drivers go so far at most (radians, or parts of the size), in so many poses.
 APART, FEWEST, MOST = np.deg2rad(5.0), 100, 20000
+# Energies that are so far from adding up, or so many times the tolerance, are told of.
+LOST, WORSE = 1e-5, 1e4
 
 
 @checked
@@ -84,7 +86,15 @@ def simulate(
         stretches = course.at(_times(course, times))
         motion = simulated_motion(stretches)
         energy = simulated_energy(motion, np.concatenate([one.states[-1, one.asked] for one in stretches]))
+    _warn(energy, tolerance)
     return Simulation(motion, energy, tuple(course.events), course.tolerance, len(course.steps), course.evaluations)
+
+
+def _warn(energy: SimulatedEnergy, tolerance: float) -> None:
+    """Warn where energies do not add up."""
+    if energy.worst > max(LOST, WORSE * tolerance):
+        what = f"energies do not add up, {energy.worst:.1g} of the greatest is missing"
+        warn(f"{what}: a prescribed speed jumps, digits are lost, or several drivers passed a change point", FewDigits)
 
 
 def _hold(mechanism: Mechanism, until: float, tolerance: float, restitution: float | None) -> None:

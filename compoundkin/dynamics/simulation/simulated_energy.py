@@ -14,6 +14,9 @@ from compoundkin.dynamics.work.mass_motion import mass_motions
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.elements import Load
 
+# So large a part of the total energy is lost in its sums.
+ROUNDING = 64.0 * np.finfo(float).eps
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SimulatedEnergy(PrintsShort):
@@ -44,8 +47,10 @@ class SimulatedEnergy(PrintsShort):
 
     @property
     def worst(self) -> float:
-        """The greatest error as a part of the peak."""
-        return float(np.max(np.abs(self.error))) / self.peak if self.peak else 0.0
+        """The greatest error as a part of the peak. What is rounding of the total counts as none."""
+        error = float(np.max(np.abs(self.error)))
+        rounding = ROUNDING * float(np.max(np.abs(self.total)))
+        return error / self.peak if error > rounding and self.peak else 0.0
 
 
 def simulated_energy(motion: Motion, work: Number) -> SimulatedEnergy:

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from compoundkin.base.arrays import whole_turns
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
@@ -110,6 +111,10 @@ def _moved(stretch: ChartStretch) -> dict[str, Moved]:
     values, speeds = stretch.states[:n], stretch.states[n : 2 * n]
     states = zip(stretch.times, values.T, speeds.T, strict=True)
     rates = np.array([chart.told(t, q, v) for t, q, v in states])
+    if not np.isfinite(rates).all():
+        late = stretch.times[np.argmin(np.isfinite(rates).all(axis=1))]
+        what = f"at {late:g} s the mechanism is at a limit position of its drivers, where their rates are not known"
+        raise InvalidInput(Problem("until", what, "end before, or let other links be its drivers"))
     return {name: (values[k], speeds[k], rates[:, k]) for k, name in enumerate(chart.free)}
 
 
