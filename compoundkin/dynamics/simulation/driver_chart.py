@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -100,6 +101,15 @@ class DriverChart:
     def told(self, time: float, values: Number, speeds: Number) -> Number:
         """Return the accelerations of the free drivers at a state that was found."""
         return self.rates(time, values, speeds).accelerations
+
+    @property
+    def memory(self) -> tuple[Any, ...]:
+        """What keeps the configuration around the state that was accepted last."""
+        return dict(self.states), dict(self.near), dict(self.turned)
+
+    def recall(self, memory: tuple[Any, ...]) -> None:
+        """Go back to a configuration that was kept."""
+        self.states, self.near, self.turned = (dict(own) for own in memory[:3])
 
     def sign(self, k: int, values: Number) -> float:
         """Return the sign of a dyad's mode at values of the drivers."""

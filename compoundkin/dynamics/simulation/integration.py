@@ -53,7 +53,7 @@ def integrate(chart: DriverChart, state: Number, course: SimulatedCourse, progre
         solver.step()
         if solver.status == "failed":
             return _stop(course, "limit", "the motion comes to a limit position")
-        course.steps.append(Step(chart, float(solver.t_old), float(solver.t), solver.dense_output()))
+        course.steps.append(Step(chart, float(solver.t_old), float(solver.t), solver.dense_output(), chart.memory))
         passed = _passed(course) if course.watched else None
         if passed is not None and (passed.state is None or passed.time >= course.until):
             return None
@@ -78,7 +78,7 @@ def _begun(chart: DriverChart, time: float, state: Number, course: SimulatedCour
         return _solver(chart, time, state, course)
     last = chart.released(time, values, course.until)
     course.events.append(SimulationEvent(time, STICKS, "friction holds the mechanism", False))
-    course.steps.append(Step(chart, time, last, _resting(state)))
+    course.steps.append(Step(chart, time, last, _resting(state), chart.memory))
     if last >= course.until:
         return None
     course.events.append(SimulationEvent(last, "slips", "the loads overcome friction", False))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +21,19 @@ class Step:
     first: float
     last: float
     between: Callable[[Number], Number]
+    memory: tuple[Any, ...]  # what keeps the configuration at its beginning
+
+    def told(self, times: Number, states: Number) -> Number:
+        """Return the accelerations of the free drivers at times in it, in columns."""
+        n = len(self.chart.free)
+        self.chart.recall(self.memory)
+        found = [self.chart.told(t, y[:n], y[n : 2 * n]) for t, y in zip(times, states.T, strict=True)]
+        return np.array(found).T
 
 
 @dataclass(frozen=True, eq=False)
 class ChartStretch:
-    """The course in one chart. The states at times are in columns, its first and last among them.
+    """The course in one chart. States at times are in columns, its first and last among them.
 
     `asked` tells which of the times were asked for.
     """
@@ -32,6 +41,7 @@ class ChartStretch:
     chart: DriverChart
     times: Number
     states: Number
+    accelerations: Number
     asked: Number
 
 
@@ -76,5 +86,10 @@ def _stretch(steps: list[Step], times: Number, is_first: bool) -> ChartStretch:
     own = times[((times >= first) if is_first else (times > first)) & (times <= last)]
     whole = np.unique(np.concatenate([[first], own, [last]]))
     index = np.minimum(np.searchsorted([step.last for step in steps], whole), len(steps) - 1)
-    parts = [steps[k].between(whole[index == k]) for k in np.unique(index)]
-    return ChartStretch(steps[0].chart, whole, np.concatenate(parts, axis=1), np.isin(whole, own))
+    states, accelerations = [], []
+    for k in np.unique(index):
+        here = whole[index == k]
+        states.append(steps[k].between(here))
+        accelerations.append(steps[k].told(here, states[-1]))
+    whole_states, told = (np.concatenate(parts, axis=1) for parts in (states, accelerations))
+    return ChartStretch(steps[0].chart, whole, whole_states, told, np.isin(whole, own))

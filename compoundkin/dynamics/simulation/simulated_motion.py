@@ -50,7 +50,9 @@ def simulated_motion(stretches: list[ChartStretch]) -> Motion:
 
 
 def _alone(stretch: ChartStretch) -> Motion:
-    asked = replace(stretch, times=stretch.times[stretch.asked], states=stretch.states[:, stretch.asked])
+    some = stretch.asked
+    states, accelerations = stretch.states[:, some], stretch.accelerations[:, some]
+    asked = replace(stretch, times=stretch.times[some], states=states, accelerations=accelerations)
     return in_time(stretch.chart, asked.times, _moved(asked), first_configuration(stretch.chart.start, 0))
 
 
@@ -109,13 +111,12 @@ def _moved(stretch: ChartStretch) -> dict[str, Moved]:
     """Return how the free drivers move in a stretch."""
     chart, n = stretch.chart, len(stretch.chart.free)
     values, speeds = stretch.states[:n], stretch.states[n : 2 * n]
-    states = zip(stretch.times, values.T, speeds.T, strict=True)
-    rates = np.array([chart.told(t, q, v) for t, q, v in states])
+    rates = stretch.accelerations
     if not np.isfinite(rates).all():
-        late = stretch.times[np.argmin(np.isfinite(rates).all(axis=1))]
+        late = stretch.times[np.argmin(np.isfinite(rates).all(axis=0))]
         what = f"at {late:g} s the mechanism is at a limit position of its drivers, where their rates are not known"
         raise InvalidInput(Problem("until", what, "end before, or let other links be its drivers"))
-    return {name: (values[k], speeds[k], rates[:, k]) for k, name in enumerate(chart.free)}
+    return {name: (values[k], speeds[k], rates[k]) for k, name in enumerate(chart.free)}
 
 
 def in_time(chart: DriverChart, times: Number, moved: Mapping[str, Moved], first: Configuration | None) -> Motion:

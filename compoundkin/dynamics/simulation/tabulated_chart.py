@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -79,6 +80,16 @@ class TabulatedChart(DriverChart):
         block = Block((2, 1), self.ends, columns, {}, 1)
         at = loaded_state(self.start, block, time, 1, lambda pair, angle: self.turns_of(pair, angle, values))
         return [float(at.along(loads)[0]) for loads in self.others]
+
+    @property
+    def memory(self) -> tuple[Any, ...]:
+        """What keeps the configuration, the table among it."""
+        return (*super().memory, self.table, self.wraps)
+
+    def recall(self, memory: tuple[Any, ...]) -> None:
+        """Go back to a configuration that was kept."""
+        super().recall(memory)
+        self.table, self.wraps = memory[3:]
 
     def accept(self, time: float, values: Number, speeds: Number) -> None:
         """Follow the configuration to a state that is reached."""
