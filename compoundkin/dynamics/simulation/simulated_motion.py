@@ -23,6 +23,8 @@ from compoundkin.model.laws import motion_table
 
 # Accelerations are what forces take.
 ORDER = 2
+# So many coordinates are tried, the last ones first.
+TRIES = 3
 # Poses that two drivers tell agree within this part of the size.
 SAME = 1e-6
 # Value, speed and acceleration of a coordinate at times.
@@ -39,12 +41,15 @@ def simulated_motion(stretches: list[ChartStretch]) -> Motion:
     parts = [in_time(one.chart, one.times, _moved(one), first_configuration(one.chart.start, 0)) for one in stretches]
     times = np.concatenate([one.times[one.asked] for one in stretches])
     poses = _joined(parts, stretches)
-    tried = [_driven_by(one.chart, parts, stretches, times, poses) for one in reversed(stretches)]
-    good = [motion for motion, agrees in tried if agrees]
-    if good:
-        return good[0]
+    charts = {one.chart.free: one.chart for one in reversed(stretches)}
+    tried: list[Motion] = []
+    for chart in list(charts.values())[:TRIES]:
+        motion, agrees = _driven_by(chart, parts, stretches, times, poses)
+        if agrees:
+            return motion
+        tried.append(motion)
     # no coordinate is regular everywhere: each pose as it was found in the coordinate that was
-    motion = tried[0][0]
+    motion = tried[0]
     mended = motion.mended(np.zeros(len(times), dtype=int), np.arange(len(times)), poses)
     return replace(mended, failed=np.zeros_like(motion.failed))
 
