@@ -112,3 +112,37 @@ def test_forces_of_many_designs_need_little_memory() -> None:
 def test_solve(benchmark) -> None:  # type: ignore[no-untyped-def]
     plan = six_bar.mechanism()
     benchmark(lambda: ck.solve(plan, {"crank": TURN}, speed=six_bar.SPEED))
+
+
+def test_ten_seconds_of_a_four_bar_take_little_more_than_their_integration() -> None:
+    """Under a second on a quiet machine; told beside SciPy's own time for as many steps of a formula."""
+    from scipy.integrate import solve_ivp
+
+    units = {"length": "m", "mass": "kg", "force": "N"}
+    linkage = ck.Mechanism(
+        "Four-bar",
+        ck.link("frame", O=(0, 0), C=(0.2, 0)),
+        ck.link("crank", O=(0, 0), A=(0.06, 0)),
+        ck.link("coupler", A=(0, 0), B=(0.18, 0)),
+        ck.link("rocker", C=(0, 0), B=(0.12, 0)),
+        ck.drive("crank"),
+        ck.mass("crank", 1.0, at="O", inertia=0.004),
+        ck.mass("coupler", 0.8, at=(0.09, 0), inertia=0.003),
+        ck.mass("rocker", 1.0, at=(0.06, 0), inertia=0.005),
+        units=units,
+    )
+
+    def simulated() -> float:
+        return ck.simulate(linkage, start=(0.0, 20.0), until=10.0).energy.worst
+
+    def integrated() -> int:
+        # a pendulum that takes as many evaluations
+        found = solve_ivp(lambda t, y: np.array([y[1], -np.sin(y[0])]), (0, 365), [2.0, 0.0], "DOP853",
+                          rtol=1e-11, atol=1e-11, dense_output=True)  # fmt: skip
+        return int(found.nfev)
+
+    assert simulated() < 1e-8
+    assert abs(integrated() - ck.simulate(linkage, start=(0.0, 20.0), until=10.0).evaluations) < 2_000
+    times = interleaved({"ours": simulated, "scipy": integrated}, 5)
+    assert min(times["ours"]) < 1.0 * NOISE
+    assert ratio(times, "ours", "scipy") < 4.0 * NOISE
