@@ -28,6 +28,11 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.optional_answers import Drivable, as_accompanied, as_drivable
 
+# So many pairs are tried in a driver's place.
+TRIED = 4
+# The same pose, solved by other drivers, is the same within this part of the size.
+SAME_POSE = 1e-6
+
 
 class FastPair(NamedTuple):
     """A pair and how fast it moves by the scales. A driver moves at unit rate."""
@@ -37,9 +42,9 @@ class FastPair(NamedTuple):
     driver: str
 
 
-def fastest_pair(chart: DriverChart, state: DriverState) -> FastPair | None:
-    """Return the pair that moves fastest at unit rate of a free driver. None where none could be driven."""
-    return max(_pairs(chart, state), key=lambda found: found.ratio, default=None)
+def fastest_pairs(chart: DriverChart, state: DriverState) -> list[FastPair]:
+    """Return the pairs that move fastest at unit rate of a free driver. The very fastest comes first."""
+    return sorted(_pairs(chart, state), key=lambda found: -found.ratio)[:TRIED]
 
 
 def _pairs(chart: DriverChart, state: DriverState) -> Iterator[FastPair]:
@@ -74,10 +79,22 @@ def driven_there(chart: DriverChart, state: DriverState, fast: FastPair) -> tupl
             start = solve(
                 mechanism, {one: [value] for one, value in values.items()}, order=1, modes=_here(state, values)
             )
-        found = chart_of(start, free, chart.laws)
+        found = chart_of(start, free, chart.laws) if _is_same(start, state) else None
     except CompoundkinError:
         return None
+    if found is None:
+        return None
     return found, np.array([*(values[one] for one in free), *(speeds[one] for one in free)])
+
+
+def _is_same(start: Motion, state: DriverState) -> bool:
+    """Whether a motion of one pose is in the configuration of a state."""
+    here, there = (placed_at(poses, (0, 0)) for poses in (state.block.world, start.poses))
+    return all(
+        abs(one.z.c[0] - there[link].z.c[0]) < SAME_POSE * start.size
+        and abs(one.u.c[0] - there[link].u.c[0]) < SAME_POSE
+        for link, one in here.items()
+    )
 
 
 def _here(state: DriverState, values: dict[str, float]) -> Configuration:

@@ -13,7 +13,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.dynamics.simulation.coordinate_change import driven_there, fastest_pair
+from compoundkin.dynamics.simulation.coordinate_change import driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse, Step
 from compoundkin.dynamics.simulation.simulation_events import (
@@ -132,21 +132,19 @@ def _changed(chart: DriverChart, solver: Any, course: SimulatedCourse) -> tuple[
     if chart.is_regular(solver.y[:n]) and not stalls:
         return None
     here = chart.state(solver.t, solver.y[:n], solver.y[n : 2 * n])
-    fast = fastest_pair(chart, here)
-    if fast is None or (fast.ratio < FASTER and not stalls):
-        if stalls:
-            _ended(solver, course, "no pair moves on from here")
-        return None
+    fast = [one for one in fastest_pairs(chart, here) if one.ratio >= FASTER or stalls]
     is_new = course.last - course.changed > STALLED * course.until
-    found = driven_there(chart, here, fast) if is_new or not stalls else None
-    if found is None:
-        if fast.ratio > LIMIT or stalls:
-            _ended(solver, course, f"{fast.driver} comes to a limit position, and no other pair can take its place")
-        return None
-    course.changed = course.last
-    text = f"next to a limit position of {fast.driver}, {fast.pair.name} takes its place as the coordinate"
-    course.events.append(SimulationEvent(course.last, "coordinate", text, False))
-    return found[0], np.append(found[1], solver.y[-1])
+    for one in fast if is_new or not stalls else ():
+        found = driven_there(chart, here, one)
+        if found is not None:
+            course.changed = course.last
+            text = f"next to a limit position of {one.driver}, {one.pair.name} takes its place as the coordinate"
+            course.events.append(SimulationEvent(course.last, "coordinate", text, False))
+            return found[0], np.append(found[1], solver.y[-1])
+    if stalls or (fast and fast[0].ratio > LIMIT):
+        driver = fast[0].driver if fast else chart.free[0]
+        _ended(solver, course, f"{driver} comes to a limit position, and no other pair can take its place")
+    return None
 
 
 def _ended(solver: Any, course: SimulatedCourse, text: str) -> None:
