@@ -61,7 +61,7 @@ def loaded(draw: st.DrawFn) -> ck.Mechanism:
         ck.gravity(draw(st.floats(-20, 20)), -9.81),
         ck.force("coupler", draw(points), at="G", fixed_in=draw(st.sampled_from(["frame", "coupler", "rocker"]))),
         ck.force("C", (draw(amounts(*NAMED)), draw(amounts(*NAMED))), name="on the pin"),
-        ck.force("rocker", draw(points), at=draw(points), while_moving=draw(points)),
+        ck.force("rocker", draw(points), at=draw(points), while_moving=draw(points.filter(any))),
         ck.torque("rocker", draw(amounts(*NAMED))),
         ck.effort("stroke", draw(amounts("", *NAMED)), only=draw(st.sampled_from([None, "forward", "back"]))),
         ck.effort("crank", draw(amounts("", *NAMED))),
