@@ -20,6 +20,7 @@ from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pin_pairs import meant_pair, pairs_like
 from compoundkin.model.units import Units
+from compoundkin.structure.kinematic_structure import Structure
 
 
 @dataclass(frozen=True)
@@ -134,10 +135,7 @@ class LoadedBlock:
 
     def freed(self, link: str, wrench: Wrench) -> Wrench:
         """Return a wrench on a link. What would turn a link that turns freely, such as a roller, is left aside."""
-        for spin in self.motion.structure.passive:
-            if spin.link == link:
-                return Wrench.at(self.place(link, spin.at).c[0], wrench.force)
-        return wrench
+        return freed(self.motion.structure, self.block, link, wrench)
 
     def weight(self, mass: Mass) -> Wrench:
         """Return the weight of a link."""
@@ -157,6 +155,16 @@ class LoadedBlock:
         turning = self.block.world[mass.link].u
         spin = _angular_acceleration(turning) * (self.fitted(mass.inertia) * -factor)
         return Wrench.at(centre.c[0], pull, spin)
+
+
+def freed(structure: Structure, block: Block, link: str, wrench: Wrench) -> Wrench:
+    """Return a wrench on a link. What would turn a link that turns freely is left aside."""
+    if not any(spin.link == link for spin in structure.passive):
+        return wrench
+    spun = (step for body in structure.bodies for step in body.driven if step.is_passive)
+    pin = next(step.pair for step in spun if step.drive.link == link)
+    end = block.ends[pin.name][pin.members.index(link)]
+    return Wrench.at(block.world[link].at(end.point).c[0], wrench.force)
 
 
 def loaded_blocks(motion: Motion) -> Iterator[LoadedBlock]:

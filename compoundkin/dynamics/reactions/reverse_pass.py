@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from compoundkin.base.wrenches import Wrench
-from compoundkin.dynamics.loaded_block import LoadedBlock
+from compoundkin.dynamics.loaded_block import LoadedBlock, freed
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import FRAME
@@ -67,7 +67,9 @@ def reverse_pass(order: SolvingOrder, block: Block, loads: Mapping[str, Wrench])
     They are linear in the loads: without those that come with others and do no work.
     """
     block = block.leading()
-    on, found = _freed(order, block, loads), dict[str, Wrench]()
+    # what would turn rollers is left aside
+    on = {link: freed(order.structure, block, link, wrench) for link, wrench in loads.items()}
+    found: dict[str, Wrench] = {}
     for solver in reversed(order.solvers):
         own = solver.reactions(block, on)
         for pair in (*solver.group.inner, *solver.group.outer):
@@ -77,18 +79,6 @@ def reverse_pass(order: SolvingOrder, block: Block, loads: Mapping[str, Wrench])
             _cut_at_drivers(body, on, found)
     _cut_at_drivers(order.structure.ground, on, found)
     return Reactions(found, on.get(FRAME, Wrench()))
-
-
-def _freed(order: SolvingOrder, block: Block, loads: Mapping[str, Wrench]) -> dict[str, Wrench]:
-    """Return the loads, those of links that turn freely as forces at their pins. What would turn them is left aside."""
-    found = dict(loads)
-    free = {spin.link for spin in order.structure.passive}
-    for body in order.structure.bodies if free else ():
-        for step in body.driven:
-            for link, end in zip(step.pair.members, block.ends[step.pair.name], strict=True) if step.is_passive else ():
-                if link in free and link in found:
-                    found[link] = Wrench.at(block.world[link].at(end.point).c[0], found[link].force)
-    return found
 
 
 def _add(on: dict[str, Wrench], pair: Pair, wrench: Wrench) -> None:

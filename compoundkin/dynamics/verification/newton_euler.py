@@ -65,8 +65,7 @@ def resistance(forces: FoundForces, mass: Mass) -> Wrench:
     """
     motion, mechanism = forces.motion, forces.motion.mechanism
     pose, units = motion.poses[mass.link], forces.units
-    at = mechanism.geometry.points[mass.link][mass.at] if isinstance(mass.at, str) else mass.at
-    arm = pose.u.c[0] * given_over(motion, at)
+    arm = pose.u.c[0] * given_over(motion, mechanism.mass_centre(mass))
     heavy = given_over(motion, mass.mass) * units.inertia
     force, moment = -heavy * mechanism.gravity * units.metre, 0.0
     free = {spin.link for spin in motion.structure.passive}

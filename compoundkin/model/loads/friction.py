@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Self
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number
-from compoundkin.model.fields import DeclaredKeys, value_key
+from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.along_pair import renamed_pair
-from compoundkin.model.loads.contract import NO_NAMES, WrittenNames
+from compoundkin.model.loads.contract import WrittenNames
+from compoundkin.model.loads.pair_property import PairProperty
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Friction(PrintsShort):
+class Friction(PairProperty):
     """Coulomb friction in a pair, or in all pairs of a multiple pin."""
 
     pair: str = field(metadata=value_key("name", "The pair by its name, or the letter of a pin."))
@@ -32,23 +31,13 @@ class Friction(PrintsShort):
 
     title: ClassVar[str] = "friction"
     table: ClassVar[str] = "frictions"
-    keys = DeclaredKeys()
-
-    @property
-    def name(self) -> str:
-        """The name of its pair."""
-        return self.pair
-
-    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
-        """Return it in a pair of another name."""
-        return replace(self, pair=renamed_pair(self.pair, links, coordinates))
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
         """Find an unknown pair, a pin without a radius, and what is negative."""
         several = written.at_pin(self.pair)
         pair = written.pair(several[0] if several else self.pair)
         if pair is None:
-            yield Problem(f"{where}.pair", f"there is no pair {self.pair!r}", nearest(self.pair, written.pairs))
+            yield from self.unknown(written, where)
         elif not set(written.carriers.get(pair.letters[0], ())) <= set(written.letters) and pair.is_simple:
             what = f"the pin {pair.letters[0]} is led: what presses there is not known"
             yield Problem(f"{where}.pair", what, "leave it out")

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Self
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import Problem, nearest
+from compoundkin.base.errors import Problem
 from compoundkin.base.series import Number
-from compoundkin.model.fields import DeclaredKeys, value_key
+from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.along_pair import renamed_pair
-from compoundkin.model.loads.contract import NO_NAMES, WrittenNames
+from compoundkin.model.loads.contract import WrittenNames
+from compoundkin.model.loads.pair_property import PairProperty
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Pretension(PrintsShort):
+class Pretension(PairProperty):
     """The pretension of a belt. It is half the sum of the forces in its strands."""
 
     pair: str = field(metadata=value_key("name", "The belt, by the name of its pair."))
@@ -27,22 +26,12 @@ class Pretension(PrintsShort):
 
     title: ClassVar[str] = "pretension"
     table: ClassVar[str] = "pretensions"
-    keys = DeclaredKeys()
-
-    @property
-    def name(self) -> str:
-        """The name of its belt."""
-        return self.pair
-
-    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_NAMES) -> Self:
-        """Return it in a pair of another name."""
-        return replace(self, pair=renamed_pair(self.pair, links, coordinates))
 
     def problems(self, written: WrittenNames, where: str) -> Iterator[Problem]:
         """Find an unknown pair, or one without strands; a belt that pushes."""
         pair = written.pair(self.pair)
         if pair is None:
-            yield Problem(f"{where}.pair", f"there is no pair {self.pair!r}", nearest(self.pair, written.pairs))
+            yield from self.unknown(written, where)
         elif self.title not in pair.takes:
             yield Problem(f"{where}.pair", f"{self.pair!r} is a {pair.title}, which has no strands", "name a belt")
         if np.any(np.asarray(self.force) < 0.0):
