@@ -1,0 +1,1 @@
+"""Graphs of real operations: what is recorded, folded, cut into strata, and read by every back end."""

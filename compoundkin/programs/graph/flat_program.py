@@ -1,0 +1,100 @@
+"""A flat program: the operations that some outputs need, cut by what fixes them: the design, the pose, or both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.graph.operations import CONSTANT, INPUT
+
+# Strata: by which axes of (designs, poses) a value varies. What is given as one number counts as fixed by the design.
+FIXED_NUMBER, BY_DESIGN, BY_POSE, BY_BOTH = 0, 1, 2, 3
+
+
+@dataclass(frozen=True, repr=False)
+class Carried(PrintsShort):
+    """A number carried from pose to pose along the motion, designs side by side (a march).
+
+    At a design's first pose the input node `given` has its value `start` (an input by design); at any other pose the
+    value that the node `next` had at the pose before.
+    """
+
+    given: int
+    start: int
+    next: int
+
+
+@dataclass(frozen=True, repr=False)
+class FlatProgram(PrintsShort):
+    """What a back end computes. All sequences hold node indices of `graph`, in an order that can be computed.
+
+    `before` is computed once a design, `by_pose` once a pose for all designs, `loop` at every design and pose (with the
+    reductions, whose values are complete after a design's last pose), `after` once a design from reductions.
+    `inputs` and `outputs` are the nodes read and asked for; `strata[node]` tells the shape (1 or designs, 1 or poses)
+    of their arrays. An output may be an input or a constant. With `carried` numbers poses come one after another.
+    """
+
+    graph: OperationGraph
+    strata: Mapping[int, int]
+    inputs: tuple[int, ...]
+    before: tuple[int, ...]
+    by_pose: tuple[int, ...]
+    loop: tuple[int, ...]
+    after: tuple[int, ...]
+    outputs: tuple[int, ...]
+    carried: tuple[Carried, ...] = ()
+
+    def shape(self, node: int, designs: int, poses: int) -> tuple[int, int]:
+        """Return the shape of a node's array."""
+        stratum = self.strata[node]
+        return designs if stratum & BY_DESIGN else 1, poses if stratum & BY_POSE else 1
+
+
+def flat_program(
+    graph: OperationGraph,
+    outputs: Sequence[int],
+    given: Mapping[InputNumber, int],
+    carried: Sequence[Carried] = (),
+) -> FlatProgram:
+    """Cut what some outputs need into its parts. `given` tells the stratum of each input.
+
+    >>> graph = OperationGraph()
+    >>> x, a = InputNumber("drive", "crank", "0"), InputNumber("dimension", "crank.B", "x")
+    >>> place = graph.apply("mul", graph.input(a), graph.apply("cos", graph.input(x)))
+    >>> flat = flat_program(graph, [place], {x: BY_POSE, a: BY_DESIGN})
+    >>> [len(part) for part in (flat.before, flat.by_pose, flat.loop, flat.after)]
+    [0, 1, 1, 0]
+    """
+    wanted = (*outputs, *(k for one in carried for k in (one.start, one.next)))
+    needed = graph.needed(wanted)
+    strata: dict[int, int] = {}
+    late: set[int] = set()  # what depends on a reduction
+    for k in needed:
+        node = graph.nodes[k]
+        if node.operation == INPUT:
+            assert node.given is not None
+            strata[k] = given[node.given]
+        elif graph.reduced(k):
+            strata[k] = BY_DESIGN
+        else:
+            strata[k] = int(np.bitwise_or.reduce([strata[n] for n in node.operands], initial=FIXED_NUMBER))
+        if any(n in late or graph.reduced(n) for n in node.operands):
+            late.add(k)
+    work = [k for k in needed if graph.nodes[k].operation not in (CONSTANT, INPUT)]
+    reductions = {k for k in work if graph.reduced(k)}
+    fixed = [k for k in work if not strata[k] & BY_POSE and k not in reductions]
+    return FlatProgram(
+        graph,
+        strata,
+        tuple(k for k in needed if graph.nodes[k].operation == INPUT),
+        tuple(k for k in fixed if k not in late),
+        tuple(k for k in work if strata[k] == BY_POSE),
+        tuple(k for k in work if strata[k] == BY_BOTH or k in reductions),
+        tuple(k for k in fixed if k in late),
+        tuple(outputs),
+        tuple(carried),
+    )
