@@ -17,8 +17,8 @@ from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, R
 class InputNumber:
     """One real number that a program is given: its kind, what it is of, and which part of that.
 
-    Kinds: `dimension` ("crank.D", "x"), `drive` ("crank", "0" value, "1" speed, "2" acceleration, "3" jerk), `seed` (what
-    a host step finds: signs, counted turns, states of general groups), `parameter` (of an objective).
+    Kinds: `dimension` ("crank.D", part "x" or "y"), `drive` ("crank", part "0" value, "1" speed, "2" acceleration, "3"
+    jerk), `seed` (found outside: signs, counted turns, states of general groups), `parameter` (of an objective).
     """
 
     kind: str

@@ -1,6 +1,6 @@
 """Numbers that record: real, complex or true-or-false, taken by every kernel for ordinary coefficients.
 
-NumPy's functions are answered by the protocols `__array_ufunc__` and `__array_function__`, so that kernels need not know
+NumPy's functions are answered by the protocols `__array_ufunc__` and `__array_function__`, so that kernels know nothing
 of recording. What is asked of all poses at once (`np.any`, `np.all`) is answered yes: of two branches the general one
 is recorded. A recorded number has no truth value, no length and no shape but ().
 """

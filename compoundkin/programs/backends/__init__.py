@@ -1,0 +1,1 @@
+"""Back ends: what computes a flat program; the first that is installed is taken."""
