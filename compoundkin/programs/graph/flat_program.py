@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-
-import numpy as np
+from functools import reduce
+from operator import or_
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
@@ -71,18 +71,10 @@ def flat_program(
     """
     wanted = (*outputs, *(k for one in carried for k in (one.start, one.next)))
     needed = graph.needed(wanted)
-    strata: dict[int, int] = {}
+    strata = node_strata(graph, needed, given)
     late: set[int] = set()  # what depends on a reduction
     for k in needed:
-        node = graph.nodes[k]
-        if node.operation == INPUT:
-            assert node.given is not None
-            strata[k] = given[node.given]
-        elif graph.reduced(k):
-            strata[k] = BY_DESIGN
-        else:
-            strata[k] = int(np.bitwise_or.reduce([strata[n] for n in node.operands], initial=FIXED_NUMBER))
-        if any(n in late or graph.reduced(n) for n in node.operands):
+        if any(n in late or graph.reduced(n) for n in graph.nodes[k].operands):
             late.add(k)
     work = [k for k in needed if graph.nodes[k].operation not in (CONSTANT, INPUT)]
     reductions = {k for k in work if graph.reduced(k)}
@@ -98,3 +90,18 @@ def flat_program(
         tuple(outputs),
         tuple(carried),
     )
+
+
+def node_strata(graph: OperationGraph, nodes: Sequence[int], given: Mapping[InputNumber, int]) -> dict[int, int]:
+    """Return the strata of some nodes and of all that they are computed from, which come first."""
+    strata: dict[int, int] = {}
+    for k in nodes:
+        node = graph.nodes[k]
+        if node.operation == INPUT:
+            assert node.given is not None
+            strata[k] = given[node.given]
+        elif graph.reduced(k):
+            strata[k] = BY_DESIGN
+        else:
+            strata[k] = reduce(or_, (strata[n] for n in node.operands), FIXED_NUMBER)
+    return strata

@@ -33,6 +33,17 @@ def _add(graph: OperationGraph, a: int, b: int) -> int | None:
         minus = _inner(graph, one, "neg")
         if minus is not None:
             return graph.apply("sub", other, minus)
+    return _joined(graph, a, b)
+
+
+def _joined(graph: OperationGraph, a: int, b: int) -> int | None:
+    """Return the sum of what is chosen where a truth is and what is chosen where it is not, as one choice."""
+    for one, other in ((a, b), (b, a)):
+        x, y = graph.nodes[one], graph.nodes[other]
+        if x.operation == y.operation == "select" and x.operands[0] == y.operands[0]:
+            truth, here, there = x.operands[0], x.operands[1], y.operands[2]
+            if graph.is_constant(x.operands[2], 0.0) and graph.is_constant(y.operands[1], 0.0):
+                return graph.apply("select", truth, here, there)
     return None
 
 
