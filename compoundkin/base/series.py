@@ -162,7 +162,7 @@ class Series:
         for k in range(1, len(rates)):
             terms = [(1j * j / k * rates[j]) * out[k - j] for j in range(1, k + 1) if not is_number(rates[j], 0)]
             out.append(sum(terms[1:], terms[0]) if terms else 0j)
-        return Series(tuple([x if isinstance(x, np.ndarray) else complex(x) for x in out]))
+        return Series(tuple([complex(x) if isinstance(x, (float, int)) else x for x in out]))
 
     def angle(self) -> Series:
         """Return the angle of a unit vector, its leading coefficient between -pi and pi."""

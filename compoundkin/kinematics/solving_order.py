@@ -27,10 +27,11 @@ from compoundkin.structure.parts import DrivenPair
 class SolvingOrder(PrintsShort):
     """The order in which a structure is solved.
 
-    First come the driven links of the frame, then the solvers of its groups.
+    First come the driven links of the frame, then the solvers of its groups. `ends` are the pairs' sides and the ends
+    of guides where these are not the mechanism's own numbers but stand for them.
     """
 
-    def __init__(self, structure: Structure) -> None:
+    def __init__(self, structure: Structure, ends: Mapping[str, Ends] | None = None) -> None:
         self.structure = structure
         geometry = structure.mechanism.geometry
         self.size = geometry.size
@@ -40,14 +41,15 @@ class SolvingOrder(PrintsShort):
         for body in self.structure.bodies:
             pairs.update({d.pair.name: d.pair for d in body.driven})
         self.pairs = pairs
-        self.ends: dict[str, Ends] = {name: pair.ends(geometry) for name, pair in pairs.items()}
+        self.guide_ends = GuideEnds(structure, self.size)
+        own = None if ends is not None else self.guide_ends.bounds(geometry)
+        self.ends: dict[str, Ends] = dict(ends or {name: pair.ends(geometry) for name, pair in pairs.items()})
         self.solvers: tuple[GroupSolver, ...] = tuple(
             solver_of(k, group, self.size, self.ends) for k, group in enumerate(structure.groups)
         )
         for solver in self.solvers:
             self.ends.update(solver.ends)
-        self.guide_ends = GuideEnds(structure, self.size)
-        self.ends.update(self.guide_ends.bounds(geometry))
+        self.ends.update(own or {})
 
     @cached_property
     def turning(self) -> frozenset[str]:

@@ -17,7 +17,9 @@ FIXED_NUMBER, BY_DESIGN, BY_POSE, BY_BOTH = 0, 1, 2, 3
 
 @dataclass(frozen=True, repr=False)
 class Carried(PrintsShort):
-    """A number carried from pose to pose along the motion, designs side by side (a march).
+    """A number carried from pose to pose along the motion.
+
+    Designs go side by side, a march.
 
     At a design's first pose the input node `given` has its value `start` (an input by design); at any other pose the
     value that the node `next` had at the pose before.
@@ -60,7 +62,7 @@ def flat_program(
     given: Mapping[InputNumber, int],
     carried: Sequence[Carried] = (),
 ) -> FlatProgram:
-    """Cut what some outputs need into its parts. `given` tells the stratum of each input.
+    """Cut what some outputs need into its parts. `given` tells each input's stratum.
 
     >>> graph = OperationGraph()
     >>> x, a = InputNumber("drive", "crank", "0"), InputNumber("dimension", "crank.B", "x")
@@ -71,11 +73,7 @@ def flat_program(
     """
     wanted = (*outputs, *(k for one in carried for k in (one.start, one.next)))
     needed = graph.needed(wanted)
-    strata = node_strata(graph, needed, given)
-    late: set[int] = set()  # what depends on a reduction
-    for k in needed:
-        if any(n in late or graph.reduced(n) for n in graph.nodes[k].operands):
-            late.add(k)
+    strata, late = node_strata(graph, needed, given), _late(graph, needed)
     work = [k for k in needed if graph.nodes[k].operation not in (CONSTANT, INPUT)]
     reductions = {k for k in work if graph.reduced(k)}
     fixed = [k for k in work if not strata[k] & BY_POSE and k not in reductions]
@@ -105,3 +103,12 @@ def node_strata(graph: OperationGraph, nodes: Sequence[int], given: Mapping[Inpu
         else:
             strata[k] = reduce(or_, (strata[n] for n in node.operands), FIXED_NUMBER)
     return strata
+
+
+def _late(graph: OperationGraph, needed: Sequence[int]) -> set[int]:
+    """Return the nodes that depend on a reduction."""
+    late: set[int] = set()
+    for k in needed:
+        if any(n in late or graph.reduced(n) for n in graph.nodes[k].operands):
+            late.add(k)
+    return late

@@ -9,13 +9,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from compoundkin.base.display import PrintsShort
-from compoundkin.programs.graph.folding import folded
 from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, REDUCTIONS
+from compoundkin.programs.graph.simpler_forms import folded
 
 
 @dataclass(frozen=True)
 class InputNumber:
-    """One real number that a program is given: its kind, what it is of, and which part of that.
+    """One real number that a program is given.
+
+    It has its kind, what it is of, and which part of that.
 
     Kinds: `dimension` ("crank.D", part "x" or "y"), `drive` ("crank", part "0" value, "1" speed, "2" acceleration, "3"
     jerk), `seed` (found outside: signs, counted turns, states of general groups), `parameter` (of an objective).
@@ -38,7 +40,7 @@ class OperationNode:
 
 @dataclass
 class OperationGraph(PrintsShort):
-    """Nodes in the order in which they were made, so that operands come first; equal nodes are one.
+    """Nodes in the order in which they were made. Operands come first; equal nodes are one.
 
     >>> graph = OperationGraph()
     >>> x = graph.input(InputNumber("drive", "crank", "0"))
@@ -59,7 +61,7 @@ class OperationGraph(PrintsShort):
         return self._once((INPUT, given), OperationNode(INPUT, given=given))
 
     def apply(self, operation: str, *operands: int) -> int:
-        """Return the node of an operation, or a simpler one that has the same value."""
+        """Return the node of an operation, or a simpler one of the same value."""
         known = [self.nodes[k] for k in operands]
         if operation in OPERATIONS:
             if all(node.operation == CONSTANT for node in known):

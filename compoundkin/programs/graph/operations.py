@@ -11,9 +11,10 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Operation:
-    """One operation: how many operands it has, how NumPy computes it, and whether it answers true or false.
+    """One operation.
 
-    A `ufunc` can write into a row given. Truths are held as booleans by NumPy; other back ends choose.
+    How many operands it has, how NumPy computes it, and whether it answers true or false. Truths are held as booleans
+    by NumPy; other back ends choose.
     """
 
     name: str

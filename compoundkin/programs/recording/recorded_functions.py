@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
 
-def _named(operation: str) -> Callable[..., RecordedNumber]:
+def _named(operation: str) -> Callable[..., Any]:
     """Return the function that records one operation on real numbers."""
 
     def recorded(*operands: RecordedNumber) -> RecordedNumber:
@@ -21,11 +21,11 @@ def _named(operation: str) -> Callable[..., RecordedNumber]:
     return recorded
 
 
-def _tan(angle: RecordedNumber) -> RecordedNumber:
+def _tan(angle: RecordedNumber) -> Any:
     return _named("sin")(angle) / _named("cos")(angle)
 
 
-def _exp(x: RecordedNumber) -> RecordedNumber:
+def _exp(x: RecordedNumber) -> Any:
     size = _named("exp")(x.real)
     return size if x.y is None else size * (_named("cos")(x.imag) + 1j * _named("sin")(x.imag))
 
@@ -34,15 +34,15 @@ def _sign(x: RecordedNumber) -> RecordedNumber:
     return _where(x, x > 0.0, 1.0, _where(x, x < 0.0, -1.0, x))
 
 
-def _finite(x: RecordedNumber) -> RecordedNumber:
+def _finite(x: RecordedNumber) -> Any:
     return abs(x) < np.inf
 
 
-def _square(x: RecordedNumber) -> RecordedNumber:
+def _square(x: RecordedNumber) -> Any:
     return x * x
 
 
-def _remainder(x: RecordedNumber, period: RecordedNumber) -> RecordedNumber:
+def _remainder(x: RecordedNumber, period: RecordedNumber) -> Any:
     return x - period * _named("floor")(x / period)
 
 
@@ -121,11 +121,11 @@ def _same(like: RecordedNumber, value: Any, *args: Any, **options: Any) -> Any:
     return value
 
 
-def _angle(like: RecordedNumber, z: RecordedNumber, deg: bool = False) -> RecordedNumber:
+def _angle(like: RecordedNumber, z: RecordedNumber, deg: bool = False) -> Any:
     return _named("atan2")(z.imag, z.real)
 
 
-def _round(like: RecordedNumber, value: RecordedNumber, decimals: int = 0) -> RecordedNumber:
+def _round(like: RecordedNumber, value: RecordedNumber, decimals: int = 0) -> Any:
     return _named("rint")(value)
 
 

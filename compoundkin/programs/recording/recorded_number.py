@@ -7,16 +7,18 @@ is recorded. A recorded number has no truth value, no length and no shape but ()
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from compoundkin.programs.graph.operation_graph import OperationGraph
+from compoundkin.programs.recording.numpy_answers import NumpyAnswers
 
 
-class RecordedNumber:
-    """A real number (`y` is None), a complex one, or a truth, as nodes of a graph.
+class RecordedNumber(NumpyAnswers):
+    """A real number, a complex one, or a truth, as nodes of a graph.
+
+    A real number has no `y`.
 
     >>> from compoundkin.programs.graph.operation_graph import InputNumber
     >>> x = RecordedNumber.given(OperationGraph(), InputNumber("drive", "crank", "0"))
@@ -25,6 +27,7 @@ class RecordedNumber:
     """
 
     __slots__ = ("graph", "x", "y")
+    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, graph: OperationGraph, x: int, y: int | None = None) -> None:
         self.graph, self.x, self.y = graph, x, y
@@ -43,14 +46,18 @@ class RecordedNumber:
         if isinstance(value, (bool, np.bool_)):
             return RecordedNumber(self.graph, self.graph.constant(float(value)))
         if isinstance(value, complex | np.complexfloating):
-            return RecordedNumber(self.graph, self.graph.constant(value.real), self.graph.constant(value.imag))
+            return RecordedNumber(
+                self.graph, self.graph.constant(float(value.real)), self.graph.constant(float(value.imag))
+            )
         return RecordedNumber(self.graph, self.graph.constant(float(value)))
 
-    def _of(self, operation: str, *operands: int) -> RecordedNumber:
+    def of(self, operation: str, *operands: int) -> RecordedNumber:
+        """Return the number that an operation on nodes gives."""
         return RecordedNumber(self.graph, self.graph.apply(operation, *operands))
 
-    def _y(self) -> int:
-        return self.graph.constant(0.0) if self.y is None else self.y
+    def part(self, index: int) -> int:
+        """Return the node of the real (0) or imaginary (1) part."""
+        return (self.x, self.graph.constant(0.0) if self.y is None else self.y)[index]
 
     # --- arithmetic ---
 
@@ -58,7 +65,9 @@ class RecordedNumber:
         b = self.like(other)
         x = self.graph.apply(operation, self.x, b.x)
         return RecordedNumber(
-            self.graph, x, None if self.y is None and b.y is None else self.graph.apply(operation, self._y(), b._y())
+            self.graph,
+            x,
+            None if self.y is None and b.y is None else self.graph.apply(operation, self.part(1), b.part(1)),
         )
 
     def __add__(self, other: Any) -> Any:
@@ -94,7 +103,7 @@ class RecordedNumber:
         """Return one divided by it, shared by all quotients."""
         put = self.graph.apply
         if self.y is None:
-            return self._of("inv", self.x)
+            return self.of("inv", self.x)
         length2 = put("inv", put("add", put("mul", self.x, self.x), put("mul", self.y, self.y)))
         return RecordedNumber(self.graph, put("mul", self.x, length2), put("neg", put("mul", self.y, length2)))
 
@@ -114,14 +123,14 @@ class RecordedNumber:
 
     def __abs__(self) -> RecordedNumber:
         if self.y is None:
-            return self._of("abs", self.x)
+            return self.of("abs", self.x)
         put = self.graph.apply
-        return self._of("sqrt", put("add", put("mul", self.x, self.x), put("mul", self.y, self.y)))
+        return self.of("sqrt", put("add", put("mul", self.x, self.x), put("mul", self.y, self.y)))
 
     def __pow__(self, exponent: Any) -> RecordedNumber:
         whole = int(exponent)
         if exponent == 0.5:
-            return self._of("sqrt", self.x)
+            return self.of("sqrt", self.x)
         if whole != exponent or whole < 0:
             raise TypeError("only powers with whole exponents, and square roots, can be recorded")
         found = self.like(1.0)
@@ -139,7 +148,7 @@ class RecordedNumber:
     @property
     def imag(self) -> RecordedNumber:
         """The imaginary part."""
-        return RecordedNumber(self.graph, self._y())
+        return RecordedNumber(self.graph, self.part(1))
 
     def conjugate(self) -> RecordedNumber:
         """Return the complex conjugate."""
@@ -156,63 +165,6 @@ class RecordedNumber:
     def dtype(self) -> Any:
         """What arrays of such numbers hold."""
         return np.dtype(bool if self.graph.is_truth(self.x) else float if self.y is None else complex)
-
-    # --- truths ---
-
-    def __ge__(self, other: Any) -> RecordedNumber:
-        return self._of("ge", self.x, self.like(other).x)
-
-    def __gt__(self, other: Any) -> RecordedNumber:
-        return self._of("gt", self.x, self.like(other).x)
-
-    def __le__(self, other: Any) -> RecordedNumber:
-        return self._of("ge", self.like(other).x, self.x)
-
-    def __lt__(self, other: Any) -> RecordedNumber:
-        return self._of("gt", self.like(other).x, self.x)
-
-    def __eq__(self, other: Any) -> Any:
-        b = self.like(other)
-        same = self._of("eq", self.x, b.x)
-        return same if self.y is None and b.y is None else same & self._of("eq", self._y(), b._y())
-
-    def __ne__(self, other: Any) -> Any:
-        return ~(self == other)
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __and__(self, other: Any) -> RecordedNumber:
-        return self._of("and", self.x, self.like(other).x)
-
-    def __or__(self, other: Any) -> RecordedNumber:
-        return self._of("or", self.x, self.like(other).x)
-
-    __rand__, __ror__ = __and__, __or__
-
-    def __invert__(self) -> RecordedNumber:
-        return self._of("not", self.x)
-
-    def __bool__(self) -> bool:
-        raise TypeError("a recorded number has no truth value: kernels are straight-line arithmetic")
-
-    def __float__(self) -> float:
-        raise TypeError("a recorded number is no float: kernels are straight-line arithmetic")
-
-    # --- NumPy's functions ---
-
-    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        from compoundkin.programs.recording.recorded_functions import UFUNCS
-
-        found = UFUNCS.get(ufunc)
-        if method != "__call__" or options or found is None:
-            return NotImplemented
-        return found(*(self.like(value) for value in inputs))
-
-    def __array_function__(self, function: Callable[..., Any], types: Any, args: Any, options: Any) -> Any:
-        from compoundkin.programs.recording.recorded_functions import FUNCTIONS
-
-        found = FUNCTIONS.get(function)
-        return NotImplemented if found is None else found(self, *args, **options)
 
     def __repr__(self) -> str:
         kind = "truth" if self.graph.is_truth(self.x) else "real" if self.y is None else "complex"

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def folded(graph: OperationGraph, operation: str, operands: tuple[int, ...]) -> int | None:
-    """Return a node of the same value that is cheaper; None where there is none.
+    """Return a cheaper node of the same value; None where there is none.
 
     A product with the number zero is zero: what is not a number there is masked by the group that failed.
     """

@@ -1,0 +1,85 @@
+"""The numbers of one call: drivers' values and rates, free dimensions, as inputs of a program."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.kinematics.driver_values import by_name, inputs
+from compoundkin.kinematics.inputs import fit
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.geometry import vector
+from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
+from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.graph.operations import INPUT
+from compoundkin.programs.recording.recorded_mechanism import DIMENSION, DRIVE
+
+
+@dataclass(frozen=True)
+class CallNumbers:
+    """The inputs of a call by what they are.
+
+    Each is a float array (1 or designs, 1 or poses); `shape` is that of the call's arrays.
+    """
+
+    given: Mapping[InputNumber, Number]
+    shape: tuple[int, ...]
+    still: frozenset[tuple[str, int]]
+
+    @property
+    def extent(self) -> tuple[int, int]:
+        """Designs x poses."""
+        return prod(self.shape[:-1]), self.shape[-1] if self.shape else 1
+
+    @property
+    def form(self) -> Any:
+        """What a program depends on: which rates are zero, and how each input varies."""
+        return self.still, tuple(_stratum(array) for array in self.given.values())
+
+    def strata(self, graph: OperationGraph) -> dict[InputNumber, int]:
+        """Return how each input varies; what is found outside varies by both."""
+        known = {given: _stratum(array) for given, array in self.given.items()}
+        every = (node.given for node in graph.nodes if node.operation == INPUT and node.given)
+        return {given: known.get(given, BY_DESIGN | BY_POSE) for given in every}
+
+    def arrays(self, flat: FlatProgram) -> list[Any]:
+        """Return the arrays that a program reads."""
+        return [self.given[flat.graph.nodes[k].given] for k in flat.inputs]  # type: ignore[index]
+
+
+def _stratum(array: Number) -> int:
+    return (BY_DESIGN if array.shape[0] > 1 else 0) | (BY_POSE if array.shape[1] > 1 else 0)
+
+
+def call_numbers(
+    order: SolvingOrder,
+    free: Sequence[str],
+    values: Any,
+    dimensions: Mapping[str, Any] | None,
+    rates: Mapping[str, Any],
+) -> CallNumbers:
+    """Return the numbers of a call; raises InvalidInput for what does not fit."""
+    values = by_name(order.structure.mechanism, values)
+    driven = inputs(order, values, rates["speed"], rates["acceleration"], rates["jerk"], None)
+    own = order.structure.mechanism.geometry.points
+    found = {}
+    for name in free:
+        link, _, letter = name.partition(".")
+        found[name] = vector(name, (dimensions or {}).get(name, own[link][letter]))
+    shape = np.broadcast_shapes(driven.shape, *(np.shape(v) for v in found.values()))
+    still = frozenset((name, k) for name, vs in driven.drives.items() for k, v in enumerate(vs) if k and np.all(v == 0))
+    fitted = fit(shape)
+    given: dict[InputNumber, Number] = {}
+    for name, place in found.items():
+        whole = np.atleast_2d(fitted(place))
+        given[InputNumber(DIMENSION, name, "x")] = np.asarray(whole.real, float)
+        given[InputNumber(DIMENSION, name, "y")] = np.asarray(whole.imag, float)
+    for name, numbers in driven.drives.items():
+        for k, value in enumerate(numbers):
+            given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.asarray(fitted(value), float))
+    return CallNumbers(given, shape, still)

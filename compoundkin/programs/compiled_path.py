@@ -1,0 +1,136 @@
+"""A compiled path: chosen outputs of a mechanism as a function of its drivers and free dimensions."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.display import PrintsShort
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solution import solve
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.programs.call_numbers import CallNumbers, call_numbers
+from compoundkin.programs.path_values import PathValues
+from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
+from compoundkin.programs.recording.recorded_mechanism import Recording
+from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
+from compoundkin.structure.kinematic_structure import Structure
+
+
+@checked
+def compile(
+    mechanism: Mechanism | Structure,
+    outputs: str | Sequence[str],
+    *,
+    free: str | Sequence[str] = (),
+    values: Any = None,
+    modes: Any = None,
+    hint: Mapping[str, Any] | None = None,
+    backend: str | None = None,
+) -> CompiledPath:
+    """Return a fast function of drivers and free dimensions of a mechanism.
+
+    `outputs` are quantities by name ("G.position", "bar.angle"), `free` the dimensions that every call may change
+    ("crank.D" a point of a link). The assembly modes are those that `solve` takes for the mechanism as it stands, at
+    its own driver values or `values`, or with `modes` and `hint`; they are kept for all designs. Raises UnknownName for
+    what there is not, and what `solve` raises.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+    >>> two, path = np.array([[1.0], [2.0]]), compile(crank, "B.velocity.length", free="crank.B")
+    >>> path([0.0, 1.0], {"crank.B": two}, speed=3.0)["B.velocity.length"][:, 0].tolist()
+    [3.0, 6.0]
+    """
+    names = (outputs,) if isinstance(outputs, str) else tuple(outputs)
+    dimensions = (free,) if isinstance(free, str) else tuple(free)
+    with warnings.catch_warnings():
+        # what is not assembled or has few digits is told at each call
+        warnings.simplefilter("ignore")
+        motion = solve(mechanism, values, order=0, modes=modes, hint=hint)
+    found = tuple(output_of(motion.solving_order, name) for name in names)
+    return CompiledPath(motion, found, dimensions, backend)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CompiledPath(PrintsShort):
+    """A mechanism compiled for some outputs.
+
+    `reference` is its own motion, from which the configuration is taken.
+    """
+
+    reference: Motion
+    outputs: tuple[ProgramOutput, ...]
+    free: tuple[str, ...]
+    chosen_backend: str | None = None
+    _variants: dict[Any, RecordedPath] = field(default_factory=dict)
+    _programs: dict[Any, ReadyProgram] = field(default_factory=dict)
+
+    @property
+    def order(self) -> int:
+        """The highest derivative that its outputs ask for."""
+        return max(output.attribute.order for output in self.outputs)
+
+    @property
+    def signs(self) -> dict[int, int]:
+        """The modes of the groups that have signs, by their indices."""
+        solvers = self.reference.solving_order.solvers
+        return {s.index: self.reference.sign(s.index, 0) for s in solvers if not s.is_numbered}
+
+    def __call__(
+        self,
+        values: Any = None,
+        dimensions: Mapping[str, Any] | None = None,
+        *,
+        speed: Any = None,
+        acceleration: Any = None,
+        jerk: Any = None,
+        threads: int = 1,
+    ) -> PathValues:
+        """Compute the outputs at driver values and free dimensions.
+
+        Values are radians or lengths; all broadcast, the last axis the motion.
+
+        >>> from compoundkin.model.elements import drive, link
+        >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+        >>> compile(crank, "B")([0.0])["B"].tolist()
+        [(2+0j)]
+        """
+        rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk}
+        numbers = call_numbers(self.reference.solving_order, self.free, values, dimensions, rates)
+        return self._computed(numbers, threads)
+
+    def _computed(self, numbers: CallNumbers, threads: int) -> PathValues:
+        program = self.program(numbers)
+        arrays, rows = [], []
+        for nodes in program.nodes:
+            shape = program.flat.shape(max(nodes, key=lambda n: program.flat.strata[n]), *numbers.extent)
+            array = np.empty(shape, complex if len(nodes) > 1 else float)
+            arrays.append(array)
+            rows += [array.real, array.imag] if len(nodes) > 1 else [array]
+        least = np.empty(program.flat.shape(program.flat.outputs[-1], *numbers.extent))
+        program.runner(numbers.arrays(program.flat), [*rows, least], numbers.extent, threads)
+        return PathValues(numbers, dict(zip((o.name for o in self.outputs), arrays, strict=True)), least)
+
+    def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
+        """Return it recorded where some rates of drivers are zero."""
+        if still not in self._variants:
+            recording = Recording(self.reference.solving_order, self.signs, self.free, self.order, still)
+            self._variants[still] = RecordedPath.of(recording, self.outputs)
+        return self._variants[still]
+
+    def program(self, numbers: CallNumbers) -> ReadyProgram:
+        """Return the program for numbers of these forms."""
+        if numbers.form not in self._programs:
+            self._programs[numbers.form] = ReadyProgram.of(self.variant(numbers.still), numbers, self.chosen_backend)
+        return self._programs[numbers.form]
+
+    def __repr__(self) -> str:
+        return f"CompiledPath({self.reference.mechanism.title!r}: {', '.join(o.name for o in self.outputs)})"
+
+
+__all__ = ["CompiledPath", "compile"]

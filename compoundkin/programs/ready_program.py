@@ -1,0 +1,52 @@
+"""Variants of a compiled path: recorded for drivers whose rates are zero, flat for the forms of a call's numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from compoundkin.programs.backends import runner_of
+from compoundkin.programs.backends.contract import Runner
+from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
+from compoundkin.programs.graph.operations import LEAST
+from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
+from compoundkin.programs.recording.recorded_number import RecordedNumber
+from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recorded_output
+
+
+@dataclass(frozen=True)
+class RecordedPath:
+    """A mechanism recorded, and its outputs."""
+
+    mechanism: RecordedMechanism
+    outputs: tuple[RecordedNumber, ...]
+
+    @classmethod
+    def of(cls, recording: Recording, outputs: Sequence[ProgramOutput]) -> RecordedPath:
+        """Record a mechanism and outputs of it."""
+        mechanism = recorded(recording)
+        return cls(mechanism, tuple(recorded_output(mechanism, output) for output in outputs))
+
+    @cached_property
+    def nodes(self) -> tuple[tuple[int, ...], ...]:
+        """The nodes of each output: one, or two of a vector."""
+        return tuple((o.x,) if o.y is None else (o.x, o.y) for o in self.outputs)
+
+
+@dataclass(frozen=True)
+class ReadyProgram:
+    """A flat program ready to run. Its outputs are the nodes of each output, then the least margin."""
+
+    flat: FlatProgram
+    nodes: tuple[tuple[int, ...], ...]
+    runner: Runner
+
+    @classmethod
+    def of(cls, path: RecordedPath, numbers: CallNumbers, backend: str | None) -> ReadyProgram:
+        """Make the program of a recorded path for numbers of some form."""
+        graph = path.mechanism.graph
+        least = graph.apply(LEAST, path.mechanism.margin.x)
+        flat = flat_program(graph, [*(n for each in path.nodes for n in each), least], numbers.strata(graph))
+        return cls(flat, path.nodes, runner_of(flat, backend))

@@ -1,0 +1,109 @@
+"""A mechanism recorded: its groups closed once, in solving order, on numbers that note what is done with them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number, Series
+from compoundkin.kinematics.block import Block, rates
+from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.solving_order import SolvingOrder, run
+from compoundkin.model.geometry import Geometry
+from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.recording.recorded_number import RecordedNumber
+
+DIMENSION, DRIVE, SEED, PARAMETER = "dimension", "drive", "seed", "parameter"
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A mechanism in a configuration, and which of its numbers are inputs.
+
+    `signs` are those of the groups by index. `free` are the dimensions that are inputs, `still` the drivers' rates,
+    (driver, order), that are zero and cost nothing.
+    """
+
+    solving_order: SolvingOrder
+    signs: Mapping[int, int]
+    free: tuple[str, ...] = ()
+    order: int = 2
+    still: Collection[tuple[str, int]] = ()
+
+
+@dataclass(frozen=True, repr=False)
+class RecordedMechanism(PrintsShort):
+    """A mechanism whose links' poses are nodes of a graph."""
+
+    recording: Recording
+    graph: OperationGraph
+    geometry: Geometry
+    drives: Mapping[str, Series]
+    block: Block
+
+    @cached_property
+    def failed(self) -> RecordedNumber:
+        """The index of the first group that does not close plus one, else 0."""
+        return self._number(self.block.failed)
+
+    @cached_property
+    def margin(self) -> RecordedNumber:
+        """The least margin of all groups and guide ends, infinite where there is none."""
+        order = self.recording.solving_order
+        guides = order.guide_ends.margin(self.block) if order.guide_ends.pairs else float("inf")
+        least = self._number(guides)
+        for margin in self.block.margins.values():
+            graph = self.graph
+            least = RecordedNumber(graph, graph.apply("min", least.x, self._number(margin).x))
+        return least
+
+    def _number(self, value: Number) -> RecordedNumber:
+        return RecordedNumber(self.graph, self.graph.constant(0.0)).like(value)
+
+
+def recorded(recording: Recording) -> RecordedMechanism:
+    """Return a mechanism recorded."""
+    graph, order = OperationGraph(), recording.solving_order
+    geometry = _geometry(graph, order.structure.mechanism.geometry, recording.free)
+    ends = {name: pair.ends(geometry) for name, pair in order.pairs.items()}
+    bound = SolvingOrder(order.structure, {**ends, **order.guide_ends.bounds(geometry)})
+    drives = {drive.name: _driver(graph, drive.name, recording) for drive in order.structure.mechanism.drives}
+    block = run(bound, bound.start(bound.ends, drives, recording.order, (1, 1)), _Signs(graph, recording.signs))
+    return RecordedMechanism(recording, graph, geometry, drives, block)
+
+
+@dataclass(frozen=True)
+class _Signs:
+    """The choice of known signs; what is found outside is an input."""
+
+    graph: OperationGraph
+    signs: Mapping[int, int]
+
+    def mode(self, block: Block, solver: GroupSolver) -> Number:
+        """Return the sign of a group."""
+        return float(self.signs[solver.index])
+
+    def angle(self, solver: GroupSolver, link: str) -> Number:
+        """Return about which angle a link has: an input."""
+        return RecordedNumber.given(self.graph, InputNumber(SEED, link, "turns"))
+
+
+def _geometry(graph: OperationGraph, geometry: Geometry, free: tuple[str, ...]) -> Geometry:
+    """Return the dimensions with the free points of links as inputs."""
+    points = {name: dict(own) for name, own in geometry.points.items()}
+    for name in free:
+        link, _, letter = name.partition(".")
+        x, y = (InputNumber(DIMENSION, name, part) for part in "xy")
+        points[link][letter] = RecordedNumber.given(graph, x, y)
+    return replace(geometry, points=points)
+
+
+def _driver(graph: OperationGraph, name: str, recording: Recording) -> Series:
+    """Return a driver's value and rates as inputs; rates that are zero are no inputs."""
+    values = [
+        0.0 if k and (name, k) in recording.still else RecordedNumber.given(graph, InputNumber(DRIVE, name, str(k)))
+        for k in range(recording.order + 1)
+    ]
+    return rates(tuple(values), recording.order)
