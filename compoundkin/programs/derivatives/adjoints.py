@@ -16,9 +16,9 @@ from compoundkin.programs.graph.operations import TOTAL
 
 
 def reverse(graph: OperationGraph, root: int, inputs: Sequence[int], given: Mapping[InputNumber, int]) -> list[int]:
-    """Return the slopes of a node that a design fixes (a total) by some inputs, whose strata are given.
+    """Return the slopes of a total by some inputs. `given` tells the stratum of each input.
 
-    The slope by an input that varies from pose to pose does so too; by others it is summed over the poses.
+    The total may be any node that a design fixes. The slope by an input that varies from pose to pose does so too; by others it is summed over the poses.
 
     >>> from compoundkin.programs.graph.flat_program import BY_DESIGN
     >>> graph = OperationGraph()

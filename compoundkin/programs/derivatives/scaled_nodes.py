@@ -19,7 +19,10 @@ class ScaledNode(NamedTuple):
         return ScaledNode(graph.apply("mul", self.node, node), self.factor * factor)
 
     def where(self, graph: OperationGraph, truth: int, kept: bool = True) -> ScaledNode:
-        """Return it where a truth is, or is not, and zero elsewhere: what is not a number there is left out."""
+        """Return it where a truth is, or where it is not, and zero elsewhere.
+
+        What is not a number elsewhere is left out.
+        """
         zero = graph.constant(0.0)
         operands = (self.node, zero) if kept else (zero, self.node)
         return ScaledNode(graph.apply("select", truth, *operands), self.factor)
@@ -32,7 +35,9 @@ class ScaledNode(NamedTuple):
 
 
 def scaled_sum(graph: OperationGraph, terms: Sequence[ScaledNode]) -> ScaledNode | None:
-    """Return the sum of some terms, their common factor in front; None where all are zero.
+    """Return the sum of some terms, or None where all are zero.
+
+    The factor of the first stands in front.
 
     >>> graph = OperationGraph()
     >>> x = graph.apply("sqrt", graph.constant(2.0))

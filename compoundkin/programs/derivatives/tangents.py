@@ -11,7 +11,7 @@ from compoundkin.programs.graph.operations import TOTAL
 
 
 def forward(graph: OperationGraph, wanted: Sequence[int], changes: Mapping[int, float]) -> list[int]:
-    """Return the rates of change of some nodes when inputs change at the given rates.
+    """Return how fast some nodes change when inputs change at given rates.
 
     Other inputs do not change; what depends on none of them has the constant zero.
 

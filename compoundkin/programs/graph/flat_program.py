@@ -91,7 +91,7 @@ def flat_program(
 
 
 def node_strata(graph: OperationGraph, nodes: Sequence[int], given: Mapping[InputNumber, int]) -> dict[int, int]:
-    """Return the strata of some nodes and of all that they are computed from, which come first."""
+    """Return the strata of some nodes. All that they are computed from is among them, and comes first."""
     strata: dict[int, int] = {}
     for k in nodes:
         node = graph.nodes[k]
