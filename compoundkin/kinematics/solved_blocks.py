@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from compoundkin.base.buffers import keep_freed_memory
 from compoundkin.base.series import Number
-from compoundkin.kinematics.block import BLOCK, Block, JoinedBlocks, blocks, places
+from compoundkin.kinematics.block import BLOCK, Block, blocks, places
 from compoundkin.kinematics.branch import Begin, TrackedBranch
 from compoundkin.kinematics.change_points import pass_through
 from compoundkin.kinematics.double_roots import NEARLY, expanded
 from compoundkin.kinematics.driver_ways import NEAR, near_groups
 from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.joined_blocks import JoinedBlocks
 from compoundkin.kinematics.lost_digits import doubtful
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -62,6 +64,7 @@ def _run(
 
     The groups nearest to limit positions are those that may need their double root.
     """
+    keep_freed_memory()
     designs, poses = given.designs, given.poses
     near: set[int] = set()
     nearly: set[int] = set()

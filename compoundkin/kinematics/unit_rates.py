@@ -10,9 +10,10 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.base.series import Number
-from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
+from compoundkin.kinematics.block import Block, blocks, places
 from compoundkin.kinematics.double_roots import rates_at
 from compoundkin.kinematics.inputs import Inputs
+from compoundkin.kinematics.joined_blocks import JoinedBlocks
 from compoundkin.kinematics.quantities import Quantity, quantity, whole_and_part
 from compoundkin.kinematics.table import AtPoses
 from compoundkin.kinematics.tracking import Tracker

@@ -13,7 +13,7 @@ from compoundkin.base.arrays import whole_turns
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, poses_at, with_poses
+from compoundkin.kinematics.block import Block, blocks, poses_at, with_poses
 from compoundkin.kinematics.extremes.inputs_between import inputs_between, interval, times_between
 from compoundkin.kinematics.extremes.near_change_points import (
     next_to_change_points,
@@ -21,6 +21,7 @@ from compoundkin.kinematics.extremes.near_change_points import (
     through_double_roots,
 )
 from compoundkin.kinematics.inputs import Inputs, fit, mapped
+from compoundkin.kinematics.joined_blocks import JoinedBlocks
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.results import LinkMotion, PairMotion, PointMotion
 
@@ -38,10 +39,7 @@ class MotionBetween(Motion):
     is_whole: ClassVar[bool] = False
 
     def block(self, part: Inputs, order: int, s: Number, designs: Number) -> Block:
-        """Solve a block of other inputs in the configuration of the motion.
-
-        `s` are indices of its places.
-        """
+        """Solve other inputs in the motion's configuration, at indices `s` of its places."""
         index = np.broadcast_to(s, np.broadcast_shapes(np.shape(s), np.shape(designs))).astype(int)
         return self.whole.block(part, order, self.places[index], self.designs[index])
 

@@ -1,0 +1,46 @@
+"""Memory for large arrays: several in one piece, and freed pieces kept for the next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+from math import prod
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+
+# A line of the caches: arrays that begin on one are read and written fastest.
+LINE = 64
+# The largest piece whose release tells the allocator of Linux to keep freed memory, and pages it takes beside it.
+KEPT, PAGES = 32 * 2**20, 2 * 4096
+
+
+def arrays_of_one_buffer(wanted: Iterable[tuple[tuple[int, ...], np.dtype[Number]]]) -> list[Number]:
+    """Return empty arrays of these shapes and types, all in one piece of memory.
+
+    >>> one, two = arrays_of_one_buffer([((1, 3), np.dtype(complex)), ((2, 1), np.dtype(float))])
+    >>> one.shape, two.dtype, one.base is two.base
+    ((1, 3), dtype('float64'), True)
+    """
+    wanted = tuple(wanted)
+    sizes = [prod(shape) * dtype.itemsize for shape, dtype in wanted]
+    rooms = [-(-size // LINE) * LINE for size in sizes]
+    buffer = np.empty(sum(rooms) + LINE, dtype=np.uint8)
+    start = -buffer.ctypes.data % LINE
+    found = []
+    for (shape, dtype), size, room in zip(wanted, sizes, rooms, strict=True):
+        found.append(buffer[start : start + size].view(dtype).reshape(shape))
+        start += room
+    return found
+
+
+@cache
+def keep_freed_memory() -> None:
+    """Have the allocator keep what is freed, once for the process.
+
+    glibc gives every array above 128 kB back to the system, and fresh pages cost more than the arithmetic on them. A
+    large piece that is freed raises that limit to its size, and what may lie unused to twice as much (mallopt(3)). Its
+    pages are never touched; other allocators make nothing of it.
+    """
+    np.empty(KEPT - PAGES, dtype=np.uint8)
