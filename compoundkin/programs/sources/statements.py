@@ -1,0 +1,168 @@
+"""The statements of a text: values with a name, and expressions of as many operations as a line can hold."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from compoundkin.programs.graph.operations import CONSTANT, INPUT, REDUCTIONS
+from compoundkin.programs.sources.contract import WrittenProgram
+from compoundkin.programs.sources.identifiers import Identifiers
+from compoundkin.programs.sources.reading_order import reading_order
+from compoundkin.programs.sources.spellings import QUOTIENT, Spelling, Written
+
+# So long may the expression of a line be, and one that is used once to go without a name.
+LINE, NAMELESS = 84, 44
+# A number that is written more than once gets a name where it is longer than this.
+SHORT = 6
+OF_NUMBERS, OF_ASSEMBLING = "numbers of the mechanism", "whether it can be assembled"
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A value with a name: what it is computed as, whether it is a truth, and what it is first needed for."""
+
+    name: str
+    expression: str
+    is_truth: bool
+    section: str
+
+
+@dataclass(frozen=True)
+class Statements:
+    """All statements of a text: numbers of the mechanism, values in order, and the expressions of the results."""
+
+    numbers: tuple[Statement, ...]
+    values: tuple[Statement, ...]
+    results: tuple[Written, ...]
+    assembled: Written
+
+    def body(self, line: Callable[[Statement], str], comment: Callable[[str], str]) -> Iterator[str]:
+        """Yield the lines of numbers and values, each section under its comment."""
+        section = None
+        for one in (*self.numbers, *self.values):
+            if one.section != section:
+                section = one.section
+                yield from ("", comment(section))
+            yield line(one)
+
+    def calls(self, function: str) -> bool:
+        """Tell whether a function is called anywhere."""
+        texts = (*(one.expression for one in self.values), *(one.text for one in (*self.results, self.assembled)))
+        called = re.compile(rf"\b{function}\(")
+        return any(called.search(text) for text in texts)
+
+
+class StatementWriter:
+    """Writes what a program needs as statements of one language."""
+
+    def __init__(
+        self,
+        program: WrittenProgram,
+        spelled: Mapping[str, Spelling],
+        number: Callable[[float], Written],
+        truths: tuple[str, str],
+    ) -> None:
+        self.graph, self.program, self.spelled, self.number, self.truths = (
+            program.graph,
+            program,
+            spelled,
+            number,
+            truths,
+        )
+        self.names = Identifiers(one.name for one in program.arguments)
+        self.last = {"t": 0, "c": 0}
+        self.numbers: list[Statement] = []
+        self.values: list[Statement] = []
+        self.texts: dict[int, Written] = {}
+        self.nameless: set[int] = set()
+        self.section = ""
+        wanted = [program.assembled, *(one.node for one in program.results)]
+        needed = self.graph.needed(wanted)
+        self.uses = Counter(operand for k in needed for operand in self.graph.nodes[k].operands)
+        self.uses.update(wanted)
+        # reciprocals that become a quotient with the product which alone uses them
+        self.divisors = {k: divisor for k in needed if (divisor := self._divisor(k)) is not None}
+        self.absorbed = set(self.divisors.values())
+
+    def written(self) -> Statements:
+        """Return all statements."""
+        program = self.program
+        arguments = {one.given: one.name for one in program.arguments}
+        self._section(program.assembled, OF_ASSEMBLING, arguments)
+        for one in program.results:
+            self._section(one.node, one.meaning, arguments)
+        results = tuple(self.texts[one.node] for one in program.results)
+        return Statements(tuple(self.numbers), tuple(self.values), results, self._whether())
+
+    def _whether(self) -> Written:
+        """Whether it can be assembled, which may be known."""
+        node = self.graph.nodes[self.program.assembled]
+        return (
+            Written(self.truths[bool(node.value)]) if node.operation == CONSTANT else self.texts[self.program.assembled]
+        )
+
+    def _section(self, wanted: int, section: str, arguments: Mapping[object, str]) -> None:
+        self.section = section
+        for k in reading_order(self.graph, [wanted]):
+            if k in self.texts or k in self.absorbed:
+                continue
+            node = self.graph.nodes[k]
+            if node.operation == INPUT:
+                self.texts[k] = Written(arguments[node.given])
+            elif node.operation == CONSTANT:
+                self._constant(k, node.value)
+            else:
+                self._operation(k)
+
+    def _constant(self, k: int, value: float) -> None:
+        self.texts[k] = made = self.number(value)
+        if self.uses[k] > 1 and len(made.text) > SHORT:
+            self._name(k, self.numbers, "c")
+
+    def _operation(self, k: int) -> None:
+        """Write a node; where the line would be too long, its longest operands get names first."""
+        operation, operands = self._spelled_as(k)
+        if operation in REDUCTIONS:
+            self.texts[k] = self.texts[operands[0]]  # over one pose
+            return
+        spelling = self.spelled[operation]
+        made = spelling.of([self.texts[n] for n in operands])
+        while len(made.text) > LINE and (nameless := self.nameless.intersection(operands)):
+            # of two as long the earlier one, so that the text is always the same
+            self._name(max(sorted(nameless), key=lambda n: len(self.texts[n].text)), self.values, "t")
+            made = spelling.of([self.texts[n] for n in operands])
+        self.texts[k] = made
+        self.nameless.add(k)
+        if self.uses[k] > 1 or k in self.program.called or len(made.text) > NAMELESS:
+            self._name(k, self.values, "t")
+
+    def _name(self, k: int, among: list[Statement], letter: str) -> None:
+        called = self.program.called.get(k)
+        if called is None:
+            name, self.last[letter] = self.names.take_numbered(letter, self.last[letter] + 1)
+        else:
+            name = self.names.take(called)
+        section = self.section if among is self.values else OF_NUMBERS
+        among.append(Statement(name, self.texts[k].text, self.graph.is_truth(k), section))
+        self.texts[k] = Written(name)
+        self.nameless.discard(k)
+
+    def _spelled_as(self, k: int) -> tuple[str, tuple[int, ...]]:
+        """The operation and the operands that a node is written with."""
+        node, divisor = self.graph.nodes[k], self.divisors.get(k)
+        if divisor is None:
+            # numbers first: 2.0*x
+            is_turned = node.operation == "mul" and self.graph.nodes[node.operands[1]].operation == CONSTANT
+            return node.operation, node.operands[::-1] if is_turned else node.operands
+        other = next(n for n in node.operands if n != divisor)
+        return QUOTIENT, (other, self.graph.nodes[divisor].operands[0])
+
+    def _divisor(self, k: int) -> int | None:
+        """The operand of a product that is a reciprocal nothing else uses."""
+        node = self.graph.nodes[k]
+        if node.operation != "mul":
+            return None
+        return next((n for n in node.operands if self.graph.nodes[n].operation == "inv" and self.uses[n] == 1), None)
