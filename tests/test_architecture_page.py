@@ -16,7 +16,7 @@ def test_its_tables_are_up_to_date() -> None:
 
 
 def test_it_is_one_page() -> None:
-    assert len(PAGE.read_text(encoding="utf-8").splitlines()) <= 280
+    assert len(PAGE.read_text(encoding="utf-8").splitlines()) <= 290
 
 
 def test_every_module_begins_with_a_sentence() -> None:

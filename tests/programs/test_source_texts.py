@@ -23,8 +23,8 @@ from compoundkin.programs.sources.reading_order import reading_order
 from tests.programs.languages import assert_alike, run
 
 # What may go wrong at an operation: signs, zeros, halves, numbers beyond integers, and what is no number.
-EDGES = np.array([0.0, -0.0, 0.5, -0.5, 1.5, -2.5, 0.49999999999999994, 1.0, -1.0, 3.7, 1e-310, 710.0, -750.0, 1e18 + 2048, 
-                  5e300, np.inf, -np.inf, np.nan])  # fmt: skip
+EDGES = np.array([0.0, -0.0, 0.5, -0.5, 1.5, -2.5, 0.49999999999999994, 1.0, -1.0, 3.7, 1e-310, 710.0, -750.0, 1e18,
+                  1e18 + 2048, 5e300, np.inf, -np.inf, np.nan])  # fmt: skip
 EXACT = (
     "add",
     "sub",

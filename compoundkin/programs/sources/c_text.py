@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from compoundkin.programs.sources.contract import WrittenProgram
 from compoundkin.programs.sources.explanation import explanation
-from compoundkin.programs.sources.spellings import ARITHMETIC, EITHER, OF_BRACES, Spelling, Written, call, calls, number
+from compoundkin.programs.sources.spellings import ARITHMETIC, EITHER, OF_BRACES, Phrase, Spelling, call, calls, number
 from compoundkin.programs.sources.statements import Statement, Statements, StatementWriter
 
 # Functions that the text brings along, each for one operation: math.h has none that keep what is not a number.
@@ -30,7 +30,7 @@ class CLanguage:
         return "\n".join((*_head(program), *_functions(program, statements), *_body(program, statements), *_FOOT, ""))
 
 
-def _number(value: float) -> Written:
+def _number(value: float) -> Phrase:
     return number(value, "NAN", "INFINITY")
 
 

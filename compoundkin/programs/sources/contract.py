@@ -13,9 +13,10 @@ from compoundkin.programs.graph.operations import CONSTANT
 
 @dataclass(frozen=True)
 class Argument:
-    """A number that a program is given: what it is called there, what it means, in which unit.
+    """A number that a program is given.
 
-    `own` is the number that the mechanism itself has; who calls the program may leave it out where there is one.
+    It has a name there, a meaning and a unit. `own` is the number that the mechanism itself has;
+    who calls the program may leave it out where there is one.
     """
 
     given: InputNumber
@@ -27,7 +28,7 @@ class Argument:
 
 @dataclass(frozen=True)
 class Result:
-    """A number that a program answers: its node, what it is called there, what it means, in which unit."""
+    """A number that a program answers: its node, its name there, its meaning."""
 
     node: int
     name: str

@@ -84,7 +84,10 @@ class Identifiers:
         return found
 
     def take_numbered(self, letter: str, first: int) -> tuple[str, int]:
-        """Return a letter with the first number, from one on, that nothing else has; and the number."""
+        """Return a letter with a number that nothing else has, and the number.
+
+        It is the first one from `first` on.
+        """
         while f"{letter}{first}" in self._taken:
             first += 1
         self._taken.add(f"{letter}{first}")

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from compoundkin.programs.sources.contract import Argument, WrittenProgram
 from compoundkin.programs.sources.explanation import explanation
-from compoundkin.programs.sources.spellings import ARITHMETIC, EITHER, OF_BRACES, Spelling, Written, calls, number
+from compoundkin.programs.sources.spellings import ARITHMETIC, EITHER, OF_BRACES, Phrase, Spelling, calls, number
 from compoundkin.programs.sources.statements import Statements, StatementWriter
 
 # Functions that the text brings along: Math.round takes halves upwards, Math.max keeps what is not a number.
@@ -37,7 +37,7 @@ class JavaScriptLanguage:
         return "\n".join((*_head(program), *_functions(statements), *_body(program, statements), *_foot(program), ""))
 
 
-def _number(value: float) -> Written:
+def _number(value: float) -> Phrase:
     return number(value, "NaN", "Infinity")
 
 

@@ -15,8 +15,8 @@ from compoundkin.programs.sources.spellings import (
     NOT,
     PRODUCT,
     QUOTIENT,
+    Phrase,
     Spelling,
-    Written,
     call,
     calls,
     infix,
@@ -73,7 +73,7 @@ class MatlabLanguage:
         return "\n".join((*_head(program), *body, *_functions(body), ""))
 
 
-def _number(value: float) -> Written:
+def _number(value: float) -> Phrase:
     return number(value, "NaN", "Inf")
 
 

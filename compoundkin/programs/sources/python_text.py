@@ -13,8 +13,8 @@ from compoundkin.programs.sources.spellings import (
     EITHER,
     NOT,
     QUOTIENT,
+    Phrase,
     Spelling,
-    Written,
     call,
     calls,
     infix,
@@ -68,7 +68,7 @@ class PythonLanguage:
         return "\n".join((*_head(program), *_functions(statements), *_body(program, statements), ""))
 
 
-def _number(value: float) -> Written:
+def _number(value: float) -> Phrase:
     return number(value, "math.nan", "math.inf")
 
 

@@ -12,7 +12,7 @@ CHOICE, EITHER, BOTH, NOT, COMPARISON, SUM, PRODUCT, FACTOR, ATOM = range(9)
 QUOTIENT = "quotient"
 
 
-class Written(NamedTuple):
+class Phrase(NamedTuple):
     """A text and how tightly it binds."""
 
     text: str
@@ -25,9 +25,10 @@ class Written(NamedTuple):
 
 @dataclass(frozen=True)
 class Spelling:
-    """How one operation is spelled; its operands need brackets where they bind less than `needed`.
+    """How one operation is spelled.
 
-    What `is_chain` goes without brackets where it is its own first operand: a + b + c.
+    Its operands need brackets where they bind less than `needed`. What `is_chain`
+    goes without brackets where it is its own first operand: a + b + c.
     """
 
     form: str
@@ -35,12 +36,12 @@ class Spelling:
     needed: int = CHOICE
     is_chain: bool = False
 
-    def of(self, operands: Sequence[Written]) -> Written:
+    def of(self, operands: Sequence[Phrase]) -> Phrase:
         """Return the operation on some operands."""
         first, *rest = operands
         level = self.level if self.is_chain and first.level == self.level else self.needed
         texts = (first.within(level), *(other.within(self.needed) for other in rest))
-        return Written(self.form.format(*texts), self.level)
+        return Phrase(self.form.format(*texts), self.level)
 
 
 def infix(sign: str, level: int, needed: int, is_chain: bool = True) -> Spelling:
@@ -51,7 +52,7 @@ def infix(sign: str, level: int, needed: int, is_chain: bool = True) -> Spelling
 def call(function: str, operands: int = 1) -> Spelling:
     """Return the spelling of a call.
 
-    >>> call("atan2", 2).of((Written("y"), Written("a + b", SUM))).text
+    >>> call("atan2", 2).of((Phrase("y"), Phrase("a + b", SUM))).text
     'atan2(y, a + b)'
     """
     return Spelling(f"{function}({', '.join(['{}'] * operands)})")
@@ -83,11 +84,11 @@ OF_BRACES: Mapping[str, Spelling] = {
 }
 
 
-def number(value: float, nan: str, infinity: str) -> Written:
-    """Return a number that reads back exactly: at most 17 digits, and always as one that is no integer.
+def number(value: float, nan: str, infinity: str) -> Phrase:
+    """Return a number that reads back exactly, never as an integer.
 
     >>> number(2.0, "NAN", "INFINITY"), number(-0.1, "NAN", "INFINITY")
-    (Written(text='2.0', level=8), Written(text='-0.1', level=5))
+    (Phrase(text='2.0', level=8), Phrase(text='-0.1', level=5))
     """
     text = nan if value != value else repr(value).replace("inf", infinity)
-    return Written(text, SUM if text.startswith("-") else ATOM)
+    return Phrase(text, SUM if text.startswith("-") else ATOM)

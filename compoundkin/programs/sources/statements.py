@@ -7,11 +7,12 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from compoundkin.programs.graph.operations import CONSTANT, INPUT, REDUCTIONS
+from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.graph.operations import CONSTANT, REDUCTIONS
 from compoundkin.programs.sources.contract import WrittenProgram
 from compoundkin.programs.sources.identifiers import Identifiers
 from compoundkin.programs.sources.reading_order import reading_order
-from compoundkin.programs.sources.spellings import QUOTIENT, Spelling, Written
+from compoundkin.programs.sources.spellings import QUOTIENT, Phrase, Spelling
 
 # So long may the expression of a line be, and one that is used once to go without a name.
 LINE, NAMELESS = 84, 44
@@ -22,7 +23,7 @@ OF_NUMBERS, OF_ASSEMBLING = "numbers of the mechanism", "whether it can be assem
 
 @dataclass(frozen=True)
 class Statement:
-    """A value with a name: what it is computed as, whether it is a truth, and what it is first needed for."""
+    """A value with a name, its expression, and what it is first needed for."""
 
     name: str
     expression: str
@@ -32,12 +33,12 @@ class Statement:
 
 @dataclass(frozen=True)
 class Statements:
-    """All statements of a text: numbers of the mechanism, values in order, and the expressions of the results."""
+    """All statements of a text: numbers, values in order, the phrases of the results."""
 
     numbers: tuple[Statement, ...]
     values: tuple[Statement, ...]
-    results: tuple[Written, ...]
-    assembled: Written
+    results: tuple[Phrase, ...]
+    assembled: Phrase
 
     def body(self, line: Callable[[Statement], str], comment: Callable[[str], str]) -> Iterator[str]:
         """Yield the lines of numbers and values, each section under its comment."""
@@ -62,7 +63,7 @@ class StatementWriter:
         self,
         program: WrittenProgram,
         spelled: Mapping[str, Spelling],
-        number: Callable[[float], Written],
+        number: Callable[[float], Phrase],
         truths: tuple[str, str],
     ) -> None:
         self.graph, self.program, self.spelled, self.number, self.truths = (
@@ -76,7 +77,7 @@ class StatementWriter:
         self.last = {"t": 0, "c": 0}
         self.numbers: list[Statement] = []
         self.values: list[Statement] = []
-        self.texts: dict[int, Written] = {}
+        self.texts: dict[int, Phrase] = {}
         self.nameless: set[int] = set()
         self.section = ""
         wanted = [program.assembled, *(one.node for one in program.results)]
@@ -97,21 +98,21 @@ class StatementWriter:
         results = tuple(self.texts[one.node] for one in program.results)
         return Statements(tuple(self.numbers), tuple(self.values), results, self._whether())
 
-    def _whether(self) -> Written:
+    def _whether(self) -> Phrase:
         """Whether it can be assembled, which may be known."""
         node = self.graph.nodes[self.program.assembled]
         return (
-            Written(self.truths[bool(node.value)]) if node.operation == CONSTANT else self.texts[self.program.assembled]
+            Phrase(self.truths[bool(node.value)]) if node.operation == CONSTANT else self.texts[self.program.assembled]
         )
 
-    def _section(self, wanted: int, section: str, arguments: Mapping[object, str]) -> None:
+    def _section(self, wanted: int, section: str, arguments: Mapping[InputNumber, str]) -> None:
         self.section = section
         for k in reading_order(self.graph, [wanted]):
             if k in self.texts or k in self.absorbed:
                 continue
             node = self.graph.nodes[k]
-            if node.operation == INPUT:
-                self.texts[k] = Written(arguments[node.given])
+            if node.given is not None:
+                self.texts[k] = Phrase(arguments[node.given])
             elif node.operation == CONSTANT:
                 self._constant(k, node.value)
             else:
@@ -147,7 +148,7 @@ class StatementWriter:
             name = self.names.take(called)
         section = self.section if among is self.values else OF_NUMBERS
         among.append(Statement(name, self.texts[k].text, self.graph.is_truth(k), section))
-        self.texts[k] = Written(name)
+        self.texts[k] = Phrase(name)
         self.nameless.discard(k)
 
     def _spelled_as(self, k: int) -> tuple[str, tuple[int, ...]]:
