@@ -11,6 +11,7 @@ from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operations import LEAST
+from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recorded_output
@@ -47,6 +48,6 @@ class ReadyProgram:
     def of(cls, path: RecordedPath, numbers: CallNumbers, backend: str | None) -> ReadyProgram:
         """Make the program of a recorded path for numbers of some form."""
         graph = path.mechanism.graph
-        least = graph.apply(LEAST, path.mechanism.margin.x)
+        least = graph.apply(LEAST, RecordedLimits(path.mechanism).certain.x)
         flat = flat_program(graph, [*(n for each in path.nodes for n in each), least], numbers.strata(graph))
         return cls(flat, path.nodes, runner_of(flat, backend))

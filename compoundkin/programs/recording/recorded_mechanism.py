@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import Block, rates
 from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.limits import noted_root
 from compoundkin.kinematics.solving_order import SolvingOrder, run
 from compoundkin.model.geometry import Geometry
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.recording.recorded_block import RecordedBlock
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
 DIMENSION, DRIVE, SEED, PARAMETER = "dimension", "drive", "seed", "parameter"
@@ -41,25 +42,11 @@ class RecordedMechanism(PrintsShort):
     graph: OperationGraph
     geometry: Geometry
     drives: Mapping[str, Series]
-    block: Block
+    block: RecordedBlock
+    notes: Mapping[int, list[Series]]  # the discriminants of closed forms, in parts of their scale, by group
 
-    @cached_property
-    def failed(self) -> RecordedNumber:
-        """The index of the first group that does not close plus one, else 0."""
-        return self._number(self.block.failed)
-
-    @cached_property
-    def margin(self) -> RecordedNumber:
-        """The least margin of all groups and guide ends, infinite where there is none."""
-        order = self.recording.solving_order
-        guides = order.guide_ends.margin(self.block) if order.guide_ends.pairs else float("inf")
-        least = self._number(guides)
-        for margin in self.block.margins.values():
-            graph = self.graph
-            least = RecordedNumber(graph, graph.apply("min", least.x, self._number(margin).x))
-        return least
-
-    def _number(self, value: Number) -> RecordedNumber:
+    def number(self, value: Number) -> RecordedNumber:
+        """Return a number as one recorded in its graph."""
         return RecordedNumber(self.graph, self.graph.constant(0.0)).like(value)
 
 
@@ -70,8 +57,11 @@ def recorded(recording: Recording) -> RecordedMechanism:
     ends = {name: pair.ends(geometry) for name, pair in order.pairs.items()}
     bound = SolvingOrder(order.structure, {**ends, **order.guide_ends.bounds(geometry)})
     drives = {drive.name: _driver(graph, drive.name, recording) for drive in order.structure.mechanism.drives}
-    block = run(bound, bound.start(bound.ends, drives, recording.order, (1, 1)), _Signs(graph, recording.signs))
-    return RecordedMechanism(recording, graph, geometry, drives, block)
+    notes: dict[int, list[Series]] = {solver.index: [] for solver in order.solvers if solver.modes_may_meet}
+    block = RecordedBlock.of(bound.start(bound.ends, drives, recording.order, (1, 1)))
+    block.roots = {k: noted_root(found) for k, found in notes.items()}
+    run(bound, block, _Signs(graph, recording.signs))
+    return RecordedMechanism(recording, graph, geometry, drives, block, notes)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,111 @@
+"""Limits of a recorded mechanism: which poses are assembled, how near its groups are to change points.
+
+A pose whose margins are far from zero needs no look; near zero a group may pass between its modes, and rates may lose
+their digits, which only solving can tell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, reduce
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number, Series, as_series
+from compoundkin.kinematics.driver_ways import NEAR
+from compoundkin.kinematics.lost_digits import FAST
+from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
+from compoundkin.programs.recording.recorded_number import RecordedNumber
+
+# Poses with margins (squared sines) below this may be solved through double roots, or have rates without digits.
+CLOSE = 1e-5
+
+
+@dataclass(frozen=True, repr=False)
+class RecordedLimits(PrintsShort):
+    """What tells of limits in a recorded mechanism, as nodes of its graph."""
+
+    mechanism: RecordedMechanism
+
+    @cached_property
+    def watched(self) -> tuple[int, ...]:
+        """The groups that may pass between their modes, by their indices."""
+        solvers = self.mechanism.recording.solving_order.solvers
+        return tuple(solver.index for solver in solvers if solver.modes_may_meet)
+
+    @cached_property
+    def failed(self) -> RecordedNumber:
+        """The index of the first group that does not close plus one, else 0."""
+        failed: Number = 0.0
+        for index, good in reversed(self.mechanism.block.goods):
+            failed = np.where(self._number(good), failed, index + 1.0)
+        return self._number(failed)
+
+    @cached_property
+    def clear(self) -> RecordedNumber:
+        """Whether all rates have digits, as far as groups that cannot pass between modes tell."""
+        return reduce(RecordedNumber.__and__, self._clear(), self._number(True))
+
+    @cached_property
+    def certain(self) -> RecordedNumber:
+        """The least margin of watched groups, below zero where something else is not as it should be.
+
+        Where it is large enough at all poses of a design there is nothing more to be looked at.
+        """
+        block = self.mechanism.block
+        others = [self._number(good) for index, good in block.goods if index not in self.watched]
+        truth = reduce(RecordedNumber.__and__, others, self.clear)
+        graph = self.mechanism.graph
+        found = self._number(np.where(truth, 1.0, -1.0))
+        for k in self.watched:
+            found = RecordedNumber(graph, graph.apply("min", self._number(block.margins[k]).x, found.x))
+        return found
+
+    @cached_property
+    def squares(self) -> tuple[tuple[RecordedNumber, RecordedNumber], ...]:
+        """What is zero where modes meet, in parts of its scale, with its rate; two for a group that turns on a point.
+
+        The mechanism is recorded to the first order at least.
+        """
+        return tuple((self._number(one.c[0]), self._number(one.c[1])) for one in self._squares() if len(one.c) > 1)
+
+    def _squares(self) -> Iterator[Series]:
+        size = self.mechanism.recording.solving_order.size
+        for k in self.watched:
+            yield from self.mechanism.notes[k]
+            if k in self.mechanism.block.meetings:
+                yield self.mechanism.block.meetings[k] * (1.0 / size**2)
+
+    def _clear(self) -> Iterator[RecordedNumber]:
+        """Yield whether groups of one mode are away from their limits, and silent ones slow."""
+        order = self.mechanism.recording.solving_order
+        block = self.mechanism.block
+        if not self.mechanism.recording.order:
+            return
+        for k, margin in block.margins.items():
+            if k not in self.watched:
+                yield self._number(margin) >= CLOSE
+        silent = [solver for solver in order.solvers if not solver.tells_margin]
+        fast2 = self._pace2() * FAST**2 if silent else 0.0
+        for name in (body.links[0] for solver in silent for body in solver.group.bodies):
+            pose = block.world[name]
+            for series, size in ((pose.u, 1.0), (pose.z, order.size)):
+                if series.order:
+                    rate = as_series(series.c[1] * (1.0 / size)).abs2().c[0]
+                    yield self._number(rate) <= fast2
+
+    def _pace2(self) -> Number:
+        """Return the square of the speed of the fastest driver: radians, or parts of the size, per second."""
+        order, fastest = self.mechanism.recording.solving_order, self._number(0.0)
+        for name, series in self.mechanism.drives.items():
+            speed = self._number(series.c[1]) * (1.0 / order.unit(name))
+            fastest = np.maximum(fastest, speed * speed)
+        return fastest
+
+    def _number(self, value: Number) -> RecordedNumber:
+        return self.mechanism.number(value)
+
+
+__all__ = ["CLOSE", "NEAR", "RecordedLimits"]
