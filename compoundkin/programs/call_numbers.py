@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import prod
 from typing import Any
 
@@ -46,6 +46,23 @@ class CallNumbers:
         known = {given: _stratum(array) for given, array in self.given.items()}
         every = (node.given for node in graph.nodes if node.operation == INPUT and node.given)
         return {given: known.get(given, BY_DESIGN | BY_POSE) for given in every}
+
+    def reshaped(self, shape: tuple[int, ...]) -> CallNumbers:
+        """Return the same numbers in a shape with which theirs broadcasts."""
+        if shape == self.shape:
+            return self
+        fitted = fit(shape)
+
+        def formed(array: Number) -> Number:
+            own = self.shape[:-1] if array.shape[0] > 1 else (1,) * len(self.shape[:-1])
+            return np.atleast_2d(fitted(array.reshape(*own, array.shape[1])))
+
+        return replace(self, given={given: formed(array) for given, array in self.given.items()}, shape=shape)
+
+    def of_designs(self, index: Number) -> CallNumbers:
+        """Return the numbers of some designs."""
+        given = {given: array[index] if array.shape[0] > 1 else array for given, array in self.given.items()}
+        return replace(self, given=given, shape=(len(index), self.extent[1]))
 
     def arrays(self, flat: FlatProgram) -> list[Any]:
         """Return the arrays that a program reads."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,6 +15,8 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.call_numbers import CallNumbers, call_numbers
+from compoundkin.programs.derivatives.path_objective import PathObjective
+from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
 from compoundkin.programs.recording.recorded_mechanism import Recording
@@ -100,9 +102,28 @@ class CompiledPath(PrintsShort):
         >>> compile(crank, "B")([0.0])["B"].tolist()
         [(2+0j)]
         """
+        return self._computed(self.numbers(values, dimensions, speed, acceleration, jerk), threads)
+
+    def numbers(
+        self, values: Any, dimensions: Mapping[str, Any] | None, speed: Any, acceleration: Any, jerk: Any
+    ) -> CallNumbers:
+        """Return the numbers of a call; raises InvalidInput for what does not fit."""
         rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk}
-        numbers = call_numbers(self.reference.solving_order, self.free, values, dimensions, rates)
-        return self._computed(numbers, threads)
+        return call_numbers(self.reference.solving_order, self.free, values, dimensions, rates)
+
+    @checked
+    def objective(self, function: Callable[[ObjectivePose], Any]) -> PathObjective:
+        """Return a function of each pose, summed over the poses of each design.
+
+        `function` is given one pose: `at["G.position"]` is an output, any other name is given with each call.
+        It is written in arithmetic and NumPy's functions of numbers.
+
+        >>> from compoundkin.model.elements import drive, link
+        >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+        >>> float(compile(crank, "B").objective(lambda at: abs(at["B"]) ** 2 * at["weight"])([0.0], weight=0.5))
+        2.0
+        """
+        return PathObjective(self, function)
 
     def _computed(self, numbers: CallNumbers, threads: int) -> PathValues:
         program = self.program(numbers)

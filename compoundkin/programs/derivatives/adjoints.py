@@ -15,10 +15,17 @@ from compoundkin.programs.graph.operation_graph import InputNumber, OperationGra
 from compoundkin.programs.graph.operations import TOTAL
 
 
-def reverse(graph: OperationGraph, root: int, inputs: Sequence[int], given: Mapping[InputNumber, int]) -> list[int]:
+def reverse(
+    graph: OperationGraph,
+    root: int,
+    inputs: Sequence[int],
+    given: Mapping[InputNumber, int],
+    where: int | None = None,
+) -> list[int]:
     """Return the slopes of a total by some inputs. `given` tells the stratum of each input.
 
-    The total may be any node that a design fixes. The slope by an input that varies from pose to pose does so too; by others it is summed over the poses.
+    The total may be any node that a design fixes. The slope by an input that varies from pose to pose does so too;
+    by others it is summed over the poses, those that a truth `where` leaves out excepted.
 
     >>> from compoundkin.programs.graph.flat_program import BY_DESIGN
     >>> graph = OperationGraph()
@@ -28,16 +35,22 @@ def reverse(graph: OperationGraph, root: int, inputs: Sequence[int], given: Mapp
     >>> graph.nodes[slope] == graph.nodes[graph.apply("total", graph.apply("cos", graph.input(x)))]
     True
     """
-    return _Adjoints(graph, root, inputs, given).of(inputs)
+    return _Adjoints(graph, root, inputs, given, where).of(inputs)
 
 
 class _Adjoints:
     """What hangs on each node, while it is found."""
 
     def __init__(
-        self, graph: OperationGraph, root: int, inputs: Sequence[int], given: Mapping[InputNumber, int]
+        self,
+        graph: OperationGraph,
+        root: int,
+        inputs: Sequence[int],
+        given: Mapping[InputNumber, int],
+        where: int | None,
     ) -> None:
         self.graph = graph
+        self.where = graph.constant(1.0) if where is None else where
         order = graph.needed([root])
         self.moves = {k: bool(s & BY_POSE) for k, s in node_strata(graph, order, given).items()}
         assert not self.moves[root], "the root is fixed by the design"
@@ -54,7 +67,10 @@ class _Adjoints:
     def of(self, nodes: Sequence[int]) -> list[int]:
         """Return the adjoints of some nodes."""
         found = (self._adjoint(k) for k in nodes)
-        return [self.graph.constant(0.0) if each is None else each.written(self.graph) for each in found]
+        kept = (
+            a.where(self.graph, self.where) if a and self.moves.get(k) else a for k, a in zip(nodes, found, strict=True)
+        )
+        return [self.graph.constant(0.0) if each is None else each.written(self.graph) for each in kept]
 
     def _adjoint(self, k: int) -> ScaledNode | None:
         """Return the adjoint of a node, once all that depends on it has passed its own on."""
@@ -63,7 +79,8 @@ class _Adjoints:
         return scaled_sum(self.graph, [*self.terms.get(k, ()), *totals])
 
     def _total(self, term: ScaledNode) -> ScaledNode:
-        return ScaledNode(self.graph.apply(TOTAL, term.node), term.factor)
+        kept = term.where(self.graph, self.where)
+        return ScaledNode(self.graph.apply(TOTAL, kept.node), kept.factor)
 
     def _pass_on(self, k: int) -> None:
         adjoint = self._adjoint(k)

@@ -3,8 +3,29 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
+
+_ONE_POSE = ContextVar("one pose is recorded", default=False)
+
+
+@contextmanager
+def one_pose() -> Iterator[None]:
+    """Record what sees one pose: nothing can be asked of all poses at once."""
+    token = _ONE_POSE.set(True)
+    try:
+        yield
+    finally:
+        _ONE_POSE.reset(token)
+
+
+def answer_for_all() -> bool:
+    """Answer yes where all poses are asked: the general branch is recorded."""
+    if _ONE_POSE.get():
+        raise TypeError("numpy.any and numpy.all ask of all poses, of which there is one here")
+    return True
 
 
 class NumpyAnswers(ABC):

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.programs.graph.operations import CONSTANT
+from compoundkin.programs.recording.numpy_answers import answer_for_all
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
 
@@ -16,6 +18,8 @@ def _named(operation: str) -> Callable[..., Any]:
 
     def recorded(*operands: RecordedNumber) -> RecordedNumber:
         graph = operands[0].graph
+        if any(each.y is not None for each in operands):
+            raise TypeError(f"{operation} is recorded of real numbers only")
         return RecordedNumber(graph, graph.apply(operation, *(each.x for each in operands)))
 
     return recorded
@@ -31,7 +35,7 @@ def _exp(x: RecordedNumber) -> Any:
 
 
 def _sign(x: RecordedNumber) -> RecordedNumber:
-    return _where(x, x > 0.0, 1.0, _where(x, x < 0.0, -1.0, x))
+    return chosen(x > 0.0, 1.0, chosen(x < 0.0, -1.0, x))
 
 
 def _finite(x: RecordedNumber) -> Any:
@@ -65,6 +69,8 @@ UFUNCS: dict[Any, Callable[..., Any]] = {
     np.arctan: lambda x: _named("atan2")(x, x.like(1.0)),
     np.arcsin: lambda x: _named("atan2")(x, _named("sqrt")(1.0 - x * x)),
     np.arccos: lambda x: _named("atan2")(_named("sqrt")(1.0 - x * x), x),
+    np.deg2rad: lambda x: x * (np.pi / 180.0),
+    np.rad2deg: lambda x: x * (180.0 / np.pi),
     np.exp: _exp,
     np.log: _named("log"),
     np.sign: _sign,
@@ -96,21 +102,21 @@ UFUNCS: dict[Any, Callable[..., Any]] = {
 
 def _number(value: RecordedNumber) -> float:
     """Return the number that a recorded one is known to be."""
-    return value.graph.nodes[value.x].value
+    node = value.graph.nodes[value.x]
+    if node.operation != CONSTANT or value.y is not None:
+        raise TypeError("only powers with whole exponents, and square roots, can be recorded")
+    return node.value
 
 
-def _where(like: RecordedNumber, truth: Any, one: Any, other: Any) -> RecordedNumber:
-    chosen, a, b = like.like(truth), like.like(one), like.like(other)
-    graph = like.graph
-    x = graph.apply("select", chosen.x, a.x, b.x)
+def chosen(truth: RecordedNumber, one: Any, other: Any) -> RecordedNumber:
+    """Return one number where a truth is, and another where it is not."""
+    graph, a, b = truth.graph, truth.like(one), truth.like(other)
+    if not graph.is_truth(truth.x) and graph.nodes[truth.x].operation != CONSTANT:
+        raise TypeError("numpy.where is recorded of truths only: write a comparison")
+    x = graph.apply("select", truth.x, a.x, b.x)
     if a.y is None and b.y is None:
         return RecordedNumber(graph, x)
-    return RecordedNumber(graph, x, graph.apply("select", chosen.x, a.imag.x, b.imag.x))
-
-
-def _general(like: RecordedNumber, *args: Any, **options: Any) -> bool:
-    """Answer what is asked of all poses at once: yes, so that the general branch is recorded."""
-    return True
+    return RecordedNumber(graph, x, graph.apply("select", truth.x, a.imag.x, b.imag.x))
 
 
 def _filled(value: float) -> Callable[..., RecordedNumber]:
@@ -122,17 +128,20 @@ def _same(like: RecordedNumber, value: Any, *args: Any, **options: Any) -> Any:
 
 
 def _angle(like: RecordedNumber, z: RecordedNumber, deg: bool = False) -> Any:
-    return _named("atan2")(z.imag, z.real)
+    angle = _named("atan2")(z.imag, z.real)
+    return angle * (180.0 / np.pi) if deg else angle
 
 
 def _round(like: RecordedNumber, value: RecordedNumber, decimals: int = 0) -> Any:
+    if decimals:
+        raise TypeError("only rounding to whole numbers is recorded")
     return _named("rint")(value)
 
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {
-    np.where: _where,
-    np.any: _general,
-    np.all: _general,
+    np.where: lambda like, truth, one, other: chosen(like.like(truth), one, other),
+    np.any: lambda like, *args, **options: answer_for_all(),
+    np.all: lambda like, *args, **options: answer_for_all(),
     np.shape: lambda like, value: (),
     np.ndim: lambda like, value: 0,
     np.zeros_like: _filled(0.0),

@@ -1,0 +1,125 @@
+"""The program of an objective: its sum over the poses, the least margin, and the slopes where they are asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.programs.backends import runner_of
+from compoundkin.programs.backends.contract import Runner
+from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.derivatives.adjoints import reverse
+from compoundkin.programs.derivatives.recorded_objective import ObjectivePose, recorded_cost
+from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
+from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.graph.operations import LEAST, TOTAL
+from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.recording.recorded_functions import chosen
+from compoundkin.programs.recording.recorded_mechanism import DIMENSION
+from compoundkin.programs.recording.recorded_number import RecordedNumber
+
+
+@dataclass(frozen=True)
+class ObjectiveForm:
+    """What is asked of an objective.
+
+    Whether there are slopes, and masks, which are not needed where all poses are known to be assembled. `given` tells of each name given with the call whether it is complex.
+    """
+
+    function: Callable[[ObjectivePose], Any]
+    given: Mapping[str, bool]
+    is_sloped: bool
+    is_masked: bool
+
+
+@dataclass(frozen=True, repr=False)
+class ObjectiveValues(PrintsShort):
+    """The sum, the least margin and the slopes of each design.
+
+    All are arrays (1 or designs, 1 or poses).
+    """
+
+    value: Number
+    least: Number
+    slopes: Mapping[str, Number]
+
+    def replaced(self, designs: Number, other: ObjectiveValues, count: int) -> ObjectiveValues:
+        """Return it with some of the designs computed otherwise."""
+
+        def put(old: Number, new: Number) -> Number:
+            whole = np.array(np.broadcast_to(old, (count, old.shape[1])))
+            whole[designs] = new
+            return whole
+
+        lost = np.isnan(other.value)  # a sum that is none has no slopes
+        slopes = {name: put(old, np.where(lost, np.nan, other.slopes[name])) for name, old in self.slopes.items()}
+        return ObjectiveValues(put(self.value, other.value), put(self.least, other.least), slopes)
+
+    def shaped(self, shape: tuple[int, ...]) -> tuple[Any, dict[str, Any]]:
+        """Return sum and slopes in the form of the call.
+
+        Slopes along the motion keep the last axis.
+        """
+
+        def formed(array: Number) -> Any:
+            over = shape if array.shape[1] > 1 else shape[:-1]
+            designs = int(np.prod(shape[:-1], dtype=int))
+            return np.broadcast_to(array, (designs, array.shape[1])).reshape(over)
+
+        return formed(self.value), {name: formed(slope) for name, slope in self.slopes.items()}
+
+
+@dataclass(frozen=True, repr=False)
+class ObjectiveProgram(PrintsShort):
+    """A flat program ready to run, with the nodes of the slopes by each dimension."""
+
+    flat: FlatProgram
+    runner: Runner
+    slopes: Mapping[str, tuple[int, ...]]
+
+    @classmethod
+    def of(
+        cls, path: RecordedPath, names: Sequence[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
+    ) -> ObjectiveProgram:
+        """Make the program of an objective for numbers of some form."""
+        graph, margin = path.mechanism.graph, path.mechanism.margin
+        assembled = margin >= 0.0 if form.is_masked else margin.like(True)
+        outputs = dict(zip(names, (_masked(each, assembled) for each in path.outputs), strict=True))
+        cost = recorded_cost(form.function, graph, outputs, form.given, assembled)
+        root, least, strata = graph.apply(TOTAL, cost), graph.apply(LEAST, margin.x), numbers.strata(graph)
+        by = _dimensions(graph, numbers) if form.is_sloped else {}
+        every = [k for nodes in by.values() for k in nodes]
+        found = dict(zip(every, reverse(graph, root, every, strata, assembled.x), strict=True))
+        slopes = {name: tuple(found[k] for k in nodes) for name, nodes in by.items()}
+        flat = flat_program(graph, [root, least, *(k for nodes in slopes.values() for k in nodes)], strata)
+        return cls(flat, runner_of(flat, backend), slopes)
+
+    def run(self, numbers: CallNumbers, threads: int) -> ObjectiveValues:
+        """Compute sum and slopes."""
+        extent, flat = numbers.extent, self.flat
+        rows: list[Number] = [np.empty(flat.shape(k, *extent)) for k in flat.outputs[:2]]
+        value, least, slopes = *rows, dict[str, Number]()
+        for name, nodes in self.slopes.items():
+            shape = np.broadcast_shapes(*(flat.shape(k, *extent) for k in nodes))
+            slopes[name] = slope = np.empty(shape, complex if len(nodes) > 1 else float)
+            rows += [slope.real, slope.imag] if len(nodes) > 1 else [slope]
+        self.runner(numbers.arrays(flat), rows, extent, threads)
+        return ObjectiveValues(value, least, slopes)
+
+
+def _masked(output: RecordedNumber, assembled: RecordedNumber) -> RecordedNumber:
+    return chosen(assembled, output, complex(np.nan, np.nan) if output.y is not None else np.nan)
+
+
+def _dimensions(graph: OperationGraph, numbers: CallNumbers) -> dict[str, tuple[int, ...]]:
+    """Return the inputs of the free dimensions by their names: one, or two of a point."""
+    found: dict[str, list[InputNumber]] = {}
+    for given in numbers.given:
+        if given.kind == DIMENSION:
+            found.setdefault(given.name, []).append(given)
+    return {name: tuple(graph.input(part) for part in parts) for name, parts in found.items()}

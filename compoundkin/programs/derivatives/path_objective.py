@@ -1,0 +1,114 @@
+"""An objective of a compiled path: a function of each pose, summed over the poses, and its gradient."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.display import PrintsShort
+from compoundkin.kinematics.driver_ways import NEAR
+from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.derivatives.objective_program import ObjectiveForm, ObjectiveProgram, ObjectiveValues
+from compoundkin.programs.derivatives.parameters import with_parameters
+from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
+
+if TYPE_CHECKING:
+    from compoundkin.programs.compiled_path import CompiledPath
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PathObjective(PrintsShort):
+    """A function of the poses of a compiled path, summed over them.
+
+    It is called like the path, and with what the function reads besides outputs (`target=...`): numbers or arrays, real
+    or complex, that broadcast with the others. The sum is NaN where some pose is not assembled, unless the function
+    leaves such poses out: `np.where(at.assembled, ..., 0.0)`.
+    """
+
+    path: CompiledPath
+    function: Callable[[ObjectivePose], Any]
+    _programs: dict[Any, ObjectiveProgram] = field(default_factory=dict)
+
+    @checked
+    def __call__(
+        self,
+        values: Any = None,
+        dimensions: Mapping[str, Any] | None = None,
+        *,
+        speed: Any = None,
+        acceleration: Any = None,
+        jerk: Any = None,
+        threads: int = 1,
+        **given: Any,
+    ) -> Any:
+        """Return the sum over the poses of each design.
+
+        Its shape is that of the call without the last axis. Raises UnknownName for what is given and not read, or read
+        and not given; InvalidInput for what cannot be recorded or does not broadcast.
+
+        >>> import compoundkin as ck
+        >>> crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank"))
+        >>> cost = ck.compile(crank, "B", free="crank.B").objective(lambda at: abs(at["B"] - at["target"]) ** 2)
+        >>> float(cost([0.0, 0.0], {"crank.B": 3.0}, target=1.0))
+        8.0
+        """
+        numbers = self.path.numbers(values, dimensions, speed, acceleration, jerk)
+        return self._found(numbers, given, False, threads)[0]
+
+    @checked
+    def gradient(
+        self,
+        values: Any = None,
+        dimensions: Mapping[str, Any] | None = None,
+        *,
+        speed: Any = None,
+        acceleration: Any = None,
+        jerk: Any = None,
+        threads: int = 1,
+        **given: Any,
+    ) -> tuple[Any, dict[str, Any]]:
+        """Return the sum and its slopes by all free dimensions.
+
+        The slope by a point is complex: by x, and i times that by y. The slope by a dimension that varies along the
+        motion does so too, others have the shape of the sum. Raises what a call does. Source: reverse accumulation; A.
+        Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008.
+
+        >>> import compoundkin as ck
+        >>> crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank"))
+        >>> cost = ck.compile(crank, "B", free="crank.B").objective(lambda at: abs(at["B"] - at["target"]) ** 2)
+        >>> value, slope = cost.gradient([0.0, 0.0], target=1.0)
+        >>> float(value), complex(slope["crank.B"])
+        (2.0, (4+0j))
+        """
+        return self._found(self.path.numbers(values, dimensions, speed, acceleration, jerk), given, True, threads)
+
+    def _found(
+        self, numbers: CallNumbers, given: Mapping[str, Any], is_sloped: bool, threads: int
+    ) -> tuple[Any, dict[str, Any]]:
+        """Return value and slopes; designs that come near a limit are computed again with masks."""
+        whole, complex_names = with_parameters(numbers, given)
+        found = self._run(whole, complex_names, is_sloped, False, threads)
+        near = np.flatnonzero(~np.broadcast_to(found.least >= NEAR, (whole.extent[0], 1)))
+        if len(near):
+            masked = self._run(whole.of_designs(near), complex_names, is_sloped, True, threads)
+            found = found.replaced(near, masked, whole.extent[0])
+        return found.shaped(whole.shape)
+
+    def _run(
+        self, numbers: CallNumbers, given: Mapping[str, bool], is_sloped: bool, is_masked: bool, threads: int
+    ) -> ObjectiveValues:
+        key = numbers.form, tuple(given.items()), is_sloped, is_masked
+        if key not in self._programs:
+            path, names = self.path, [output.name for output in self.path.outputs]
+            form = ObjectiveForm(self.function, given, is_sloped, is_masked)
+            self._programs[key] = ObjectiveProgram.of(
+                path.variant(numbers.still), names, numbers, form, path.chosen_backend
+            )
+        return self._programs[key].run(numbers, threads)
+
+    def __repr__(self) -> str:
+        return f"PathObjective(of {self.path!r})"

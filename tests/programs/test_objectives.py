@@ -1,0 +1,136 @@
+"""Objectives of compiled paths and their gradients against `solve` and its central differences."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.kinematics.quantities import quantity
+from tests.catalog import mechanism as loaded
+
+ANGLES = np.deg2rad(np.linspace(10.0, 340.0, 7))
+STEP = 1e-6
+
+
+def with_points(mechanism, places):
+    """The mechanism with some points elsewhere: numbers, or columns of designs."""
+    for name, place in places.items():
+        link, _, letter = name.partition(".")
+        mechanism = mechanism.replace(ck.link(link, **{**mechanism.links[link].points, letter: place}))
+    return mechanism
+
+
+def places_of(mechanism, names):
+    """Where points are in the mechanism as it stands."""
+    return {name: complex(mechanism.geometry.points[name.partition(".")[0]][name.partition(".")[2]]) for name in names}
+
+
+def differences(mechanism, at, name, cost):
+    """The slope of a sum over the poses by a point, from four changed mechanisms solved at once."""
+    here = at[name] + STEP * np.array([[1.0], [-1.0], [1j], [-1j]])
+    east, west, north, south = cost(with_points(mechanism, {**at, name: here}))
+    return (east - west) / (2.0 * STEP) + 1j * (north - south) / (2.0 * STEP)
+
+
+@pytest.mark.parametrize(
+    ("name", "out", "free"),
+    [
+        ("six-bar", ["G.velocity", "G", "bar.angle"], ["crank.D", "plate.C", "plate.A", "frame.F"]),
+        ("crank-rocker", ["C", "C.acceleration"], ["crank.B", "coupler.C", "frame.D"]),
+        ("slider-crank", ["B", "B.velocity"], ["crank.A", "rod.B"]),
+    ],
+)
+def test_a_gradient_is_that_of_changed_mechanisms(name, out, free):
+    """Values to 1e-12 and slopes to 1e-7 of what `solve` gives, for two designs with targets of their own."""
+    mechanism = loaded(name)
+    free = [each for each in free if each.partition(".")[2] in mechanism.links[each.partition(".")[0]].points]
+    path = ck.compile(mechanism, out, free=free)
+    drive = mechanism.drives[0].name
+    target = np.array([1.0 + 2.0j, -0.5j])[:, None] + np.cos(ANGLES)
+    base = places_of(mechanism, free)
+    shift = {each: place + abs(place) * np.array([0.0, 0.01 - 0.02j]) for each, place in base.items()}
+
+    def function(at):
+        first, second = at[out[0]], at[out[1]]
+        return (
+            at["weight"] * abs(first - at["target"]) ** 2 + abs(second) / (1.0 + at["weight"]) - (first * second).imag
+        )
+
+    cost = path.objective(function)
+    rates = {"speed": 2.0, "acceleration": 0.5}
+    given = {"target": target, "weight": 0.3}
+    value, slope = cost.gradient({drive: ANGLES}, {k: v[:, None] for k, v in shift.items()}, **rates, **given)
+    assert (value.shape, set(slope)) == ((2,), set(free))
+    np.testing.assert_array_equal(
+        value, cost({drive: ANGLES}, {k: v[:, None] for k, v in shift.items()}, **rates, **given)
+    )
+    for d in range(2):
+        at = {each: complex(place[d]) for each, place in shift.items()}
+
+        def summed(changed, d=d):
+            motion = ck.solve(changed, {drive: ANGLES}, **rates)
+            seen = {each: quantity(motion, each).values for each in out}
+            return np.sum(function({**seen, "target": target[d], "weight": 0.3}), axis=-1)
+
+        np.testing.assert_allclose(value[d], summed(with_points(mechanism, at)), rtol=1e-12)
+        size = max(abs(each[d]) for each in slope.values())
+        for each in free:
+            np.testing.assert_allclose(slope[each][d], differences(mechanism, at, each, summed), atol=1e-7 * size)
+
+
+def test_poses_that_are_not_assembled_are_left_out_where_masked():
+    """The sum of what is assembled and its slope, one design of it wholly; NaN for a design with gaps else."""
+    mechanism = loaded("crank-rocker")
+    path = ck.compile(mechanism, "C", free=["coupler.C", "frame.D"])
+    whole = np.deg2rad(np.arange(0.0, 360.0, 9.0))
+    places = {"coupler.C": np.array([[5.0 + 0j], [2.2 + 0j]])}
+    masked = path.objective(lambda at: np.where(at.assembled, abs(at["C"] - at["target"]) ** 2, 0.0))
+    plain = path.objective(lambda at: abs(at["C"] - at["target"]) ** 2)
+    value, slope = masked.gradient({"crank": whole}, places, target=5.0 + 4.0j)
+    told, other = plain.gradient({"crank": whole}, places, target=5.0 + 4.0j)
+    assert np.isnan([told[1], other["coupler.C"][1]]).all()
+    assert np.isfinite(value).all()
+    assert (told[0], other["coupler.C"][0]) == (value[0], slope["coupler.C"][0])
+
+    def summed(changed):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ck.errors.UnassembledPoses)
+            motion = ck.solve(changed, {"crank": whole})
+        assert 0 < motion.assembled[0].sum() < len(whole)
+        return np.nansum(abs(motion.points["C"].position - (5.0 + 4.0j)) ** 2, axis=-1)
+
+    at = {"coupler.C": 2.2 + 0j, "frame.D": 5.5 + 0j}
+    np.testing.assert_allclose(value[1], summed(with_points(mechanism, {k: np.array([[v]]) for k, v in at.items()}))[0])
+    for each in at:
+        np.testing.assert_allclose(slope[each][1], differences(mechanism, at, each, summed), rtol=1e-6)
+
+
+def test_slips_in_objectives_are_told():
+    """Each with its place and remedy, by the errors of the package."""
+    path = ck.compile(loaded("crank-rocker"), ["C", "rocker.angle"], free="coupler.C")
+    cost = path.objective(lambda at: abs(at["C"] - at["target"]) ** 2)
+    with pytest.raises(ck.errors.UnknownName, match=r"tragt.*did you mean 'target'"):
+        cost([0.1], target=1.0, tragt=2.0)
+    with pytest.raises(ck.errors.UnknownName, match="target: it is no output"):
+        cost([0.1])
+    with pytest.raises(ck.errors.InvalidInput, match=r"target: shape .* does not broadcast"):
+        cost([0.1, 0.2], target=[1.0, 2.0, 3.0])
+    with pytest.raises(ck.errors.InvalidInput, match="target"):
+        cost([0.1], target="x")
+    with pytest.raises(ck.errors.InvalidInput, match=r"target: .*not finite"):
+        cost([0.1], target=np.nan)
+    for wrong, told in (
+        (lambda at: at["C"], "complex"),
+        (lambda at: 1.0 if at["rocker.angle"] > 0 else 0.0, "truth value"),
+        (lambda at: np.any(at["rocker.angle"] > 0), "all poses"),
+        (lambda at: np.sin(at["C"]), "sin"),
+        (lambda at: at["rocker.angle"] ** 0.3, "whole exponents"),
+        (lambda at: np.fft.fft(at["C"]), "cannot be recorded"),
+        (lambda at: at["C"].mean(), "cannot be recorded"),
+        (lambda at: "x", "cannot be recorded"),
+        (lambda at: None, "cannot be recorded"),
+        (lambda: 0.0, "cannot be recorded"),
+    ):
+        with pytest.raises(ck.errors.InvalidInput, match=told):
+            path.objective(wrong)([0.1])
