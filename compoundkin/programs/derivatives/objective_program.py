@@ -20,6 +20,7 @@ from compoundkin.programs.graph.operation_graph import InputNumber, OperationGra
 from compoundkin.programs.graph.operations import LEAST, TOTAL
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.recorded_functions import chosen
+from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import DIMENSION
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
@@ -28,7 +29,8 @@ from compoundkin.programs.recording.recorded_number import RecordedNumber
 class ObjectiveForm:
     """What is asked of an objective.
 
-    Whether there are slopes, and masks, which are not needed where all poses are known to be assembled. `given` tells of each name given with the call whether it is complex.
+    Whether there are slopes, and masks, which are not needed where all poses are known to be assembled. `given` tells
+    of each name given with the call whether it is complex.
     """
 
     function: Callable[[ObjectivePose], Any]
@@ -76,7 +78,7 @@ class ObjectiveValues(PrintsShort):
 
 @dataclass(frozen=True, repr=False)
 class ObjectiveProgram(PrintsShort):
-    """A flat program ready to run, with the nodes of the slopes by each dimension."""
+    """A flat program ready to run, with the nodes of its slopes."""
 
     flat: FlatProgram
     runner: Runner
@@ -87,11 +89,11 @@ class ObjectiveProgram(PrintsShort):
         cls, path: RecordedPath, names: Sequence[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
     ) -> ObjectiveProgram:
         """Make the program of an objective for numbers of some form."""
-        graph, margin = path.mechanism.graph, path.mechanism.margin
-        assembled = margin >= 0.0 if form.is_masked else margin.like(True)
+        graph, limits = path.mechanism.graph, RecordedLimits(path.mechanism)
+        assembled = limits.failed == 0.0 if form.is_masked else path.mechanism.number(True)
         outputs = dict(zip(names, (_masked(each, assembled) for each in path.outputs), strict=True))
         cost = recorded_cost(form.function, graph, outputs, form.given, assembled)
-        root, least, strata = graph.apply(TOTAL, cost), graph.apply(LEAST, margin.x), numbers.strata(graph)
+        root, least, strata = graph.apply(TOTAL, cost), graph.apply(LEAST, limits.certain.x), numbers.strata(graph)
         by = _dimensions(graph, numbers) if form.is_sloped else {}
         every = [k for nodes in by.values() for k in nodes]
         found = dict(zip(every, reverse(graph, root, every, strata, assembled.x), strict=True))

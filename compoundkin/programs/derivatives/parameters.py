@@ -19,7 +19,8 @@ from compoundkin.programs.derivatives.recorded_objective import parts
 def with_parameters(numbers: CallNumbers, given: Mapping[str, Any]) -> tuple[CallNumbers, dict[str, bool]]:
     """Return the numbers of a call with those given by name.
 
-    It tells of each name whether it is complex. Raises InvalidInput for what is no number, not finite, or does not broadcast.
+    It tells of each name whether it is complex. Raises InvalidInput for what is no number, not finite, or does not
+    broadcast.
     """
     arrays = {name: _array(name, value) for name, value in sorted(given.items())}
     shape = numbers.shape
