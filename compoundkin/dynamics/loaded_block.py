@@ -13,8 +13,9 @@ from compoundkin.base.series import Number, Series, as_series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block, blocks
 from compoundkin.kinematics.extremes import given_over
-from compoundkin.kinematics.inputs import fit, mapped, rectangle
+from compoundkin.kinematics.inputs import fit, mapped
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.number_parts import rectangle
 from compoundkin.model.elements import Load, Mass
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends

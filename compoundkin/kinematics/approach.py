@@ -31,7 +31,11 @@ def approach_path(
     """
     shown = {name: drawn_value(solving_order, given, name, drawn, sketch) for name in solving_order.structure.driven}
     values = {name: value for name, value in shown.items() if value is not None}
-    at = _nearest(solving_order, given, values) if values else 0.0
+    if not values:
+        first = given.cut(slice(None), slice(0, 1))
+        here = {name: (rest[0] + np.zeros((1, 1)),) for name, rest in first.drives.items()}
+        return first.driven(here).of_poses(1), 0.0
+    at = _nearest(solving_order, given, values)
     between_poses = at != np.floor(at)
     end = given.at(np.array([at])) if between_poses else given.cut(slice(None), slice(int(at), int(at) + 1))
     ways: dict[str, Number] = {}

@@ -45,29 +45,35 @@ def _open_sign(tracker: AtFirstPose, k: int, loops: FourBarLoops, block: Block) 
     will be that counts.
     """
     sides = _sides(tracker, loops, block)[0]
+    # higher derivatives change nothing of the first, which most often tells
+    for order in (1, HIGHEST):
+        if np.any(sides == 0.0):
+            for rate in _sides(tracker, loops, _ahead(tracker, k, order))[1:]:
+                sides = np.where(sides == 0.0, rate, sides)
     if np.any(sides == 0.0):
-        for rate in _sides(tracker, loops, _ahead(tracker, k))[1:]:
-            sides = np.where(sides == 0.0, rate, sides)
         first, second = (_at(tracker, place, block).c[0] for place in (loops.first, loops.second))
         sides = np.where(sides == 0.0, _upward(second - first), sides)
-    signs = np.broadcast_to(np.where(sides < 0.0, -1.0, 1.0), (block.shape[0], 1))
-    return float(signs[0, 0]) if np.all(signs == signs[0, 0]) else signs
+    signs = np.where(sides < 0.0, -1.0, 1.0)
+    alike = signs.size == 1 or np.all(signs == signs[0, 0])
+    return float(signs.flat[0]) if alike else signs
 
 
-def _ahead(tracker: AtFirstPose, k: int) -> Block:
+def _ahead(tracker: AtFirstPose, k: int, order: int) -> Block:
     """Return what is solved before a group, with derivatives by increasing drivers. It is at the drawn pose.
 
     At a change point of the group a mode is that of the side to which the motion goes: its drivers may decrease.
     """
     first = tracker.approach_path.cut(slice(None), slice(0, 1))
     place = np.zeros((1, 1)), np.arange(tracker.given.designs)[:, None]
-    tracker.signs[k] = 1
-    margin = tracker.run(first, 0, *place, upto=k + 1, on_approach=True).margins[k]
     single = tracker.approach_path.poses == 1
     sense = _senses(tracker.given, int(tracker.at)) if single else _senses(tracker.approach_path, 0)
-    rates = {n: tracker.solving_order.unit(n) * np.where(margin < FLAT, sense[n], 1.0) for n in first.drives}
+    if any(np.any(one < 0.0) for one in sense.values()):
+        tracker.signs[k] = 1
+        margin = tracker.run(first, 0, *place, upto=k + 1, on_approach=True).margins[k]
+        sense = {name: np.where(margin < FLAT, one, 1.0) for name, one in sense.items()}
+    rates = {name: tracker.solving_order.unit(name) * sense[name] for name in first.drives}
     part = first.driven({name: (v[0], rates[name]) for name, v in first.drives.items()})
-    return tracker.run(part, HIGHEST, *place, upto=k, on_approach=True)
+    return tracker.run(part, order, *place, upto=k, on_approach=True)
 
 
 def regularity(solver: GroupSolver, state: Number, block: Block) -> Number:
@@ -100,7 +106,7 @@ def _sides(tracker: AtFirstPose, loops: FourBarLoops, block: Block) -> list[Numb
 
     Of several opposite pins it is the one that makes the largest area.
     """
-    first, second = (_at(tracker, place, block) for place in (loops.first, loops.second))
+    first, second = _at(tracker, loops.first, block), _at(tracker, loops.second, block)
     line = second - first
     found: list[Number] = [0.0] * (block.order + 1)
     most: Number = 0.0
@@ -109,7 +115,9 @@ def _sides(tracker: AtFirstPose, loops: FourBarLoops, block: Block) -> list[Numb
         area = line.cross(arm)
         scale = TIE * np.abs(line.c[0]) * np.abs(arm.c[0])
         values = [np.where(np.abs(c) > scale, c, 0.0) for c in (*area.c, *[0.0] * (block.order - area.order))]
-        largest = np.abs(area.c[0]) > most if len(loops.opposite) > 1 else True
+        if len(loops.opposite) == 1:
+            return values
+        largest = np.abs(area.c[0]) > most
         found = [np.where(largest, value, kept) for value, kept in zip(values, found, strict=True)]
         most = np.fmax(most, np.abs(area.c[0]))
     return found

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,8 @@ from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.elements import Drive
 from compoundkin.model.laws import Law
 from compoundkin.model.laws.constant_laws import taylor
-from compoundkin.model.load_problems import load_designs
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs.contract import Ends
 
 # A period is sampled as finely as a full turn in steps of five degrees.
 SAMPLES = 73
@@ -49,9 +50,16 @@ def inputs(
     fitted = fit(shape)
     return Inputs(
         shape,
-        {k: tuple(mapped(end, fitted) for end in ends) for k, ends in solving_order.ends.items()},
+        _fitted_ends(solving_order, fitted),
         {k: tuple(fitted(v) for v in vs) for k, vs in given.items()},
     )
+
+
+def _fitted_ends(solving_order: SolvingOrder, fitted: Callable[[Number], Number]) -> Mapping[str, Ends]:
+    """Return the pairs' dimensions in the form of the inputs; all numbers are that form already."""
+    if solving_order.is_of_numbers:
+        return solving_order.ends
+    return {k: tuple(mapped(end, fitted) for end in ends) for k, ends in solving_order.ends.items()}
 
 
 def by_name(mechanism: Mechanism, values: Any) -> Mapping[str, Any] | None:
@@ -101,6 +109,8 @@ def _rate(drive: Drive, what: Any, default: Number, only: bool) -> Any:
 
 
 def _number(where: str, value: Any) -> Number:
+    if type(value) is float and isfinite(value):
+        return value
     out = real_numbers(where, value)
     if out.size == 0 or not np.isfinite(out).all():
         raise InvalidInput(Problem(where, "the value is empty or not finite"))
@@ -122,14 +132,8 @@ def _only_known(mechanism: Mechanism, given: Mapping[str, Any]) -> None:
 
 def _shape(solving_order: SolvingOrder, drives: Mapping[str, tuple[Number, ...]]) -> tuple[int, ...]:
     found: tuple[int, ...] = ()
-    named = [(f"drives.{k}", v) for k, vs in drives.items() for v in vs]
-    named += [(name, v) for name, ends in solving_order.ends.items() for end in ends for v in end if v is not None]
-    points = solving_order.structure.mechanism.geometry.points
-    named += [(f"links.{name}.points.{k}", v) for name, placed in points.items() for k, v in placed.items()]
-    named += load_designs(solving_order.structure.mechanism)
-    for where, value in named:
-        if not isinstance(value, np.ndarray):
-            continue
+    named = [(f"drives.{k}", v) for k, vs in drives.items() for v in vs if isinstance(v, np.ndarray)]
+    for where, value in (*named, *solving_order.dimension_arrays):
         try:
             found = np.broadcast_shapes(found, np.shape(value))
         except ValueError:

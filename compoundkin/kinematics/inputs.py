@@ -15,6 +15,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import End
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import rates
+from compoundkin.kinematics.number_parts import between_poses, picked, picked_slope, rectangle, slope
 from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
 from compoundkin.model.pairs.contract import Ends
 
@@ -50,8 +51,8 @@ class Inputs(PrintsShort):
         The drivers' speeds are then the slopes with respect to `s`.
         """
         i = self._interval(np.floor(s))
-        between = self._each(lambda v: _between(v, i, s - i))
-        slopes = {k: (between.drives[k][0], _slope(v[0], i)) for k, v in self.drives.items()}
+        between = self._each(lambda v: between_poses(v, i, s - i))
+        slopes = {k: (between.drives[k][0], slope(v[0], i)) for k, v in self.drives.items()}
         return replace(between, drives=slopes)
 
     def refined(self, per_pose: int) -> Inputs:
@@ -62,9 +63,9 @@ class Inputs(PrintsShort):
         return self.at(np.linspace(0.0, self.poses - 1.0, count)).of_poses(count)
 
     def pick(self, designs: Number, s: Number) -> Inputs:
-        """Return one pose of each of the given designs, at its own place `s`. The poses are a column."""
+        """Return one pose of each of some designs, `s` its place, as a column."""
         i = self._interval(np.floor(s))
-        return self._each(lambda v: _picked(v, designs, i, s - i))
+        return self._each(lambda v: picked(v, designs, i, s - i))
 
     def ahead(self, designs: Number, s: Number) -> Inputs:
         """Do as `pick`. The drivers' speeds are the slopes with respect to `s`, of the way on from there."""
@@ -78,17 +79,17 @@ class Inputs(PrintsShort):
         return np.clip(start.astype(int), 0, max(self.poses - 2, 0))
 
     def _sloped(self, designs: Number, s: Number, i: Number) -> Inputs:
-        picked = partial(_picked, designs=designs, i=i, weight=s - i)
-        drives = {name: (picked(v), _picked_slope(v, designs, i)) for name, (v, *_) in self.drives.items()}
-        return replace(self, ends=self._ends(picked), drives=drives)
+        at = partial(picked, designs=designs, i=i, weight=s - i)
+        drives = {name: (at(v), picked_slope(v, designs, i)) for name, (v, *_) in self.drives.items()}
+        return replace(self, ends=self._ends(at), drives=drives)
 
     def driven(self, drives: Mapping[str, tuple[Number, ...]]) -> Inputs:
         """Return the same dimensions with other driver values."""
-        return replace(self, drives=drives)
+        return self._made(self.shape, self.ends, drives)
 
     def of_poses(self, count: int) -> Inputs:
         """Return the same numbers, as a motion of `count` poses."""
-        return replace(self, shape=(*self.shape[:-1], count))
+        return self._made((*self.shape[:-1], count), self.ends, self.drives)
 
     def series(self, order: int) -> dict[str, Series]:
         """Return the drivers as series."""
@@ -106,8 +107,17 @@ class Inputs(PrintsShort):
         return not any(isinstance(v, np.ndarray) for ends in self.ends.values() for end in ends for v in end)
 
     def _each(self, change: Any) -> Inputs:
-        drives = {k: tuple(change(v) for v in vs) for k, vs in self.drives.items()}
-        return replace(self, ends=self._ends(change), drives=drives)
+        drives = {k: tuple([change(v) for v in vs]) for k, vs in self.drives.items()}
+        return self._made(self.shape, self._ends(change), drives)
+
+    def _made(
+        self, shape: tuple[int, ...], ends: Mapping[str, Ends], drives: Mapping[str, tuple[Number, ...]]
+    ) -> Inputs:
+        """Return other inputs; of the same dimensions is known whether each is a number."""
+        made = Inputs(shape, ends, drives)
+        if ends is self.ends and "_rigid" in self.__dict__:
+            made.__dict__["_rigid"] = self._rigid
+        return made
 
     def _ends(self, change: Any) -> Mapping[str, Ends]:
         if self._rigid:
@@ -179,42 +189,3 @@ def fit(shape: tuple[int, ...]) -> Callable[[Number], Number]:
         return np.broadcast_to(array, (*shape[:-1], last)).reshape(designs, last)
 
     return fitted
-
-
-def rectangle(value: Number, designs: slice, poses: slice) -> Number:
-    """Return what of a value belongs to a rectangle of designs and poses."""
-    if np.ndim(value) == 0:
-        return value
-    return value[designs if value.shape[0] > 1 else slice(None), poses if value.shape[1] > 1 else slice(None)]
-
-
-def _between(value: Number, i: Number, weight: Number) -> Number:
-    if np.ndim(value) == 0 or value.shape[1] == 1:
-        return value
-    return value[:, i] * (1.0 - weight) + value[:, i + 1] * weight
-
-
-def _picked(value: Number, designs: Number, i: Number, weight: Number) -> Number:
-    if np.ndim(value) == 0:
-        return value
-    rows = _rows(value, designs)
-    if value.shape[1] == 1:
-        return value[rows, :1]
-    return (value[rows, i] * (1.0 - weight) + value[rows, i + 1] * weight)[:, None]
-
-
-def _picked_slope(value: Number, designs: Number, i: Number) -> Number:
-    if np.ndim(value) == 0 or value.shape[1] == 1:
-        return 0.0
-    rows = _rows(value, designs)
-    return (value[rows, i + 1] - value[rows, i])[:, None]
-
-
-def _rows(value: Number, designs: Number) -> Number:
-    return designs if value.shape[0] > 1 else np.zeros_like(designs)
-
-
-def _slope(value: Number, i: Number) -> Number:
-    if np.ndim(value) == 0 or value.shape[1] == 1:
-        return 0.0
-    return value[:, i + 1] - value[:, i]

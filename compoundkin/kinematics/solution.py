@@ -92,7 +92,7 @@ def solve(
         with diagnosing(solving_order.structure):
             tracker = Tracker(solving_order, given, signs, shown)
         told = without_lost(*settled(tracker.solving_order, tracker.given, tracker, order))
-        motion = replace(told.motion, time=times)
+        motion = told.motion if times is None else replace(told.motion, time=times)
         if solving_order.structure.relaxation:
             check_redundant(motion)
     if times is None:

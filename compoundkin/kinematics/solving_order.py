@@ -16,6 +16,7 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.limits import CLIPPED, LimitRule
 from compoundkin.kinematics.passed_ends import BEFORE, GuideEnds
+from compoundkin.model.load_problems import load_designs
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales
@@ -50,6 +51,21 @@ class SolvingOrder(PrintsShort):
         for solver in self.solvers:
             self.ends.update(solver.ends)
         self.ends.update(own or {})
+
+    @cached_property
+    def dimension_arrays(self) -> tuple[tuple[str, Number], ...]:
+        """The dimensions and loads that are arrays, with their places; a mechanism's never change."""
+        named = [(name, v) for name, ends in self.ends.items() for end in ends for v in end if v is not None]
+        points = self.structure.mechanism.geometry.points
+        named += [(f"links.{name}.points.{k}", v) for name, placed in points.items() for k, v in placed.items()]
+        named += load_designs(self.structure.mechanism)
+        return tuple((where, value) for where, value in named if isinstance(value, np.ndarray))
+
+    @cached_property
+    def is_of_numbers(self) -> bool:
+        """Whether every dimension is one number."""
+        dimensions = (v for ends in self.ends.values() for end in ends for v in end if v is not None)
+        return all(isinstance(v, complex | float | int) for v in dimensions)
 
     @cached_property
     def turning(self) -> frozenset[str]:

@@ -75,6 +75,37 @@ def test_six_bar_by_hand_and_by_loop() -> None:
     assert min(loop["loop"]) / len(some) > 100 * max(fast["asked"]) / MANY
 
 
+def test_many_poses_whatever_the_heap() -> None:
+    """Steady for many motions one after another, thrown away or kept, after much else was allocated and freed."""
+    plan, crank = six_bar.mechanism(), TURN
+    scattered = [np.ones(1000 + 29 * k) for k in range(1000)]
+    del scattered[::2]
+    kept: list[ck.results.Motion] = []
+
+    def solved() -> ck.results.Motion:
+        return ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)
+
+    def keeps() -> None:
+        kept.append(solved())
+        del kept[:-4]
+
+    times = interleaved({"hand": lambda: six_bar.by_hand(crank), "solved": solved, "kept": keeps}, 25)
+    # the best of those by hand had warm memory
+    for name in ("solved", "kept"):
+        assert median(times[name]) < 2.3 * NOISE * min(times["hand"])
+
+
+def test_few_poses_beside_the_same_by_hand() -> None:
+    """361 poses: the fixed costs of a call, beside NumPy by hand, which has none."""
+    plan, crank = six_bar.mechanism(), TURN[::100]
+    subjects = {
+        "hand": lambda: six_bar.by_hand(crank),
+        "solved": lambda: ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED),
+    }
+    times = interleaved(subjects, 200)
+    assert ratio(times, "solved", "hand") < 6.4 * NOISE
+
+
 def test_small_tasks() -> None:
     plan, crank = six_bar.mechanism(), TURN[::100]
     times = interleaved({"it": lambda: ck.solve(plan, {"crank": crank}, speed=six_bar.SPEED)}, 100)
