@@ -23,11 +23,12 @@ from compoundkin.base.errors import (
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.approach import drawn_value
 from compoundkin.kinematics.block import places
-from compoundkin.kinematics.chosen_modes import shown_by, signs_of
+from compoundkin.kinematics.chosen_modes import Shown, shown_by, signs_of
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
 from compoundkin.kinematics.driver_values import by_name, inputs, times_of
+from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.likely_slips import warn_of_degrees
-from compoundkin.kinematics.lost_digits import without_lost
+from compoundkin.kinematics.lost_digits import Told, without_lost
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.redundant_pairs import check_redundant, diagnosing, rank_diagnosis
 from compoundkin.kinematics.solved_blocks import settled, with_branch
@@ -89,16 +90,22 @@ def solve(
         times = times_of(solving_order.structure.mechanism, values, time)
         given = inputs(solving_order, values, speed, acceleration, jerk, times, order)
         signs, shown = signs_of(solving_order, modes), shown_by(solving_order, modes, hint)
-        with diagnosing(solving_order.structure):
-            tracker = Tracker(solving_order, given, signs, shown)
-        told = without_lost(*settled(tracker.solving_order, tracker.given, tracker, order))
-        motion = told.motion if times is None else replace(told.motion, time=times)
-        if solving_order.structure.relaxation:
-            check_redundant(motion)
+        told = solved(solving_order, given, signs, shown, order)
+    motion = told.motion if times is None else replace(told.motion, time=times)
     if times is None:
         warn_of_degrees(motion.structure, given)
     _warn(motion, told.poor)
     return motion
+
+
+def solved(solving_order: SolvingOrder, given: Inputs, signs: Mapping[int, int], shown: Shown, order: int) -> Told:
+    """Return the motion of some inputs. Raises as `solve`, and warns of nothing."""
+    with diagnosing(solving_order.structure):
+        tracker = Tracker(solving_order, given, signs, shown)
+    told = without_lost(*settled(tracker.solving_order, tracker.given, tracker, order))
+    if solving_order.structure.relaxation:
+        check_redundant(told.motion)
+    return told
 
 
 def _warn(motion: Motion, poor: int) -> None:

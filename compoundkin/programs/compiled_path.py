@@ -5,22 +5,27 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort
+from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.call_numbers import CallNumbers, call_numbers
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
+from compoundkin.programs.limit_look import LimitPrograms
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
 from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
+from compoundkin.programs.settled_values import settled_values
+from compoundkin.programs.solved_designs import ProgramConfiguration, designed, solved_designs
 from compoundkin.structure.kinematic_structure import Structure
 
 
@@ -80,8 +85,7 @@ class CompiledPath(PrintsShort):
     @property
     def signs(self) -> dict[int, int]:
         """The modes of the groups that have signs, by their indices."""
-        solvers = self.reference.solving_order.solvers
-        return {s.index: self.reference.sign(s.index, 0) for s in solvers if not s.is_numbered}
+        return self.configuration.signs
 
     def __call__(
         self,
@@ -135,7 +139,25 @@ class CompiledPath(PrintsShort):
             rows += [array.real, array.imag] if len(nodes) > 1 else [array]
         least = np.empty(program.flat.shape(program.flat.outputs[-1], *numbers.extent))
         program.runner(numbers.arrays(program.flat), [*rows, least], numbers.extent, threads)
-        return PathValues(numbers, dict(zip((o.name for o in self.outputs), arrays, strict=True)), least)
+        names = [output.name for output in self.outputs]
+        failed = settled_values(self.limits, numbers, names, arrays, least, self.solved)
+        return PathValues(numbers, dict(zip(names, arrays, strict=True)), failed)
+
+    @cached_property
+    def limits(self) -> LimitPrograms:
+        """The programs that look at designs near limits."""
+        recording = Recording(self.reference.solving_order, self.signs, self.free, self.order)
+        return LimitPrograms(recording, self.chosen_backend)
+
+    @cached_property
+    def configuration(self) -> ProgramConfiguration:
+        """The configuration in which it stays."""
+        return ProgramConfiguration.of(self.reference)
+
+    def solved(self, numbers: CallNumbers) -> Told:
+        """Solve the designs of some numbers instead, in its configuration."""
+        mechanism = designed(self.reference.mechanism, self.free, numbers)
+        return solved_designs(mechanism, numbers, self.configuration, self.order)
 
     def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
         """Return it recorded where some rates of drivers are zero."""

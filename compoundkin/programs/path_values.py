@@ -19,11 +19,18 @@ class PathValues(PrintsShort):
 
     numbers: CallNumbers
     found: Mapping[str, Number]
-    margin: Number  # the least of each design's poses
+    failed: Number | None = None  # (designs, poses): the first group that does not close plus one; None where all do
 
     def __getitem__(self, name: str) -> Any:
         """Return an output by its name."""
         return np.broadcast_to(self.found[name], self.numbers.extent).reshape(self.numbers.shape)
+
+    @property
+    def assembled(self) -> Any:
+        """Which poses are assembled, a bool array of the call's shape."""
+        if self.failed is None:
+            return np.broadcast_to(np.True_, self.numbers.shape)
+        return (self.failed == 0).reshape(self.numbers.shape)
 
     def __repr__(self) -> str:
         return f"PathValues({', '.join(self.found)} at {self.numbers.shape} poses)"

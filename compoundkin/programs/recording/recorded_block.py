@@ -10,7 +10,7 @@ from compoundkin.kinematics.block import Block
 
 @dataclass
 class RecordedBlock(Block):
-    """A block that notes which truth each group, or end of a guide, hangs on.
+    """A block that notes the truths on which its groups hang.
 
     `goods` are (index, truth) in the order in which they are met.
     """

@@ -6,9 +6,10 @@ their digits, which only solving can tell.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, reduce
+from typing import Any
 
 import numpy as np
 
@@ -38,36 +39,41 @@ class RecordedLimits(PrintsShort):
     @cached_property
     def failed(self) -> RecordedNumber:
         """The index of the first group that does not close plus one, else 0."""
-        failed: Number = 0.0
+        failed = self._number(0.0)
         for index, good in reversed(self.mechanism.block.goods):
-            failed = np.where(self._number(good), failed, index + 1.0)
-        return self._number(failed)
+            failed = self._chosen(self._number(good), failed, index + 1.0)
+        return failed
 
     @cached_property
     def clear(self) -> RecordedNumber:
-        """Whether all rates have digits, as far as groups that cannot pass between modes tell."""
-        return reduce(RecordedNumber.__and__, self._clear(), self._number(True))
+        """Whether rates have digits, as groups tell that cannot pass between modes."""
+        return self._all(self._clear())
 
     @cached_property
     def certain(self) -> RecordedNumber:
-        """The least margin of watched groups, below zero where something else is not as it should be.
+        """The least margin of watched groups, negative where anything else is wrong.
 
         Where it is large enough at all poses of a design there is nothing more to be looked at.
         """
         block = self.mechanism.block
         others = [self._number(good) for index, good in block.goods if index not in self.watched]
-        truth = reduce(RecordedNumber.__and__, others, self.clear)
+        truth = self._all([self.clear, *others])
         graph = self.mechanism.graph
-        found = self._number(np.where(truth, 1.0, -1.0))
+        return RecordedNumber(graph, graph.apply("min", self.margin.x, self._chosen(truth, 1.0, -1.0).x))
+
+    @cached_property
+    def margin(self) -> RecordedNumber:
+        """The least margin of watched groups, infinite where there is none."""
+        graph, found = self.mechanism.graph, self._number(np.inf)
         for k in self.watched:
-            found = RecordedNumber(graph, graph.apply("min", self._number(block.margins[k]).x, found.x))
+            found = RecordedNumber(graph, graph.apply("min", self._number(self.mechanism.block.margins[k]).x, found.x))
         return found
 
     @cached_property
     def squares(self) -> tuple[tuple[RecordedNumber, RecordedNumber], ...]:
-        """What is zero where modes meet, in parts of its scale, with its rate; two for a group that turns on a point.
+        """What is zero where modes meet, in parts of its scale, with its rate.
 
-        The mechanism is recorded to the first order at least.
+        There are two for a group that may turn on a point. The mechanism is recorded to the first order at least.
         """
         return tuple((self._number(one.c[0]), self._number(one.c[1])) for one in self._squares() if len(one.c) > 1)
 
@@ -101,8 +107,15 @@ class RecordedLimits(PrintsShort):
         order, fastest = self.mechanism.recording.solving_order, self._number(0.0)
         for name, series in self.mechanism.drives.items():
             speed = self._number(series.c[1]) * (1.0 / order.unit(name))
-            fastest = np.maximum(fastest, speed * speed)
+            graph = self.mechanism.graph
+            fastest = RecordedNumber(graph, graph.apply("max", fastest.x, (speed * speed).x))
         return fastest
+
+    def _chosen(self, truth: Any, one: Any, other: Any) -> RecordedNumber:
+        return self._number(np.where(truth, one, other))
+
+    def _all(self, truths: Iterable[RecordedNumber]) -> RecordedNumber:
+        return reduce(RecordedNumber.__and__, truths, self._number(True))
 
     def _number(self, value: Number) -> RecordedNumber:
         return self.mechanism.number(value)

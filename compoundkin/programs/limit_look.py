@@ -1,0 +1,165 @@
+"""A look at designs near limits: which poses are not assembled, and which designs only solving can tell.
+
+A group passes between its modes where its discriminant touches zero, as the square of a smooth function. From two poses
+and the rates there the least value between them is known nearly: where it is far from zero against the values at the
+poses, nothing is passed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.kinematics.approach import SPACING
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.programs.backends import runner_of
+from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.graph.flat_program import flat_program
+from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.recording.recorded_limits import CLOSE, NEAR, RecordedLimits
+from compoundkin.programs.recording.recorded_mechanism import DRIVE, Recording, recorded
+
+# Between two poses a discriminant may touch zero where the cubic through both falls below this part of the lesser.
+FALL = 0.25
+# So many poses are looked at together.
+BLOCK = 1 << 19
+
+
+@dataclass(frozen=True)
+class LimitLook(PrintsShort):
+    """What is found at designs near limits.
+
+    `failed` (designs, poses) is the index of the first group that does not close plus one, else 0; `handed` are the
+    designs, by index, that only solving can tell.
+    """
+
+    failed: Number
+    handed: Number
+
+
+def bound(order: SolvingOrder, numbers: CallNumbers) -> float:
+    """Return the margin above which a design needs no look.
+
+    It grows with the square of the drivers' longest step.
+    """
+    return NEAR * max(1.0, _longest_step(order, numbers)) ** 2
+
+
+def _longest_step(order: SolvingOrder, numbers: CallNumbers) -> float:
+    """Return the longest step of a driver, in spacings at which `solve` looks for change points."""
+    found = 0.0
+    for name, value in _driver_values(numbers).items():
+        if value.shape[1] > 1:
+            steps = value[:, 1:] - value[:, :-1]
+            found = max(found, float(max(steps.max(), -steps.min())) / (order.unit(name) * SPACING))
+    return found
+
+
+def _driver_values(numbers: CallNumbers) -> dict[str, Number]:
+    return {given.name: value for given, value in numbers.given.items() if (given.kind, given.part) == (DRIVE, "0")}
+
+
+class LimitPrograms(PrintsShort):
+    """The programs that look at limits, recorded when they are first needed."""
+
+    def __init__(self, recording: Recording, backend: str | None) -> None:
+        self.recording, self.backend = recording, backend
+
+    def look(self, numbers: CallNumbers) -> LimitLook:
+        """Look at all designs of some numbers."""
+        designs, poses = numbers.extent
+        high = max(1, BLOCK // max(poses, 1))
+        parts = [picked(numbers, np.arange(d, min(d + high, designs))) for d in range(0, designs, high)]
+        found = [self._block(part) for part in parts]
+        failed, handed = (np.concatenate(each) for each in zip(*found, strict=True))
+        return LimitLook(failed, np.flatnonzero(handed))
+
+    def _block(self, numbers: CallNumbers) -> tuple[Number, Number]:
+        failed, margin, clear = self._computed(self._poses, numbers)
+        failed = failed.astype(np.int32)
+        handed = np.any((failed == 0) & ~((margin >= CLOSE) & (clear != 0.0)), axis=1)
+        steps = int(np.ceil(_longest_step(self.recording.solving_order, numbers)))
+        squares = self._squares if steps else None
+        if squares:
+            handed |= self._touches(squares, numbers, max(1, steps))
+        return failed, handed
+
+    def _touches(self, squares: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers, per_pose: int) -> Number:
+        """Tell which designs may pass a change point between two samples."""
+        values = {name: _refined(value, per_pose) for name, value in _driver_values(numbers).items()}
+        ahead = {name: value[:, 1:] - value[:, :-1] for name, value in values.items()}
+        ends = [{name: value[:, part] for name, value in values.items()} for part in (slice(-1), slice(1, None))]
+        one, two = (self._computed(squares, _driven(numbers, end, ahead)) for end in ends)
+        found: Number = np.zeros(numbers.extent[0], dtype=bool)
+        for k in range(0, len(one), 2):
+            found |= np.any(_may_touch(one[k], one[k + 1], two[k], two[k + 1]), axis=1)
+        return found
+
+    @cached_property
+    def _limits(self) -> RecordedLimits:
+        return RecordedLimits(recorded(self.recording))
+
+    @cached_property
+    def _poses(self) -> tuple[RecordedLimits, Sequence[int]]:
+        limits = self._limits
+        return limits, (limits.failed.x, limits.margin.x, limits.clear.x)
+
+    @cached_property
+    def _squares(self) -> tuple[RecordedLimits, Sequence[int]] | None:
+        order = self.recording.solving_order
+        limits = RecordedLimits(recorded(Recording(order, self.recording.signs, self.recording.free, 1)))
+        nodes = [number.x for pair in limits.squares for number in pair]
+        return (limits, nodes) if nodes else None
+
+    def _computed(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> list[Number]:
+        """Return some nodes at all designs and poses."""
+        limits, nodes = asked
+        graph = limits.mechanism.graph
+        flat = flat_program(graph, nodes, numbers.strata(graph))
+        outputs = [np.empty(flat.shape(k, *numbers.extent)) for k in nodes]
+        runner_of(flat, self.backend)(numbers.arrays(flat), outputs, numbers.extent)
+        return [np.broadcast_to(one, numbers.extent) for one in outputs]
+
+
+def _refined(value: Number, per_pose: int) -> Number:
+    """Return values (1 or designs, poses) with samples between the poses."""
+    if value.shape[1] == 1 or per_pose == 1:
+        return value
+    share = np.arange(per_pose) / per_pose
+    between = value[:, :-1, None] + (value[:, 1:] - value[:, :-1])[..., None] * share
+    return np.concatenate([between.reshape(len(value), -1), value[:, -1:]], axis=1)
+
+
+def picked(numbers: CallNumbers, designs: Number) -> CallNumbers:
+    """Return the numbers of some designs, by index."""
+    given = {one: value[designs] if value.shape[0] > 1 else value for one, value in numbers.given.items()}
+    return replace(numbers, given=given, shape=(len(designs), numbers.extent[1]))
+
+
+def _driven(numbers: CallNumbers, values: Mapping[str, Number], speeds: Mapping[str, Number]) -> CallNumbers:
+    """Return the same dimensions with other driver values and speeds."""
+    given = {one: value for one, value in numbers.given.items() if one.kind != DRIVE}
+    for name, value in values.items():
+        given[InputNumber(DRIVE, name, "0")] = value
+        given[InputNumber(DRIVE, name, "1")] = np.broadcast_to(speeds[name], value.shape)
+    poses = max(value.shape[1] for value in values.values())
+    return replace(numbers, given=given, shape=(numbers.extent[0], poses))
+
+
+def _may_touch(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Number:
+    """Tell where a function with these values and slopes at the ends of a unit interval may touch zero between."""
+    rise = y1 - y0
+    # the slope of the cubic is slope0 + b t + a t^2
+    a, b = 3.0 * (slope0 + slope1 - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * slope0 - slope1)
+    with np.errstate(all="ignore"):
+        root = np.sqrt(np.maximum(b * b - 4.0 * a * slope0, 0.0))
+        t = np.where(b > 0.0, -2.0 * slope0 / (b + root), (root - b) / (2.0 * a))
+        t = np.clip(np.nan_to_num(t, nan=0.5), 0.0, 1.0)
+        least = y0 + t * (slope0 + t * (0.5 * b + t * a / 3.0))
+        lesser = np.minimum(y0, y1)
+        return (slope0 < 0.0) & (slope1 > 0.0) & (lesser >= 0.0) & (lesser < NEAR) & (least < FALL * lesser)

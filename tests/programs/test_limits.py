@@ -1,0 +1,72 @@
+"""Near limits a program says what `solve` says: which poses are assembled, which rates have digits, which mode."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.kinematics.motion import Motion
+from compoundkin.programs.call_numbers import call_numbers
+from compoundkin.programs.compiled_path import CompiledPath
+
+DESIGNS = 60
+# Linkages that stop short, pass change points, slide to ends; trains, rollers and cylinders.
+NAMES = (
+    "four-bar-norton", "six-bar", "slider-crank-offset", "crank-shaper", "parallelogram", "antiparallelogram",
+    "peaucellier", "geared-five-bar", "excavator-arm", "hydraulic-digger", "rack-driven-double-slider", "scotch-yoke",
+    "quick-return-pin-in-slot", "v-engine", "watt-i",
+)  # fmt: skip
+
+
+def _free(mechanism: Any) -> dict[str, complex]:
+    points = mechanism.geometry.points
+    found = {f"{link}.{letter}": own[letter] for link, own in points.items() for letter in own if own[letter] != 0}
+    return dict(list(found.items())[:6])
+
+
+def _solved(path: CompiledPath, dimensions: Any, speed: Any) -> Motion:
+    rates = {"speed": speed, "acceleration": None, "jerk": None}
+    numbers = call_numbers(path.reference.solving_order, path.free, None, dimensions, rates)
+    return path.solved(numbers).motion
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_designs_are_assembled_where_solve_assembles_them(name: str) -> None:
+    mechanism, rng = ck.catalog.load_named(name), np.random.default_rng(3)
+    free, speed = _free(mechanism), {drive.name: 1.0 for drive in mechanism.drives}
+    outputs = [f"{letter}.{word}" for letter in mechanism.carriers for word in ("position", "acceleration")]
+    path = ck.compile(mechanism, outputs, free=tuple(free))
+    spread = rng.choice([0.0, 0.02, 0.4], (DESIGNS, 1))
+    noise = rng.standard_normal((2, len(free), DESIGNS, 1))
+    designs = {key: own * (1 + spread * (noise[0, k] + 1j * noise[1, k])) for k, (key, own) in enumerate(free.items())}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found, motion = path(None, designs, speed=speed), _solved(path, designs, speed)
+    assert np.array_equal(found.assembled, motion.assembled)
+    for output in outputs:
+        wanted = ck.quantity(motion, output).values
+        assert np.array_equal(np.isnan(found[output]), np.isnan(wanted)), output
+        assert np.nanmax(np.abs(found[output] - wanted)) <= 2e-10 * np.nanmax(np.abs(wanted)), output
+
+
+def test_a_parallelogram_goes_on_through_its_change_points() -> None:
+    mechanism = ck.catalog.load_named("parallelogram")
+    found = ck.compile(mechanism, "C", free="crank.B")(speed=1.0)
+    motion = ck.solve(mechanism, speed=1.0)
+    assert motion.change_points  # else this tests nothing
+    assert np.allclose(found["C"], motion.points["C"].position, rtol=0, atol=1e-10 * motion.size)
+
+
+def test_poses_not_assembled_are_told_and_are_no_numbers() -> None:
+    mechanism = ck.catalog.load_named("four-bar-norton")
+    path = ck.compile(mechanism, ["A.position", "B.position"], free="crank.A")
+    with pytest.warns(ck.errors.UnassembledPoses, match="cannot be assembled"):
+        found = path(None, {"crank.A": np.array([[1.0], [4.0]]) * mechanism.geometry.points["crank"]["A"]})
+    assert found.assembled[0].all()
+    assert not found.assembled[1].all()
+    # the crank's own point too, which closes whatever the dyad does
+    assert np.isnan(found["B.position"][~found.assembled]).all()
