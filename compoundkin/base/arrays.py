@@ -13,7 +13,7 @@ Number: TypeAlias = Any
 
 TURN = 2.0 * np.pi
 # What Python joins to a complex number.
-_PLAIN = (float, int, np.number)
+PLAIN = (float, int, np.number)
 
 # Lengths that can be computed with: the fourth power of one, as in the discriminant of a dyad, is a number still.
 LONGEST, SHORTEST = 1e50, 1e-50
@@ -30,7 +30,7 @@ def joined(x: Number, y: Number) -> Number:
     """
     if not (isinstance(x, np.ndarray) or isinstance(y, np.ndarray)):
         # a number of another kind, one that records, is joined by its own arithmetic
-        return complex(x, y) if isinstance(x, _PLAIN) and isinstance(y, _PLAIN) else x + 1j * y
+        return complex(x, y) if isinstance(x, PLAIN) and isinstance(y, PLAIN) else x + 1j * y
     out = np.empty(np.broadcast(x, y).shape, dtype=complex)
     out.real, out.imag = x, y
     return out

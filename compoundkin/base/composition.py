@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, joined
+from compoundkin.base.arrays import PLAIN, Number, joined
 from compoundkin.base.series import Series
 
 
@@ -41,7 +41,7 @@ def implicit(start: Number, order: int, slope: Number, residual: Callable[[Serie
     with np.errstate(divide="ignore", invalid="ignore"):
         for k in range(1, order + 1):
             found.append(residual(Series((*found, 0.0))).c[k] * -np.divide(1.0, slope))
-    return Series(tuple([x if isinstance(x, np.ndarray) else float(x) for x in found]))
+    return Series(tuple([float(x) if isinstance(x, PLAIN) else x for x in found]))
 
 
 def differentiated(coefficients: tuple[Number, ...]) -> tuple[Number, ...]:

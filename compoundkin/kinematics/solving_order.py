@@ -102,8 +102,15 @@ class SolvingOrder(PrintsShort):
         """
         solver = self.solvers[k].followed()
         assert solver is not None
+        return self._solved_by((*self.solvers[:k], solver, *self.solvers[k + 1 :]))
+
+    def from_states(self) -> SolvingOrder:
+        """Return it with groups that are searched or followed closed from their states instead."""
+        return self._solved_by(tuple(solver.from_state() or solver for solver in self.solvers))
+
+    def _solved_by(self, solvers: tuple[GroupSolver, ...]) -> SolvingOrder:
         other = copy(self)
-        other.solvers = (*self.solvers[:k], solver, *self.solvers[k + 1 :])
+        other.solvers = solvers
         for found in ("numbered", "followable"):
             other.__dict__.pop(found, None)
         return other

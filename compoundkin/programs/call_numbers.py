@@ -17,7 +17,7 @@ from compoundkin.model.geometry import vector
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import INPUT
-from compoundkin.programs.recording.recorded_mechanism import DIMENSION, DRIVE
+from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
 
 
 @dataclass(frozen=True)

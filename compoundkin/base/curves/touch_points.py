@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -48,55 +48,75 @@ class Searched(Protocol):
         """Return the parameters within the period."""
 
 
-def foot(curve: Searched, p: Series) -> Series:
-    """Find the parameter of the curve's point nearest to a moving point."""
+def foot(curve: Searched, p: Series, near: Number = None) -> Series:
+    """Find the parameter of the curve's point nearest to a moving point.
+
+    Where one `near` it is known, one step of Newton goes from there.
+    """
 
     def rise(s: Number, point: Number) -> tuple[Number, Number]:
         place, first, second = curve.derivatives(s, 2)
         return dot(point - place, first), dot(point - place, second) - dot(first, first)
 
     return _touching(
-        curve, p, curve.size, rise, curve.samples.nearest, lambda place, along, point: (point - place).dot(along)
+        curve,
+        p,
+        _Aim(curve.size, rise, curve.samples.nearest, lambda place, along, point: (point - place).dot(along)),
+        near,
     )
 
 
-def farthest(curve: Searched, n: Series) -> Series:
-    """Find the parameter of the curve's point farthest in a turning direction."""
+def farthest(curve: Searched, n: Series, near: Number = None) -> Series:
+    """Find the parameter of the curve's point farthest in a turning direction, perhaps from one near it."""
 
     def rise(s: Number, direction: Number) -> tuple[Number, Number]:
         _, first, second = curve.derivatives(s, 2)
         return dot(direction, first), dot(direction, second)
 
-    return _touching(
-        curve, n, np.abs(n.c[0]), rise, curve.samples.outermost, lambda _, along, direction: direction.dot(along)
-    )
+    aim = _Aim(np.abs(n.c[0]), rise, curve.samples.outermost, lambda _, along, direction: direction.dot(along))
+    return _touching(curve, n, aim, near)
 
 
-def _touching(
-    curve: Searched,
-    given: Series,
-    scale: Number,
-    rise: Callable[[Number, Number], tuple[Number, Number]],
-    best: Callable[[Number], Number],
-    condition: Callable[[Series, Series, Series], Series],
-) -> Series:
-    """Find the parameter that belongs to `given`, as large as `scale`: the best sample, Newton, then order by order."""
-    lead = np.asarray(given.c[0], dtype=complex)
+class _Aim(NamedTuple):
+    """What is sought of a curve. Its scale, the slope of what is greatest there with its own, the best sample of some
+    targets, and the condition that is kept in time."""
+
+    scale: Number
+    rise: Callable[[Number, Number], tuple[Number, Number]]
+    best: Callable[[Number], Number]
+    condition: Callable[[Series, Series, Series], Series]
+
+
+def _touching(curve: Searched, given: Series, aim: _Aim, near: Number) -> Series:
+    """Find the parameter that belongs to `given`: the best sample, Newton, then order by order."""
+    s = _found(curve, given.c[0], aim) if near is None else _stepped(curve, given.c[0], aim, near)
+    if given.order == 0:
+        return Series((curve.wrapped(s),))
+    coefficients = curve.expansion(s, given.order + 1)
+    first, slope = aim.rise(s, given.c[0])
+    stays = held(curve, s, first / np.abs(coefficients[1]) / aim.scale)
+    rates = _rates(given, s, slope, coefficients, aim.condition)
+    return Series((curve.wrapped(s), *[np.where(stays, 0.0, rate)[()] for rate in rates]))
+
+
+def _found(curve: Searched, given: Number, aim: _Aim) -> Number:
+    """Search the parameter from the best sample."""
+    lead = np.asarray(given, dtype=complex)
     flat = lead.ravel()
     known = np.isfinite(flat)
     found = np.full(flat.shape, np.nan)
     targets = flat[known]
     if targets.size:
-        bounds = curve.samples.around(best(targets))
-        found[known] = greatest(lambda s, which: rise(s, targets[which]), bounds, LAST_STEP, STEPS)
-    s = found.reshape(lead.shape)[()]
-    if given.order == 0:
-        return Series((curve.wrapped(s),))
-    coefficients = curve.expansion(s, given.order + 1)
-    first, slope = rise(s, lead)
-    stays = held(curve, s, first / np.abs(coefficients[1]) / scale)
-    rates = _rates(given, s, slope, coefficients, condition)
-    return Series((curve.wrapped(s), *[np.where(stays, 0.0, rate)[()] for rate in rates]))
+        bounds = curve.samples.around(aim.best(targets))
+        found[known] = greatest(lambda s, which: aim.rise(s, targets[which]), bounds, LAST_STEP, STEPS)
+    return found.reshape(lead.shape)[()]
+
+
+def _stepped(curve: Searched, given: Number, aim: _Aim, near: Number) -> Number:
+    """Go one step from a parameter nearby; none at an end that holds it."""
+    first, slope = aim.rise(near, given)
+    stays = held(curve, near, first / np.abs(curve.expansion(near, 1)[1]) / aim.scale)
+    return np.where(stays, near, near - first / slope)
 
 
 def held(curve: Searched, s: Number, ahead: Number) -> Number:

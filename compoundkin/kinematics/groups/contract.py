@@ -6,7 +6,7 @@ Each way is one file of this folder and one line of its registry.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -117,6 +117,22 @@ class GroupSolver(ABC):
     def followed(self) -> GroupSolver | None:
         """Return the solver that follows configurations which have no sign here. It is None where there are none."""
         return None
+
+    def from_state(self) -> GroupSolver | None:
+        """Return the solver that closes it from a state nearby, in straight-line arithmetic.
+
+        Its mode is a sequence of numbers, those of `state`. It is None where a sign, or nothing, is enough.
+        """
+        return None
+
+    @property
+    def width(self) -> int:
+        """How many numbers a state has, 0 where a sign is enough."""
+        return 0
+
+    def state(self, block: Block) -> Sequence[Number]:
+        """Return the numbers by which an assembled group is found again; none where a sign is enough."""
+        return ()
 
     def margin(self, block: Block) -> Number | None:
         """Return how far it is from its limit position, negative beyond. It is None where it does not say."""

@@ -6,7 +6,7 @@ distance exactly, and every further coefficient of its time series one division 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import ClassVar, Self, TypeAlias
 
 import numpy as np
@@ -81,6 +81,26 @@ class FollowerSolver(GroupSolver):
         start = np.where(mode > 0, one, other)
         found, closed, slope = self._polished(ends, lambda q: self.mounted.poses(leading, q), start)
         block.fail(closed, self.index)
+        self._published(block, found, slope)
+
+    def from_state(self) -> GroupSolver:
+        """Return the solver that closes it from a coordinate nearby."""
+        return FollowerFromState(self.index, self.group, self.size, self.mounted.lower, self.pair)
+
+    @property
+    def width(self) -> int:
+        """How many numbers a state has: its pair's coordinate."""
+        return 1
+
+    def state(self, block: Block) -> Sequence[Number]:
+        """Return the coordinate of its lower pair."""
+        lower = self.mounted.lower
+        poses = tuple(block.world[name].trimmed(0) for name in lower.members)
+        return (lower.coordinate(block.ends[lower.name], poses).c[0],)
+
+    def _published(self, block: Block, found: Number, slope: Number) -> None:
+        """Add its links to what is known, from the closed coordinate and the slope of the contact's distance there."""
+        ends = block.ends[self.pair.name]
         coordinate = self._series(ends, lambda q: self.mounted.poses(block, q), found, slope, block.order)
         pose = self.mounted.placed(block, coordinate)
         # no turns are counted: the angle found may leap by one between poses
@@ -98,6 +118,10 @@ class FollowerSolver(GroupSolver):
             if not np.any(nearing):
                 break
             before = size
+        return self._checked(ends, placing, coordinate)
+
+    def _checked(self, ends: Ends, placing: Placing, coordinate: Number) -> tuple[Number, Number, Number]:
+        """Return a coordinate, NaN where it does not close; whether it does; and the slope there."""
         gap, slope = self._gap(ends, placing, coordinate)
         assembled = self.pair.is_properly_assembled(ends, placing(Series((coordinate,))))
         closed = (np.abs(gap) <= CLOSED * self.size) & assembled
@@ -132,3 +156,19 @@ class FollowerSolver(GroupSolver):
     def why(self, block: Block, at: int) -> str:
         """Say why it cannot be assembled at a pose."""
         return self.pair.no_contact_reason()
+
+
+class FollowerFromState(FollowerSolver):
+    """The same follower, where a coordinate near that of its contact is known: one step of Newton, and no search."""
+
+    def close(self, block: Block, mode: Sequence[Number]) -> None:
+        """Assemble the group from its state, and add its links to what is known."""
+        ends, leading = block.ends[self.pair.name], self.mounted.leading(block)
+
+        def placing(coordinate: Series) -> Poses:
+            return self.mounted.poses(leading, coordinate)
+
+        gap, slope = self._gap(ends, placing, mode[0])
+        found, closed, slope = self._checked(ends, placing, mode[0] - gap / slope)
+        block.fail(closed, self.index)
+        self._published(block, found, slope)

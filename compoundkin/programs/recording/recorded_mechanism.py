@@ -7,16 +7,15 @@ from dataclasses import dataclass, replace
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number, Series
-from compoundkin.kinematics.block import Block, rates
-from compoundkin.kinematics.groups import GroupSolver
+from compoundkin.kinematics.block import rates
 from compoundkin.kinematics.limits import noted_root
 from compoundkin.kinematics.solving_order import SolvingOrder, run
 from compoundkin.model.geometry import Geometry
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
 from compoundkin.programs.recording.recorded_block import RecordedBlock
 from compoundkin.programs.recording.recorded_number import RecordedNumber
-
-DIMENSION, DRIVE, SEED, PARAMETER = "dimension", "drive", "seed", "parameter"
+from compoundkin.programs.recording.seeded_order import SeededChoice, seeded_order
 
 
 @dataclass(frozen=True)
@@ -36,12 +35,16 @@ class Recording:
 
 @dataclass(frozen=True, repr=False)
 class RecordedMechanism(PrintsShort):
-    """A mechanism whose links' poses are nodes of a graph."""
+    """A mechanism whose links' poses are nodes of a graph.
+
+    `order` is the solving order that was run, on recorded ends.
+    """
 
     recording: Recording
     graph: OperationGraph
     geometry: Geometry
     drives: Mapping[str, Series]
+    order: SolvingOrder
     block: RecordedBlock
     notes: Mapping[int, list[Series]]  # the discriminants of closed forms, in parts of their scale, by group
 
@@ -55,29 +58,13 @@ def recorded(recording: Recording) -> RecordedMechanism:
     graph, order = OperationGraph(), recording.solving_order
     geometry = _geometry(graph, order.structure.mechanism.geometry, recording.free)
     ends = {name: pair.ends(geometry) for name, pair in order.pairs.items()}
-    bound = SolvingOrder(order.structure, {**ends, **order.guide_ends.bounds(geometry)})
+    bound = seeded_order(order, {**ends, **order.guide_ends.bounds(geometry)}, graph, recording.order)
     drives = {drive.name: _driver(graph, drive.name, recording) for drive in order.structure.mechanism.drives}
     notes: dict[int, list[Series]] = {solver.index: [] for solver in order.solvers if solver.modes_may_meet}
     block = RecordedBlock.of(bound.start(bound.ends, drives, recording.order, (1, 1)))
     block.roots = {k: noted_root(found) for k, found in notes.items()}
-    run(bound, block, _Signs(graph, recording.signs))
-    return RecordedMechanism(recording, graph, geometry, drives, block, notes)
-
-
-@dataclass(frozen=True)
-class _Signs:
-    """The choice of known signs; what is found outside is an input."""
-
-    graph: OperationGraph
-    signs: Mapping[int, int]
-
-    def mode(self, block: Block, solver: GroupSolver) -> Number:
-        """Return the sign of a group."""
-        return float(self.signs[solver.index])
-
-    def angle(self, solver: GroupSolver, link: str) -> Number:
-        """Return about which angle a link has: an input."""
-        return RecordedNumber.given(self.graph, InputNumber(SEED, link, "turns"))
+    run(bound, block, SeededChoice(graph, recording.signs))
+    return RecordedMechanism(recording, graph, geometry, drives, bound, block, notes)
 
 
 def _geometry(graph: OperationGraph, geometry: Geometry, free: tuple[str, ...]) -> Geometry:

@@ -96,8 +96,7 @@ def _link(mechanism: RecordedMechanism, output: ProgramOutput) -> Any:
 
 
 def _pair(mechanism: RecordedMechanism, output: ProgramOutput) -> Any:
-    order, block = mechanism.recording.solving_order, mechanism.block
-    pair = order.pairs[output.owner]
+    pair, block = mechanism.order.pairs[output.owner], mechanism.block
     poses = tuple(block.world[member] for member in pair.members)
     return pair.coordinate(block.ends[output.owner], poses).derivative(output.attribute.order)
 
