@@ -37,6 +37,16 @@ class Inverse:
             few = size if size <= ONE_BY_ONE else 0
             self._entries = [[self._whole[..., i, j] for j in range(few)] for i in range(few)]
 
+    @property
+    def largest(self) -> Number:
+        """The magnitude of its largest entry."""
+        if self.size > ONE_BY_ONE:
+            return np.abs(self._whole).max(axis=(-1, -2))
+        found: Number = 0.0
+        for entry in (entry for row in self._entries for entry in row):
+            found = np.maximum(found, np.abs(entry))
+        return found
+
     def times(self, right: Sequence[Number]) -> list[Number]:
         """Return the solutions for one right-hand side, each unknown an array of its own."""
         if self.size > ONE_BY_ONE:

@@ -8,10 +8,11 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics.block import Block
+from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.pairs.profile_contact import as_profiled
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import group_seed
+from compoundkin.programs.recording.input_kinds import SIGN, TURNS, group_seed
 
 
 def seed_values(wanted: Collection[InputNumber], motion: Motion) -> dict[InputNumber, Number]:
@@ -22,18 +23,26 @@ def seed_values(wanted: Collection[InputNumber], motion: Motion) -> dict[InputNu
     order, inputs, shape = motion.solving_order, motion.inputs, motion.failed.shape
     block = order.start(inputs.ends, inputs.series(0), 0, shape)
     block.world.update({name: pose.trimmed(0) for name, pose in motion.poses.items()})
-    states = {group_seed(solver.index): solver.state for solver in order.solvers}
+    solvers = {group_seed(solver.index): solver for solver in order.solvers}
     found: dict[InputNumber, Number] = {}
     for name in dict.fromkeys(seed.name for seed in wanted):
         parts = [seed for seed in wanted if seed.name == name]
-        if name in states:
-            numbers = dict(zip(map(str, range(len(states[name](block)))), states[name](block), strict=True))
+        if name in solvers:
+            numbers = _of_group(motion, block, solvers[name], parts)
         elif name in order.pairs:
             numbers = dict(_at_contact(motion, block, name, parts))
         else:
-            numbers = {"turns": motion.poses[name].angle.c[0]}
+            numbers = {TURNS: motion.poses[name].angle.c[0]}
         found.update({seed: np.array(np.broadcast_to(numbers[seed.part], shape), float) for seed in parts})
     return found
+
+
+def _of_group(motion: Motion, block: Block, solver: GroupSolver, parts: Sequence[InputNumber]) -> dict[str, Number]:
+    """Return the sign of a group at every pose, or its state."""
+    if any(seed.part == SIGN for seed in parts):
+        designs, poses = motion.failed.shape
+        return {SIGN: motion.tracker.sign(solver.index, np.arange(designs)[:, None], np.arange(float(poses))[None])}
+    return {str(k): number for k, number in enumerate(solver.state(block))}
 
 
 def _at_contact(motion: Motion, block: Block, name: str, parts: Sequence[InputNumber]) -> Iterator[tuple[str, Number]]:

@@ -67,7 +67,10 @@ def foot(curve: Searched, p: Series, near: Number = None) -> Series:
 
 
 def farthest(curve: Searched, n: Series, near: Number = None) -> Series:
-    """Find the parameter of the curve's point farthest in a turning direction, perhaps from one near it."""
+    """Find the parameter of the curve's point farthest in a turning direction.
+
+    Where one `near` it is known, one step of Newton goes from there.
+    """
 
     def rise(s: Number, direction: Number) -> tuple[Number, Number]:
         _, first, second = curve.derivatives(s, 2)

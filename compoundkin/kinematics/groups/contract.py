@@ -1,4 +1,4 @@
-"""What every way of solving a group answers, and bodies on pairs to links that are known.
+"""What every way of solving a group answers.
 
 Each way is one file of this folder and one line of its registry.
 """
@@ -7,23 +7,19 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Number, Series
+from compoundkin.base.series import Number
 from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.groups.equilibrium import reactions_of
 from compoundkin.kinematics.groups.group_equations import GroupEquations
-from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contact_search import Freedom
-from compoundkin.model.pairs.contract import Ends, Poses
-from compoundkin.model.pairs.optional_answers import Drivable
-from compoundkin.structure.parts import Body, Group
+from compoundkin.kinematics.groups.mounted_body import MountedBody
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.structure.parts import Group
 
 
 class GroupSolver(ABC):
@@ -131,7 +127,7 @@ class GroupSolver(ABC):
         return 0
 
     def state(self, block: Block) -> Sequence[Number]:
-        """Return the numbers by which an assembled group is found again; none where a sign is enough."""
+        """Return the numbers by which an assembled group is found again, if any."""
         return ()
 
     def margin(self, block: Block) -> Number | None:
@@ -156,73 +152,3 @@ def equations_of(solver: GroupSolver) -> GroupEquations:
     """Return the equations of a group whose configurations are numbered."""
     assert solver.equations is not None
     return solver.equations
-
-
-@dataclass(frozen=True)
-class Side:
-    """One group body's part in a pair. The pair, and which of its members the group's link is."""
-
-    pair: Pair
-    own: int
-
-    @property
-    def link(self) -> str:
-        """The group's link."""
-        return self.pair.members[self.own]
-
-    @property
-    def other(self) -> str:
-        """The link at the other side."""
-        return self.pair.members[1 - self.own]
-
-    def in_body(self, block: Block) -> End:
-        """Return the side in the frame of its body's base link."""
-        return block.in_body(self.link, block.ends[self.pair.name][self.own])
-
-
-def in_world(pair: Pair, block: Block) -> End:
-    """Return a closed pair's side in the world, of whichever member is known."""
-    k = next(k for k, name in enumerate(pair.members) if name in block.world)
-    return block.world[pair.members[k]].carry(block.ends[pair.name][k])
-
-
-def side_of(pair: Pair, body: Body) -> Side:
-    """Return a body's part in a pair."""
-    return Side(pair, 0 if pair.members[0] in body.links else 1)
-
-
-class MountedBody:
-    """A body on a lower pair to a known link. A value of the pair's coordinate places it."""
-
-    def __init__(self, lower: Drivable, higher: Pair, body: Body) -> None:
-        self.lower = lower
-        self.side = side_of(lower, body)
-        self.higher = higher
-        self.body = body
-
-    def placed(self, block: Block, coordinate: Series) -> Pose:
-        """Return the body's pose."""
-        side = self.side
-        relative = self.lower.placed(block.ends[side.pair.name], coordinate)
-        link = block.world[side.other].compose(relative if side.own else relative.inverse())
-        local = block.local.get(side.link)
-        return link if local is None else link.compose(local.inverse())
-
-    def poses(self, block: Block, coordinate: Series) -> Poses:
-        """Return the poses of the higher pair's members."""
-        own = block.links_of(self.body, self.placed(block, coordinate))
-        return tuple(own[name] if name in own else block.world[name] for name in self.higher.members)
-
-    def leading(self, block: Block) -> Block:
-        """Return what it needs of a block, without derivatives."""
-        return block.leading([self.side.other, *self.higher.members])
-
-    def freedom(self, block: Block) -> Freedom:
-        """Return how the body moves as the coordinate grows."""
-        pose = self.placed(block, Series((0.0, 1.0)))
-        along = pose.z.c[1] if len(pose.z.c) > 1 else 0j
-        if not self.side.pair.free_is_angle:
-            # along the guide, whichever of the two links has it
-            return Freedom(None, along, 1.0) if self.side.own else Freedom(None, -along, -1.0)
-        sense = (pose.u.c[0].conjugate() * pose.u.c[1]).imag
-        return Freedom(pose.z.c[0] + 1j * along / sense, None, sense)

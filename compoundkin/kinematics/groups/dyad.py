@@ -19,9 +19,10 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.kinematics.dyad_loci import Loci, place_of
-from compoundkin.kinematics.groups.contract import GroupSolver, in_world, side_of
+from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.equilibrium import load_on
 from compoundkin.kinematics.groups.lower_dyads import lower_dyad
+from compoundkin.kinematics.groups.mounted_body import in_world, side_of
 from compoundkin.kinematics.groups.transmission import contact_transmission
 from compoundkin.kinematics.limits import Root, clipped_root
 from compoundkin.model.pairs.contract import Ends

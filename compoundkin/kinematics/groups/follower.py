@@ -15,9 +15,10 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
-from compoundkin.kinematics.groups.contract import GroupSolver, MountedBody
+from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.general import GeneralSolver
 from compoundkin.kinematics.groups.group_equations import CLOSED, STEPS
+from compoundkin.kinematics.groups.mounted_body import MountedBody
 from compoundkin.kinematics.groups.transmission import contact_transmission
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, lower_equivalent
@@ -159,7 +160,10 @@ class FollowerSolver(GroupSolver):
 
 
 class FollowerFromState(FollowerSolver):
-    """The same follower, where a coordinate near that of its contact is known: one step of Newton, and no search."""
+    """The same follower from a coordinate near its contact.
+
+    One step of Newton, and no search.
+    """
 
     def close(self, block: Block, mode: Sequence[Number]) -> None:
         """Assemble the group from its state, and add its links to what is known."""

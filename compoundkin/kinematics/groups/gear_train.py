@@ -7,13 +7,14 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from compoundkin.base.linear import inverted
+from compoundkin.base.linear import Inverse
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations
-from compoundkin.kinematics.groups.contract import GroupSolver, MountedBody
+from compoundkin.kinematics.groups.contract import GroupSolver
+from compoundkin.kinematics.groups.mounted_body import MountedBody
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends, table
+from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.geared import as_geared
 from compoundkin.model.pairs.optional_answers import Drivable, as_drivable, as_turn_counting, held_scales
 from compoundkin.structure.parts import Body, Group
@@ -100,15 +101,15 @@ class GearTrainSolver(GroupSolver):
         rest = [constant(0.0)] * len(self.mounted)
         units = ([*rest[:j], UNIT, *rest[j + 1 :]] for j in range(len(rest)))
         slopes = [[_second(c) for c in self._closures(block.leading(self.links), unit)] for unit in units]
-        inverse = inverted(table(*zip(*slopes, strict=True)))
-        free = ~(np.abs(inverse).max(axis=(-1, -2)) < 1.0 / self.flat)
-        block.fail(~free, self.index)
-        inverse = np.where(free[..., None, None], np.nan, inverse)
+        # the closures are rows, the coordinates columns
+        inverse = Inverse([dict(enumerate(row)) for row in zip(*slopes, strict=True)], len(rest))
+        good = inverse.largest < 1.0 / self.flat
+        block.fail(good, self.index)
         solved = []
         for k in range(max(len(c.c) for c in start)):
-            lacking = np.stack(np.broadcast_arrays(*(c.c[k] if len(c.c) > k else 0.0 for c in start)), -1)
-            solved.append(-np.einsum("...ij,...j->...i", inverse, lacking))
-        return [Series(tuple([c[..., j] for c in solved])) for j in range(len(rest))]
+            found = inverse.times([c.c[k] if len(c.c) > k else 0.0 for c in start])
+            solved.append([np.where(good, -value, np.nan)[()] for value in found])
+        return [Series(coefficients) for coefficients in zip(*solved, strict=True)]
 
     def _closures(self, block: Block, coordinates: list[Series]) -> list[Series]:
         self._place(block, coordinates)

@@ -23,8 +23,8 @@ from compoundkin.base.linear import inverted
 from compoundkin.base.series import Number, as_series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.bars import Member
-from compoundkin.kinematics.groups.contract import in_world
 from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.kinematics.groups.mounted_body import in_world
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contact import Contact, as_contact
 from compoundkin.structure.parts import Group

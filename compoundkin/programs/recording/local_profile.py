@@ -25,7 +25,10 @@ MORE_ORDERS = 2
 
 
 class LocalCurve(Curve):
-    """A curve by its expansion at a parameter of each pose, which is near what is sought there."""
+    """A curve by its expansion at a parameter of each pose.
+
+    What is sought there is near it.
+    """
 
     def __init__(self, curve: Curve, parameter: Number, coefficients: Sequence[Number]) -> None:
         self.curve, self.parameter, self.coefficients = curve, parameter, coefficients
@@ -86,7 +89,10 @@ class LocalProfile(Profile):
 
 
 def with_local_profile(pair: Pair, graph: OperationGraph, order: int) -> Pair:
-    """Return a pair whose profile, if it has one, is known beside its contact only: by inputs."""
+    """Return a pair whose profile is known beside its contact only, by inputs.
+
+    One without a profile is returned as it is.
+    """
     profiled = as_profiled(pair)
     if profiled is None:
         return pair

@@ -154,6 +154,12 @@ class RecordedNumber(NumpyAnswers):
         """Return the complex conjugate."""
         return self if self.y is None else RecordedNumber(self.graph, self.x, self.graph.apply("neg", self.y))
 
+    def __getitem__(self, index: Any) -> RecordedNumber:
+        """Return the whole of it, as an array without axes does."""
+        if index != ():
+            raise TypeError("a recorded number has no entries")
+        return self
+
     @property
     def shape(self) -> tuple[int, ...]:
         """That of a number."""

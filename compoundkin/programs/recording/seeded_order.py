@@ -12,7 +12,7 @@ from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.recording.input_kinds import SEED, group_seed
+from compoundkin.programs.recording.input_kinds import SEED, SIGN, TURNS, group_seed
 from compoundkin.programs.recording.local_profile import with_local_profile
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.structure.kinematic_structure import Structure
@@ -20,7 +20,10 @@ from compoundkin.structure.parts import Group
 
 
 def seeded_order(order: SolvingOrder, ends: Mapping[str, Ends], graph: OperationGraph, highest: int) -> SolvingOrder:
-    """Return a solving order on other ends, its searches replaced by seeds; for derivatives up to the highest."""
+    """Return a solving order on other ends, its searches replaced by seeds.
+
+    It is run for derivatives up to the highest.
+    """
     found = SolvingOrder(_with_local_profiles(order.structure, graph, highest), ends)
     for solver in order.solvers:
         # a group that has signs else, but is in a configuration that has none
@@ -45,7 +48,7 @@ def _with_local_profiles(structure: Structure, graph: OperationGraph, highest: i
 
 @dataclass(frozen=True)
 class SeededChoice:
-    """The choice of known signs; states and counted turns are inputs."""
+    """The choice of known signs. Others are inputs, as states and counted turns are."""
 
     graph: OperationGraph
     signs: Mapping[int, Number]
@@ -54,11 +57,12 @@ class SeededChoice:
         """Return the sign of a group, or its state."""
         if solver.width:
             return [self._seed(group_seed(solver.index), str(k)) for k in range(solver.width)]
-        return float(self.signs[solver.index])
+        sign = self.signs.get(solver.index)
+        return self._seed(group_seed(solver.index), SIGN) if sign is None else float(sign)
 
     def angle(self, solver: GroupSolver, link: str) -> Number:
         """Return about which angle a link has."""
-        return self._seed(link, "turns")
+        return self._seed(link, TURNS)
 
     def _seed(self, name: str, part: str) -> RecordedNumber:
         return RecordedNumber.given(self.graph, InputNumber(SEED, name, part))
