@@ -147,7 +147,7 @@ class CompiledPath(PrintsShort):
     def limits(self) -> LimitPrograms:
         """The programs that look at designs near limits."""
         recording = Recording(self.reference.solving_order, self.signs, self.free, self.order)
-        return LimitPrograms(recording, self.chosen_backend)
+        return LimitPrograms(recording, self.reference, self.configuration.shown, self.chosen_backend)
 
     @cached_property
     def configuration(self) -> ProgramConfiguration:

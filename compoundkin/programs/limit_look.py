@@ -16,7 +16,10 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import SPACING
+from compoundkin.kinematics.chosen_modes import Shown
+from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.programs.approach_look import approach_values
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.graph.flat_program import flat_program
@@ -67,8 +70,18 @@ def _driver_values(numbers: CallNumbers) -> dict[str, Number]:
 class LimitPrograms(PrintsShort):
     """The programs that look at limits, recorded when they are first needed."""
 
-    def __init__(self, recording: Recording, backend: str | None) -> None:
-        self.recording, self.backend = recording, backend
+    def __init__(self, recording: Recording, reference: Motion, shown: Shown, backend: str | None) -> None:
+        self.recording, self.reference, self.shown, self.backend = recording, reference, shown, backend
+
+    def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
+        """Return which designs need a look, by the least of their poses, and which may change mode before them."""
+        order = self.recording.solving_order
+        near = ~(least.min(axis=1) >= bound(order, numbers))
+        way = approach_values(self.reference, self.shown, _driver_values(numbers)) if self._squares else None
+        if way is None:
+            return near, np.zeros_like(near)
+        early = self._computed(self._poses, _driven(numbers, way, {name: np.zeros((1, 1)) for name in way}))[1]
+        return near, np.any(early < NEAR, axis=1)
 
     def look(self, numbers: CallNumbers) -> LimitLook:
         """Look at all designs of some numbers."""

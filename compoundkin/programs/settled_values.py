@@ -12,7 +12,7 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.programs.call_numbers import CallNumbers
-from compoundkin.programs.limit_look import LimitPrograms, bound, picked
+from compoundkin.programs.limit_look import LimitPrograms, picked
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.motion import Motion
@@ -29,17 +29,20 @@ def settled_values(
     `arrays` are (1 or designs, 1 or poses), and put at their full size in the list; `least` is the least of
     `RecordedLimits.certain` over poses, as narrow. Warns UnassembledPoses and FewDigits as `solve`.
     """
-    near = ~(least.min(axis=1) >= bound(limits.recording.solving_order, numbers))
-    if not near.any():
+    near, early = limits.needed(numbers, least)
+    if not (near.any() or early.any()):
         return None
     for k, array in enumerate(arrays):
         if array.shape != numbers.extent:
             arrays[k] = np.array(np.broadcast_to(array, numbers.extent))
-    designs = np.arange(numbers.extent[0]) if len(near) == 1 else np.flatnonzero(near)
-    look = limits.look(picked(numbers, designs))
+    near, early = (np.broadcast_to(each, numbers.extent[:1]) for each in (near, early))
     failed = np.zeros(numbers.extent, dtype=np.int32)
-    failed[designs] = look.failed
-    poor = _handed(numbers, names, arrays, failed, designs[look.handed], by) if len(look.handed) else 0
+    designs, handed = np.flatnonzero(near), early.copy()
+    if len(designs):
+        look = limits.look(picked(numbers, designs))
+        failed[designs] = look.failed
+        handed[designs[look.handed]] = True
+    poor = _handed(numbers, names, arrays, failed, np.flatnonzero(handed), by) if handed.any() else 0
     for array in arrays if failed.any() else ():
         array[failed != 0] = np.nan if array.dtype == float else complex(np.nan, np.nan)
     missing = int(np.count_nonzero(failed))

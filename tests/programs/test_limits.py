@@ -70,3 +70,12 @@ def test_poses_not_assembled_are_told_and_are_no_numbers() -> None:
     assert not found.assembled[1].all()
     # the crank's own point too, which closes whatever the dyad does
     assert np.isnan(found["B.position"][~found.assembled]).all()
+
+
+@pytest.mark.parametrize("begin", [100.0, 190.0, 300.0])
+def test_modes_are_carried_from_the_drawing_to_a_part_of_the_motion(begin: float) -> None:
+    drawn = ck.catalog.load_named("parallelogram").replace(ck.drawn(A=0, B=30j, C=60 + 30j, D=60))
+    values = np.deg2rad(np.linspace(begin, begin + 30.0, 7))
+    found = ck.compile(drawn, "C")({"crank": values})
+    # the smooth motion, whatever change points lie between the drawing and here
+    assert np.allclose(found["C"], 60.0 + 30.0 * np.exp(1j * values), rtol=0, atol=1e-9)
