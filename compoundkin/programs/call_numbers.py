@@ -59,11 +59,6 @@ class CallNumbers:
 
         return replace(self, given={given: formed(array) for given, array in self.given.items()}, shape=shape)
 
-    def of_designs(self, index: Number) -> CallNumbers:
-        """Return the numbers of some designs."""
-        given = {given: array[index] if array.shape[0] > 1 else array for given, array in self.given.items()}
-        return replace(self, given=given, shape=(len(index), self.extent[1]))
-
     def arrays(self, flat: FlatProgram) -> list[Any]:
         """Return the arrays that a program reads."""
         return [self.given[flat.graph.nodes[k].given] for k in flat.inputs]  # type: ignore[index]

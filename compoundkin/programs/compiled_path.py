@@ -18,7 +18,9 @@ from compoundkin.kinematics.solution import solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.call_numbers import CallNumbers, call_numbers
 from compoundkin.programs.derivatives.path_objective import PathObjective
+from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
+from compoundkin.programs.derivatives.sensitivity_program import SensitivityPrograms
 from compoundkin.programs.limit_look import LimitPrograms
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
@@ -128,6 +130,37 @@ class CompiledPath(PrintsShort):
         2.0
         """
         return PathObjective(self, function)
+
+    @checked
+    def derivatives(
+        self,
+        values: Any = None,
+        dimensions: Mapping[str, Any] | None = None,
+        *,
+        speed: Any = None,
+        acceleration: Any = None,
+        jerk: Any = None,
+        by: Sequence[str] | None = None,
+        threads: int = 1,
+    ) -> PathSensitivities:
+        """Compute the outputs and their slopes at every pose.
+
+        They are by all free dimensions and the drivers' values, or by those of the names `by`: "crank.B.x", "crank".
+        Raises UnknownName for others, and what a call does.
+
+        >>> from compoundkin.model.elements import drive, link
+        >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+        >>> found = compile(crank, "B", free="crank.B").derivatives([0.0])
+        >>> found["B", "crank.B.x"].real.tolist(), found["B", "crank"].imag.tolist()
+        ([1.0], [2.0])
+        """
+        numbers = self.numbers(values, dimensions, speed, acceleration, jerk)
+        return self.sensitivities.found(numbers, by, threads)
+
+    @cached_property
+    def sensitivities(self) -> SensitivityPrograms:
+        """The programs that compute slopes at every pose."""
+        return SensitivityPrograms(self)
 
     def _computed(self, numbers: CallNumbers, threads: int) -> PathValues:
         program = self.program(numbers)

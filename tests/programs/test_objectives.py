@@ -134,3 +134,31 @@ def test_slips_in_objectives_are_told():
     ):
         with pytest.raises(ck.errors.InvalidInput, match=told):
             path.objective(wrong)([0.1])
+
+
+def test_sensitivities_are_those_of_changed_mechanisms():
+    """Slopes of all outputs at every pose by points, and by the driver, with its rates kept."""
+    mechanism = loaded("six-bar")
+    out, base = ["G.acceleration", "bar.angular_velocity"], places_of(mechanism, ["plate.C", "crank.D"])
+    rates = {"speed": 2.0, "acceleration": 0.5}
+    found = ck.compile(mechanism, out, free=list(base)).derivatives({"crank": ANGLES}, **rates)
+
+    def solved(changed, angles=ANGLES):
+        motion = ck.solve(changed, {"crank": angles}, **rates)
+        return {each: quantity(motion, each).values for each in out}
+
+    steps = {"x": STEP * np.array([[1.0], [-1.0]]), "y": STEP * np.array([[1j], [-1j]])}
+    for name, place in base.items():
+        for part, step in steps.items():
+            ends = solved(with_points(mechanism, {**base, name: place + step}))
+            for each in out:
+                slope = (ends[each][0] - ends[each][1]) / (2.0 * STEP)
+                np.testing.assert_allclose(found[each, f"{name}.{part}"], slope, atol=1e-7 * abs(slope).max())
+    ends = solved(mechanism, ANGLES + STEP * np.array([[1.0], [-1.0]]))
+    for each in out:
+        slope = (ends[each][0] - ends[each][1]) / (2.0 * STEP)
+        np.testing.assert_allclose(found[each, "crank"], slope, atol=1e-7 * abs(slope).max())
+        np.testing.assert_allclose(found[each], solved(mechanism)[each], rtol=1e-11)
+    assert found.by == ("plate.C.x", "plate.C.y", "crank.D.x", "crank.D.y", "crank")
+    with pytest.raises(ck.errors.UnknownName, match=r"did you mean 'plate.C.[xy]'"):
+        found["G.acceleration", "plate.C.z"]

@@ -15,6 +15,7 @@ from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.derivatives.adjoints import reverse
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose, recorded_cost
+from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import LEAST, TOTAL
@@ -23,6 +24,9 @@ from compoundkin.programs.recording.recorded_functions import chosen
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import DIMENSION
 from compoundkin.programs.recording.recorded_number import RecordedNumber
+
+# Besides the names of dimensions: the sum and the least margin.
+_TOTAL, _LEAST = "", " "
 
 
 @dataclass(frozen=True)
@@ -103,15 +107,10 @@ class ObjectiveProgram(PrintsShort):
 
     def run(self, numbers: CallNumbers, threads: int) -> ObjectiveValues:
         """Compute sum and slopes."""
-        extent, flat = numbers.extent, self.flat
-        rows: list[Number] = [np.empty(flat.shape(k, *extent)) for k in flat.outputs[:2]]
-        value, least, slopes = *rows, dict[str, Number]()
-        for name, nodes in self.slopes.items():
-            shape = np.broadcast_shapes(*(flat.shape(k, *extent) for k in nodes))
-            slopes[name] = slope = np.empty(shape, complex if len(nodes) > 1 else float)
-            rows += [slope.real, slope.imag] if len(nodes) > 1 else [slope]
-        self.runner(numbers.arrays(flat), rows, extent, threads)
-        return ObjectiveValues(value, least, slopes)
+        total, least = self.flat.outputs[:2]
+        nodes = {_TOTAL: (total,), _LEAST: (least,), **self.slopes}
+        slopes = results(self.flat, self.runner, numbers, nodes, threads)
+        return ObjectiveValues(slopes.pop(_TOTAL), slopes.pop(_LEAST), slopes)
 
 
 def _masked(output: RecordedNumber, assembled: RecordedNumber) -> RecordedNumber:

@@ -10,11 +10,11 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort
-from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.derivatives.objective_program import ObjectiveForm, ObjectiveProgram, ObjectiveValues
 from compoundkin.programs.derivatives.parameters import with_parameters
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
+from compoundkin.programs.limit_look import bound, picked
 
 if TYPE_CHECKING:
     from compoundkin.programs.compiled_path import CompiledPath
@@ -92,9 +92,10 @@ class PathObjective(PrintsShort):
         """Return value and slopes; designs that come near a limit are computed again with masks."""
         whole, complex_names = with_parameters(numbers, given)
         found = self._run(whole, complex_names, is_sloped, False, threads)
-        near = np.flatnonzero(~np.broadcast_to(found.least >= NEAR, (whole.extent[0], 1)))
+        enough = bound(self.path.reference.solving_order, whole)
+        near = np.flatnonzero(~np.broadcast_to(found.least >= enough, (whole.extent[0], 1)))
         if len(near):
-            masked = self._run(whole.of_designs(near), complex_names, is_sloped, True, threads)
+            masked = self._run(picked(whole, near), complex_names, is_sloped, True, threads)
             found = found.replaced(near, masked, whole.extent[0])
         return found.shaped(whole.shape)
 

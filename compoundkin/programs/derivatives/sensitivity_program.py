@@ -1,0 +1,115 @@
+"""Programs of sensitivities: outputs of a path and their slopes at every pose, by tangents."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.series import Number
+from compoundkin.programs.backends import runner_of
+from compoundkin.programs.backends.contract import Runner
+from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
+from compoundkin.programs.derivatives.result_arrays import results
+from compoundkin.programs.derivatives.tangents import forward
+from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
+from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.graph.operations import LEAST
+from compoundkin.programs.path_values import PathValues
+from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.recording.recorded_limits import RecordedLimits
+from compoundkin.programs.recording.recorded_mechanism import DIMENSION, DRIVE
+from compoundkin.programs.settled_values import settled_values
+
+if TYPE_CHECKING:
+    from compoundkin.programs.compiled_path import CompiledPath
+
+# An output and what its slope is by; the output itself is by nothing, and the least margin of no output.
+Wanted: TypeAlias = tuple[str, str]
+_MARGIN = ("", "")
+
+
+@dataclass(frozen=True, repr=False)
+class SensitivityProgram(PrintsShort):
+    """A flat program ready to run, with the nodes of what it finds."""
+
+    flat: FlatProgram
+    runner: Runner
+    nodes: Mapping[Wanted, tuple[int, ...]]
+
+    @classmethod
+    def of(
+        cls,
+        path: RecordedPath,
+        names: Sequence[str],
+        by: Mapping[str, InputNumber],
+        numbers: CallNumbers,
+        backend: str | None,
+    ) -> SensitivityProgram:
+        """Make the program of a recorded path for numbers of some form."""
+        graph = path.mechanism.graph
+        outputs = dict(zip(names, path.nodes, strict=True))
+        wanted = [k for parts in path.nodes for k in parts]
+        nodes: dict[Wanted, tuple[int, ...]] = {(name, ""): parts for name, parts in outputs.items()}
+        for word, given in by.items():
+            found = dict(zip(wanted, forward(graph, wanted, {graph.input(given): 1.0}), strict=True))
+            nodes |= {(name, word): tuple(found[k] for k in parts) for name, parts in outputs.items()}
+        nodes[_MARGIN] = (graph.apply(LEAST, RecordedLimits(path.mechanism).certain.x),)
+        flat = flat_program(graph, [k for parts in nodes.values() for k in parts], numbers.strata(graph))
+        return cls(flat, runner_of(flat, backend), nodes)
+
+    def run(self, numbers: CallNumbers, threads: int) -> dict[Wanted, Number]:
+        """Compute everything, (1 or designs, 1 or poses) each."""
+        return results(self.flat, self.runner, numbers, self.nodes, threads)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SensitivityPrograms(PrintsShort):
+    """The programs that compute outputs of a path and their slopes, made as they are asked for."""
+
+    path: CompiledPath
+    _programs: dict[Any, SensitivityProgram] = field(default_factory=dict)
+
+    def found(self, numbers: CallNumbers, by: Sequence[str] | None, threads: int) -> PathSensitivities:
+        """Compute outputs and slopes by what is named, or by all free dimensions and drivers."""
+        known = _directions(numbers)
+        unknown = [name for name in by or () if name not in known]
+        if unknown:
+            raise UnknownName([Problem(f"by.{name}", "it is no input", nearest(name, list(known))) for name in unknown])
+        wanted = {name: known[name] for name in (known if by is None else by)}
+        found = self._program(numbers, wanted).run(numbers, threads)
+        names, least = [output.name for output in self.path.outputs], found.pop(_MARGIN)
+        outputs = [found.pop((name, "")) for name in names]
+        failed = settled_values(self.path.limits, numbers, names, outputs, least, self.path.solved)
+        values = PathValues(numbers, dict(zip(names, outputs, strict=True)), failed)
+        return PathSensitivities(values, {key: _masked(values.found[key[0]], slope) for key, slope in found.items()})
+
+    def _program(self, numbers: CallNumbers, by: Mapping[str, InputNumber]) -> SensitivityProgram:
+        key = numbers.form, tuple(by)
+        if key not in self._programs:
+            names = [output.name for output in self.path.outputs]
+            path, backend = self.path.variant(numbers.still), self.path.chosen_backend
+            self._programs[key] = SensitivityProgram.of(path, names, by, numbers, backend)
+        return self._programs[key]
+
+
+def _directions(numbers: CallNumbers) -> dict[str, InputNumber]:
+    """Return the inputs that slopes can be by: free numbers, coordinates of free points, values of drivers."""
+    found = {}
+    for given in numbers.given:
+        if given.kind == DIMENSION:
+            found[f"{given.name}.{given.part}" if given.part else given.name] = given
+        elif (given.kind, given.part) == (DRIVE, "0"):
+            found[given.name] = given
+    return found
+
+
+def _masked(value: Number, slope: Number) -> Number:
+    """Return a slope that is none where the value is none."""
+    lost = np.isnan(value)
+    return np.where(lost, np.nan, slope) if lost.any() else slope
