@@ -95,3 +95,9 @@ def call_numbers(
         for k, value in enumerate(numbers):
             given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.asarray(fitted(value), float))
     return CallNumbers(given, shape, still)
+
+
+def picked(numbers: CallNumbers, designs: Number) -> CallNumbers:
+    """Return the numbers of some designs, by index."""
+    given = {one: value[designs] if value.shape[0] > 1 else value for one, value in numbers.given.items()}
+    return replace(numbers, given=given, shape=(len(designs), numbers.extent[1]))

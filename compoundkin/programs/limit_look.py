@@ -21,11 +21,12 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.approach_look import approach_values
 from compoundkin.programs.backends import runner_of
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.call_numbers import CallNumbers, picked
 from compoundkin.programs.graph.flat_program import flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.recording.input_kinds import DRIVE
 from compoundkin.programs.recording.recorded_limits import CLOSE, NEAR, RecordedLimits
-from compoundkin.programs.recording.recorded_mechanism import DRIVE, Recording, recorded
+from compoundkin.programs.recording.recorded_mechanism import Recording, recorded
 
 # Between two poses a discriminant may touch zero where the cubic through both falls below this part of the lesser.
 FALL = 0.25
@@ -74,7 +75,7 @@ class LimitPrograms(PrintsShort):
         self.recording, self.reference, self.shown, self.backend = recording, reference, shown, backend
 
     def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
-        """Return which designs need a look, by the least of their poses, and which may change mode before them."""
+        """Return which designs need a look, and which may change mode before their motion."""
         order = self.recording.solving_order
         near = ~(least.min(axis=1) >= bound(order, numbers))
         way = approach_values(self.reference, self.shown, _driver_values(numbers)) if self._squares else None
@@ -146,12 +147,6 @@ def _refined(value: Number, per_pose: int) -> Number:
     share = np.arange(per_pose) / per_pose
     between = value[:, :-1, None] + (value[:, 1:] - value[:, :-1])[..., None] * share
     return np.concatenate([between.reshape(len(value), -1), value[:, -1:]], axis=1)
-
-
-def picked(numbers: CallNumbers, designs: Number) -> CallNumbers:
-    """Return the numbers of some designs, by index."""
-    given = {one: value[designs] if value.shape[0] > 1 else value for one, value in numbers.given.items()}
-    return replace(numbers, given=given, shape=(len(designs), numbers.extent[1]))
 
 
 def _driven(numbers: CallNumbers, values: Mapping[str, Number], speeds: Mapping[str, Number]) -> CallNumbers:

@@ -11,8 +11,8 @@ from compoundkin.base.errors import FewDigits, InvalidMechanism, NotAssembled, N
 from compoundkin.base.series import Number
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.programs.call_numbers import CallNumbers
-from compoundkin.programs.limit_look import LimitPrograms, picked
+from compoundkin.programs.call_numbers import CallNumbers, picked
+from compoundkin.programs.limit_look import LimitPrograms
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.motion import Motion
@@ -48,7 +48,7 @@ def settled_values(
     missing = int(np.count_nonzero(failed))
     if missing:
         how_many = f"{missing} of {failed.size} poses cannot be assembled"
-        warn(f"{how_many}: assembled masks them, motion(design=...) explains", UnassembledPoses)
+        warn(f"{how_many}: assembled masks them, gaps(found.motion(design=...)) explains", UnassembledPoses)
     if poor:
         warn(f"rates at {poor} of {failed.size} poses have fewer than three digits, next to limit positions", FewDigits)
     return failed if missing else None

@@ -18,7 +18,7 @@ from compoundkin.model.elements import Link
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.recorded_mechanism import DIMENSION, DRIVE
+from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
 
 
 @dataclass(frozen=True)

@@ -20,9 +20,9 @@ from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import LEAST, TOTAL
 from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.recording.input_kinds import DIMENSION
 from compoundkin.programs.recording.recorded_functions import chosen
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
-from compoundkin.programs.recording.recorded_mechanism import DIMENSION
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
 # Besides the names of dimensions: the sum and the least margin.

@@ -7,8 +7,8 @@ from typing import Any
 
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, UnknownName, nearest
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.recording.input_kinds import PARAMETER
 from compoundkin.programs.recording.numpy_answers import one_pose
-from compoundkin.programs.recording.recorded_mechanism import PARAMETER
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
 # What an objective reads besides outputs and what it is given.
