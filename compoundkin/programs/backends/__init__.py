@@ -10,8 +10,19 @@ from compoundkin.programs.backends.contract import BackEnd, Runner
 from compoundkin.programs.backends.tape import Tape
 from compoundkin.programs.graph.flat_program import FlatProgram
 
+
+def _llvm() -> BackEnd:
+    """Return the back end that compiles; its package is an extra."""
+    from compoundkin.programs.backends.llvm import Llvm
+
+    return Llvm()
+
+
 # By their names, the fastest first: the module that must be installed, and what makes one.
-BACK_ENDS: dict[str, tuple[str, Callable[[], BackEnd]]] = {"numpy": ("numpy", Tape)}
+BACK_ENDS: dict[str, tuple[str, Callable[[], BackEnd]]] = {
+    "llvm": ("llvmlite", _llvm),
+    "numpy": ("numpy", Tape),
+}
 
 
 def runner_of(program: FlatProgram, backend: str | None = None) -> Runner:

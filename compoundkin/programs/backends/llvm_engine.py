@@ -1,0 +1,68 @@
+"""LLVM itself, through llvmlite: text made into code for this processor, once for all processes."""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import llvmlite.binding as llvm
+
+from compoundkin.programs.backends.llvm_plan import Machine
+from compoundkin.programs.backends.object_cache import cached_object, keep_object
+
+# What code may call of the system's library: large angles, and rounding on processors without an instruction for it.
+LIBRARY = ("sin", "cos", "floor", "ceil", "rint", "fma")
+NUMBER, PLACE = ctypes.c_ssize_t, ctypes.c_void_p
+RUN = ctypes.CFUNCTYPE(ctypes.c_int, PLACE, PLACE, NUMBER, NUMBER, NUMBER, NUMBER, NUMBER, NUMBER, PLACE, NUMBER)
+
+
+@dataclass(frozen=True)
+class CompiledCode:
+    """Code in memory, which lives as long as its engine does."""
+
+    engine: Any
+    run: Any
+
+
+@cache
+def target() -> tuple[Any, Machine, str]:
+    """Return LLVM's machine for this processor, what decides on the text, and its name."""
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    _name_library()
+    cpu, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features()
+    flat = features.flatten()
+    machine = llvm.Target.from_default_triple().create_target_machine(
+        cpu=cpu, features=flat, opt=2, reloc="pic", codemodel="small", jit=True
+    )
+    has = {name for name, there in features.items() if there}
+    lanes = 16 if "avx512f" in has else 8 if "avx" in has else 4
+    has_fma = "fma" in has or machine.triple.startswith(("aarch64", "arm64"))
+    version = ".".join(map(str, llvm.llvm_version_info))
+    return machine, Machine(lanes, has_fma, "avx512bw" in has), f"{version} {machine.triple} {cpu} {flat}"
+
+
+def _name_library() -> None:
+    """Tell LLVM where the system's functions are."""
+    with suppress(OSError, AttributeError, TypeError):
+        library = ctypes.CDLL(ctypes.util.find_library("m") or ctypes.util.find_library("msvcrt"))
+        for name in LIBRARY:
+            llvm.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
+
+
+def compiled(text: str) -> CompiledCode:
+    """Return the code of a text, from disk where it was compiled before."""
+    machine, _, name = target()
+    key = f"{name}\n{text}"
+    content = cached_object(key)
+    if content is None:
+        content = machine.emit_object(llvm.parse_assembly(text))
+        keep_object(key, content)
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    engine.add_object_file(llvm.ObjectFileRef.from_data(content))
+    engine.finalize_object()
+    return CompiledCode(engine, RUN(engine.get_function_address("run")))
