@@ -15,6 +15,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Many tests start processes, and each would compile the package anew where nothing compiled is kept.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+# Compiled programs are shared by the workers, and kept from run to run beside what pytest keeps.
+os.environ.setdefault("COMPOUNDKIN_CACHE", str(TESTS.parent / ".pytest_cache" / "compiled"))
 sys.path.insert(0, str(TESTS.parent))
 
 settings.register_profile("compoundkin", derandomize=True, deadline=None, max_examples=25, database=None)

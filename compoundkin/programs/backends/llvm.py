@@ -88,7 +88,7 @@ class LlvmRunner:
     def _code(self, axis: int, layout: Any, wide: bool) -> PlannedCode:
         key = (axis, layout, wide)
         if key not in self._codes:
-            self._codes[key] = PlannedCode(LanePlan(self.program, axis, layout, target()[1], wide))
+            self._codes[key] = PlannedCode(LanePlan(self.program, axis, layout, target()[0], wide))
         return self._codes[key]
 
 

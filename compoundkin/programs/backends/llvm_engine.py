@@ -29,21 +29,30 @@ class CompiledCode:
 
 
 @cache
-def target() -> tuple[Any, Machine, str]:
-    """Return LLVM's machine for this processor, what decides on the text, and its name."""
+def target() -> tuple[Machine, str]:
+    """Return what of this processor decides on the text, and its name."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     _name_library()
-    cpu, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features()
-    flat = features.flatten()
-    machine = llvm.Target.from_default_triple().create_target_machine(
-        cpu=cpu, features=flat, opt=2, reloc="pic", codemodel="small", jit=True
-    )
-    has = {name for name, there in features.items() if there}
+    has = {name for name, there in llvm.get_host_cpu_features().items() if there}
+    triple = llvm.get_process_triple()
     lanes = 16 if "avx512f" in has else 8 if "avx" in has else 4
-    has_fma = "fma" in has or machine.triple.startswith(("aarch64", "arm64"))
+    has_fma = "fma" in has or triple.startswith(("aarch64", "arm64"))
     version = ".".join(map(str, llvm.llvm_version_info))
-    return machine, Machine(lanes, has_fma, "avx512bw" in has), f"{version} {machine.triple} {cpu} {flat}"
+    name = f"{version} {triple} {llvm.get_host_cpu_name()} {' '.join(sorted(has))}"
+    return Machine(lanes, has_fma, "avx512bw" in has), name
+
+
+def _new_machine() -> Any:
+    """Return LLVM's machine for this processor; an engine takes it for its own."""
+    return llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=2,
+        reloc="pic",
+        codemodel="small",
+        jit=True,
+    )
 
 
 def _name_library() -> None:
@@ -56,8 +65,8 @@ def _name_library() -> None:
 
 def compiled(text: str) -> CompiledCode:
     """Return the code of a text, from disk where it was compiled before."""
-    machine, _, name = target()
-    key = f"{name}\n{text}"
+    key = f"{target()[1]}\n{text}"
+    machine = _new_machine()
     content = cached_object(key)
     if content is None:
         content = machine.emit_object(llvm.parse_assembly(text))

@@ -38,7 +38,7 @@ class LaneText:
         return other
 
     def kind(self, scalar: str, lanes: int = 0) -> str:
-        """Return the type of a value of all lanes, or of some number of them."""
+        """Return the type of values of all lanes, or of some."""
         lanes = lanes or self.lanes
         return scalar if lanes == 1 else f"<{lanes} x {scalar}>"
 
