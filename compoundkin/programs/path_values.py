@@ -45,7 +45,7 @@ class PathValues(PrintsShort):
         where it has no pose at all.
 
         >>> import compoundkin as ck
-        >>> found = ck.compile(ck.catalog.load_named("slider-crank"), "C")()
+        >>> found = ck.compile(ck.catalog.load_named("slider-crank"), "B")()
         >>> ck.gaps(found.motion())
         []
         """
