@@ -174,7 +174,7 @@ class CompiledPath(PrintsShort):
         program.runner(numbers.arrays(program.flat), [*rows, least], numbers.extent, threads)
         names = [output.name for output in self.outputs]
         failed = settled_values(self.limits, numbers, names, arrays, least, self.solved)
-        return PathValues(numbers, self.solved, dict(zip(names, arrays, strict=True)), failed)
+        return PathValues(numbers, dict(zip(names, arrays, strict=True)), failed, self.solved)
 
     @cached_property
     def limits(self) -> LimitPrograms:

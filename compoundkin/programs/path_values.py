@@ -22,9 +22,9 @@ class PathValues(PrintsShort):
     """Outputs over designs and poses, arrays of the call's shape."""
 
     numbers: CallNumbers
-    solving: Callable[[CallNumbers], Told]
     found: Mapping[str, Number]
-    failed: Number | None = None  # (designs, poses): the first group that does not close plus one; None where all do
+    failed: Number | None  # (designs, poses): the first group that does not close plus one; None where all do
+    solving: Callable[[CallNumbers], Told]
 
     def __getitem__(self, name: str) -> Any:
         """Return an output by its name."""
@@ -47,7 +47,7 @@ class PathValues(PrintsShort):
         >>> import compoundkin as ck
         >>> found = ck.compile(ck.catalog.load_named("slider-crank"), "B")()
         >>> ck.gaps(found.motion())
-        []
+        ()
         """
         count = self.numbers.extent[0]
         if not 0 <= design < count:

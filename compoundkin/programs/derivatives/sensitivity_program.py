@@ -86,7 +86,7 @@ class SensitivityPrograms(PrintsShort):
         names, least = [output.name for output in self.path.outputs], found.pop(_MARGIN)
         outputs = [found.pop((name, "")) for name in names]
         failed = settled_values(self.path.limits, numbers, names, outputs, least, self.path.solved)
-        values = PathValues(numbers, dict(zip(names, outputs, strict=True)), failed)
+        values = PathValues(numbers, dict(zip(names, outputs, strict=True)), failed, self.path.solved)
         return PathSensitivities(values, {key: _masked(values.found[key[0]], slope) for key, slope in found.items()})
 
     def _program(self, numbers: CallNumbers, by: Mapping[str, InputNumber]) -> SensitivityProgram:
