@@ -22,8 +22,8 @@ from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.graph.operations import LEAST
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
-from compoundkin.programs.recording.recorded_mechanism import DIMENSION, DRIVE
 from compoundkin.programs.settled_values import settled_values
 
 if TYPE_CHECKING:
