@@ -10,11 +10,10 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.call_numbers import CallNumbers, picked
 from compoundkin.programs.derivatives.objective_program import ObjectiveForm, ObjectiveProgram, ObjectiveValues
 from compoundkin.programs.derivatives.parameters import with_parameters
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
-from compoundkin.programs.limit_look import bound, picked
 
 if TYPE_CHECKING:
     from compoundkin.programs.compiled_path import CompiledPath
@@ -92,8 +91,7 @@ class PathObjective(PrintsShort):
         """Return value and slopes; designs that come near a limit are computed again with masks."""
         whole, complex_names = with_parameters(numbers, given)
         found = self._run(whole, complex_names, is_sloped, False, threads)
-        enough = bound(self.path.reference.solving_order, whole)
-        near = np.flatnonzero(~np.broadcast_to(found.least >= enough, (whole.extent[0], 1)))
+        near = np.flatnonzero(np.logical_or(*self.path.limits.needed(whole, found.least)))
         if len(near):
             masked = self._run(picked(whole, near), complex_names, is_sloped, True, threads)
             found = found.replaced(near, masked, whole.extent[0])
