@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from itertools import combinations
 from typing import ClassVar, Self
 
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput
 from compoundkin.base.poses import Pose
-from compoundkin.base.series import Number, as_series, constant
+from compoundkin.base.series import Number, constant
 from compoundkin.kinematics.assembly import all_configurations, from_group
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.configuration_arrays import Configurations, state_distance
+from compoundkin.kinematics.groups.attached_places import middle_of, surroundings
 from compoundkin.kinematics.groups.bars import Member
 from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.group_equations import GroupEquations
+from compoundkin.kinematics.groups.newton_steps import NewtonSteps
 from compoundkin.kinematics.groups.transmission import PassedForce, forces_of, worst_transmission
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.profile_contact import as_profiled
-from compoundkin.structure.parts import Body, Group
+from compoundkin.structure.parts import Group
 
 # Where no theory counts a group's configurations, Newton searches them from so many random states.
 STARTS = 60
@@ -51,7 +52,7 @@ class GeneralSolver(GroupSolver):
     @classmethod
     def of(cls, index: int, group: Group, size: float, ends: Mapping[str, Ends]) -> Self:
         """Return the solver of any group."""
-        return cls(index, group, size, tuple(_middle(body, group, ends) for body in group.bodies))
+        return cls(index, group, size, tuple(middle_of(body, group, ends) for body in group.bodies))
 
     def close(self, block: Block, mode: Number) -> None:
         """Correct a state, add the derivatives, and the group's links to what is known."""
@@ -63,6 +64,20 @@ class GeneralSolver(GroupSolver):
         state = np.where(closed[..., None], found.state, mode if keeps else np.nan)
         for body, pose in zip(self.group.bodies, self.equations.series(state, block, block.order), strict=True):
             block.publish(body, pose)
+
+    def from_state(self, steps: int = 0) -> GroupSolver:
+        """Return the solver that closes it from a state nearby, after so many steps that may be long."""
+        return GeneralFromState(self, steps)
+
+    @property
+    def width(self) -> int:
+        """How many numbers a state has: x, y and angle of each body that is no bar."""
+        return self.equations.width
+
+    def state(self, block: Block) -> Sequence[Number]:
+        """Return x, y and angle of each body that is no bar."""
+        poses = [block.world[self.group.bodies[k].links[0]] for k in self.equations.kept]
+        return [v for pose in poses for v in (pose.z.c[0].real, pose.z.c[0].imag, pose.angle.c[0])]
 
     @cached_property
     def _forces(self) -> tuple[GroupEquations, tuple[PassedForce, ...]]:
@@ -119,39 +134,22 @@ class GeneralSolver(GroupSolver):
         return Configurations.of_states(_once(np.moveaxis(states, 0, -2), size))
 
 
-def surroundings(equations: GroupEquations, block: Block) -> tuple[Number, Number]:
-    """Return the midst of the places where a group is attached, and its reach.
+class GeneralFromState(GeneralSolver):
+    """The same group, where a state near its own is known: straight-line arithmetic, no search."""
 
-    The reach is how far these places are from it, or the longest distance of two pairs on a link. It does not depend
-    on where the frame has its origin or other links have their points.
-    """
-    attached: list[Number] = []
-    on: dict[str, list[Number]] = {}
-    for pair, members in zip(equations.pairs, equations.members, strict=True):
-        for end, member in zip(block.ends[pair.name], members, strict=True):
-            if member.body is None:
-                attached.append(block.world[member.link].at(end.point).c[0])
-            else:
-                on.setdefault(member.link, []).append(as_series(end.point).c[0])
-    centre = sum(attached) / max(len(attached), 1)
-    spans = [np.abs(one - other) for own in on.values() for one, other in combinations(own, 2)]
-    reach = 0.0
-    for span in (*spans, *(np.abs(place - centre) for place in attached)):
-        reach = np.maximum(reach, span)
-    return centre, np.where(reach > 0.0, reach, equations.size)
+    def __init__(self, solver: GeneralSolver, steps: int) -> None:
+        vars(self).update(vars(solver))
+        own = solver.equations
+        # bodies by their origins: what is the same state for all dimensions
+        self.equations = GroupEquations(own.n, own.pairs, own.members, own.size)
+        self.steps = NewtonSteps(self.equations, steps)
 
-
-def _middle(body: Body, group: Group, ends: Mapping[str, Ends]) -> complex:
-    """Return the point of a body about which its state tells where it is, in its base's frame.
-
-    It is the origin, unless that lies outside the pairs on the base: then it is the midst of these.
-    """
-    pairs = (*group.inner, *group.outer)
-    sides = [(pair, side) for pair in pairs for side, name in enumerate(pair.members) if name == body.links[0]]
-    own = [np.mean(as_series(ends[pair.name][side].point).c[0]) for pair, side in sides]
-    middle = complex(np.mean(own)) if own else 0j
-    # about the origin poses take fewer products, which is what most of the time goes into
-    return 0j if abs(middle) <= max((abs(place - middle) for place in own), default=0.0) else middle
+    def close(self, block: Block, mode: Sequence[Number]) -> None:
+        """Correct a state, add the derivatives, and the group's links to what is known."""
+        found = self.steps.closed(mode, block, block.limits.leap)
+        block.fail(found.closed, self.index)
+        for body, pose in zip(self.group.bodies, self.steps.series(found, block), strict=True):
+            block.publish(body, pose)
 
 
 def known_configurations(group: Group, block: Block, size: float, most: int = MOST_BODIES) -> Configurations | None:

@@ -12,7 +12,7 @@ Evaluating Derivatives, section 13.3.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,7 @@ import numpy as np
 from compoundkin.base.arrays import joined
 from compoundkin.base.linear import Inverse, Row, stacked
 from compoundkin.base.newton import ChordStop, chord_newton, largest_of
+from compoundkin.base.pivots import Elimination
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Number, Series, constant
 from compoundkin.kinematics.block import Block
@@ -95,8 +96,8 @@ class GroupEquations:
 
         def system(values: list[Number]) -> tuple[list[Number], Callable[[], Inverse]]:
             nonlocal bodies
-            bodies = here = self._kept_poses(values)
-            return self._residual(here, leading, 0), lambda: Inverse(self._rows(here, leading), self.width)
+            bodies = here = self.kept_poses(values)
+            return self.residual(here, leading, 0), lambda: Inverse(self._rows(here, leading), self.width)
 
         stop = ChordStop(CONVERGED, CLOSED * self.size, CHORD, steps, longest)
         found, closed = chord_newton(system, start, weights, stop)
@@ -106,11 +107,11 @@ class GroupEquations:
 
     def series(self, state: Number, block: Block, order: int) -> list[Pose]:
         """Return all bodies' poses to the given order, from a closed state."""
-        kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
+        kept = self.kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
         if order:
             inverse = Inverse(self._rows(kept, block.leading()), self.width)
             for k in range(1, order + 1):
-                kept = self._grown(kept, self._next(kept, inverse, block, k))
+                kept = self.grown(kept, self.next_rates(kept, inverse, block, k))
         found = {**kept, **{bar.body: bar.pose(kept, block, order) for bar in self.bars}}
         return [found[k] for k in range(self.n)]
 
@@ -121,26 +122,28 @@ class GroupEquations:
 
         The side is the sign of the determinant of the equations: it changes across a singularity.
         """
-        kept = self._kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
+        kept = self.kept_poses([np.ascontiguousarray(v) for v in np.moveaxis(state, -1, 0)])
         inverse = Inverse(self._rows(kept, block.leading()), self.width)
         found = []
         for k in range(1, order + 1):
-            step = self._next(kept, inverse, block, k)
-            kept = self._grown(kept, step)
+            step = self.next_rates(kept, inverse, block, k)
+            kept = self.grown(kept, step)
             found.append(np.stack(np.broadcast_arrays(*step, state[..., 0])[:-1], axis=-1))
         return found, np.sign(inverse.determinant)
 
     def matrix(self, state: Number, block: Block) -> Number:
         """Return the matrix of all equations at a state, (..., width, width)."""
-        kept = self._kept_poses(list(np.moveaxis(state, -1, 0)))
+        kept = self.kept_poses(list(np.moveaxis(state, -1, 0)))
         return stacked(self._rows(kept, block.leading()), self.width)
 
-    def _next(self, kept: Mapping[int, Pose], inverse: Inverse, block: Block, k: int) -> list[Number]:
+    def next_rates(
+        self, kept: Mapping[int, Pose], inverse: Inverse | Elimination, block: Block, k: int
+    ) -> list[Number]:
         """Return the k-th coefficients of the state, from poses known to the one before."""
         trial = {j: self._turned(j, b, (0j, 0.0)) for j, b in kept.items()}
-        return inverse.times([-r for r in self._residual(trial, block, k)])
+        return inverse.times([-r for r in self.residual(trial, block, k)])
 
-    def _grown(self, kept: Mapping[int, Pose], step: list[Number]) -> dict[int, Pose]:
+    def grown(self, kept: Mapping[int, Pose], step: list[Number]) -> dict[int, Pose]:
         """Return the poses with one more coefficient."""
         return {
             j: self._turned(j, b, (step[3 * i] + 1j * step[3 * i + 1], step[3 * i + 2]))
@@ -149,10 +152,10 @@ class GroupEquations:
 
     def _turned(self, body: int, pose: Pose, more: tuple[Number, Number]) -> Pose:
         """Return the pose of a body with one more coefficient of its middle and its angle."""
-        angle = Series((*pose.angle.c, more[1] + np.zeros_like(pose.angle.c[0])))
+        angle = Series((*pose.angle.c, more[1]))
         return _about(Series((*pose.at(self.middles[body]).c, more[0])), angle, self.middles[body])
 
-    def _kept_poses(self, values: list[Number]) -> dict[int, Pose]:
+    def kept_poses(self, values: Sequence[Number]) -> dict[int, Pose]:
         """Return the poses of the kept bodies, of order 0, from the numbers of a state."""
         found = {}
         for i, body in enumerate(self.kept):
@@ -160,7 +163,7 @@ class GroupEquations:
             found[body] = _about(constant(joined(x, y)), constant(theta), self.middles[body])
         return found
 
-    def _residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> list[Number]:
+    def residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> list[Number]:
         """Return the k-th coefficients of all equations: those of the bars, then the other pairs' closures."""
         found = [bar.residual(bodies, block, k) for bar in self.bars]
         for number in self.others:
