@@ -36,11 +36,12 @@ class Elimination:
 
 def _solved(m: list[list[Number]], b: list[Number]) -> tuple[list[Number], Number]:
     """Return the solution and the determinant."""
-    if len(m) <= CRAMER and not _known_pivot(m):
+    known = _known_pivot(m)
+    if known is None and len(m) <= CRAMER:
         return _by_cramer(m, b)
-    i, j = _known_pivot(m) or (0, 0)
+    i, j = known or (0, 0)
     sign: Number = -1.0 if (i + j) % 2 else 1.0
-    if not _is_known(m[i][j]):
+    if known is None:
         m, b, sign = _greatest_first(m, b)
     pivot, others = m[i][j], [r for r in range(len(m)) if r != i]
     shares = {r: 0.0 if _is_zero(m[r][j]) else m[r][j] / pivot for r in others}
@@ -81,7 +82,8 @@ def _filled_row(row: list[Number]) -> int:
 
 def _greatest_first(m: list[list[Number]], b: list[Number]) -> tuple[list[list[Number]], list[Number], Number]:
     """Return rows in another order, so that the first has the greatest entry of the first column; and its sign."""
-    rows, sign = [[*row, right] for row, right in zip(m, b, strict=True)], 1.0
+    rows = [[*row, right] for row, right in zip(m, b, strict=True)]
+    sign: Number = 1.0
     for r in range(1, len(rows)):
         if not _is_zero(rows[r][0]):
             swap = np.abs(rows[r][0]) > np.abs(rows[0][0])

@@ -11,7 +11,8 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import column, first_of
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver, equations_of
-from compoundkin.kinematics.groups.general import bodies_at, known_configurations, surroundings
+from compoundkin.kinematics.groups.attached_places import surroundings
+from compoundkin.kinematics.groups.general import bodies_at, known_configurations
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.drawn_poses import told_poses
 
