@@ -14,10 +14,10 @@ CRAMER = 3
 
 
 class Elimination:
-    """The solution of square systems whose matrix is given by rows, entries being numbers of any kind.
+    """The solution of square systems whose matrix is given by rows.
 
-    Entries that are Python numbers are known: they are the first pivots, and zeros among them cost nothing. The others
-    are found by comparison of magnitudes. All is worked through again for each right-hand side: where numbers record,
+    Entries are numbers of any kind. Python's own are known: they are the first pivots, and zeros among them cost nothing. The
+    other pivots are found by comparison of magnitudes. All is worked through again for each right-hand side: where numbers record,
     what is the same is recorded once.
 
     >>> halves = Elimination([{0: 2.0}, {1: 4.0, 3: 1.0}, {2: 8.0}, {0: 1.0, 3: np.array([1.0, 2.0])}], 4)

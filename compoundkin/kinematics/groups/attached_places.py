@@ -37,9 +37,9 @@ def surroundings(equations: GroupEquations, block: Block) -> tuple[Number, Numbe
 
 
 def middle_of(body: Body, group: Group, ends: Mapping[str, Ends]) -> complex:
-    """Return the point of a body about which its state tells where it is, in its base's frame.
+    """Return the point of a body by which its state tells where it is.
 
-    It is the origin, unless that lies outside the pairs on the base: then it is the midst of these. Points that are no
+    In its base's frame it is the origin, unless that lies outside the pairs on the base: then it is the midst of these. Points that are no
     numbers, but stand for some, tell of no place.
     """
     pairs = (*group.inner, *group.outer)

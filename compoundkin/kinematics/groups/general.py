@@ -66,12 +66,15 @@ class GeneralSolver(GroupSolver):
             block.publish(body, pose)
 
     def from_state(self, steps: int = 0) -> GroupSolver:
-        """Return the solver that closes it from a state nearby, after so many steps that may be long."""
+        """Return the solver that closes it from a state nearby.
+
+        So many steps before the last may be long.
+        """
         return GeneralFromState(self, steps)
 
     @property
     def width(self) -> int:
-        """How many numbers a state has: x, y and angle of each body that is no bar."""
+        """How many numbers a state has."""
         return self.equations.width
 
     def state(self, block: Block) -> Sequence[Number]:
@@ -135,7 +138,10 @@ class GeneralSolver(GroupSolver):
 
 
 class GeneralFromState(GeneralSolver):
-    """The same group, where a state near its own is known: straight-line arithmetic, no search."""
+    """The same group, closed from a state near its own.
+
+    It takes straight-line arithmetic and no search.
+    """
 
     def __init__(self, solver: GeneralSolver, steps: int) -> None:
         vars(self).update(vars(solver))

@@ -156,7 +156,7 @@ class GroupEquations:
         return _about(Series((*pose.at(self.middles[body]).c, more[0])), angle, self.middles[body])
 
     def kept_poses(self, values: Sequence[Number]) -> dict[int, Pose]:
-        """Return the poses of the kept bodies, of order 0, from the numbers of a state."""
+        """Return the poses of the kept bodies, from the numbers of a state."""
         found = {}
         for i, body in enumerate(self.kept):
             x, y, theta = values[3 * i : 3 * i + 3]
@@ -164,7 +164,7 @@ class GroupEquations:
         return found
 
     def residual(self, bodies: Mapping[int, Pose], block: Block, k: int) -> list[Number]:
-        """Return the k-th coefficients of all equations: those of the bars, then the other pairs' closures."""
+        """Return the k-th coefficients of all equations. The bars come first."""
         found = [bar.residual(bodies, block, k) for bar in self.bars]
         for number in self.others:
             pair = self.pairs[number]

@@ -20,7 +20,10 @@ STRAY = 0.03
 
 
 class ClosedState(NamedTuple):
-    """Where steps led: the bodies' poses there, the matrix of the last step, and whether all is as it should be."""
+    """Where steps led.
+
+    The bodies' poses there, the matrix of the last step, and whether all is as it should be.
+    """
 
     bodies: Mapping[int, Pose]
     matrix: Elimination
@@ -28,9 +31,9 @@ class ClosedState(NamedTuple):
 
 
 class NewtonSteps(NamedTuple):
-    """So many of Newton's steps, and a last one, which shares its matrix with all rates.
+    """So many of Newton's steps, and a last one.
 
-    Steps before the last come from states that are only near, such as those predicted from another pose.
+    The last shares its matrix with all rates. Steps before the last come from states that are only near, such as those predicted from another pose.
     """
 
     equations: GroupEquations
