@@ -5,9 +5,11 @@ from __future__ import annotations
 import pickle
 from collections.abc import Callable
 from dataclasses import fields
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Self, TypeVar
 
 from compoundkin.base.errors import InvalidInput, Problem
+
+Made = TypeVar("Made")
 
 
 class CopiesFields:
@@ -38,3 +40,14 @@ class HoldsFunction(CopiesFields):
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         return self
+
+
+def unchecked(item: Made, **changes: Any) -> Made:
+    """Return a copy of a frozen dataclass with other fields, unchecked.
+
+    What was found of it since is found again.
+    """
+    own: Any = item
+    copied = object.__new__(type(item))
+    copied.__dict__.update({field.name: getattr(item, field.name) for field in fields(own)}, **changes)
+    return copied

@@ -13,11 +13,13 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.driver_values import by_name, inputs
 from compoundkin.kinematics.inputs import fit
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.geometry import vector
+from compoundkin.programs.dimensions.dimension_values import dimension_values
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import INPUT
-from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
+from compoundkin.programs.recording.input_kinds import DRIVE
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,8 @@ def _stratum(array: Number) -> int:
 
 def call_numbers(
     order: SolvingOrder,
-    free: Sequence[str],
+    stated: StatedDimensions,
+    free: Sequence[FreeDimension],
     values: Any,
     dimensions: Mapping[str, Any] | None,
     rates: Mapping[str, Any],
@@ -78,19 +81,15 @@ def call_numbers(
     """Return the numbers of a call; raises InvalidInput for what does not fit."""
     values = by_name(order.structure.mechanism, values)
     driven = inputs(order, values, rates["speed"], rates["acceleration"], rates["jerk"], None)
-    own = order.structure.mechanism.geometry.points
-    found = {}
-    for name in free:
-        link, _, letter = name.partition(".")
-        found[name] = vector(name, (dimensions or {}).get(name, own[link][letter]))
+    found = dimension_values(stated, free, dimensions or {})
     shape = np.broadcast_shapes(driven.shape, *(np.shape(v) for v in found.values()))
     still = frozenset((name, k) for name, vs in driven.drives.items() for k, v in enumerate(vs) if k and np.all(v == 0))
     fitted = fit(shape)
     given: dict[InputNumber, Number] = {}
-    for name, place in found.items():
+    for one, place in found.items():
         whole = np.atleast_2d(fitted(place))
-        given[InputNumber(DIMENSION, name, "x")] = np.asarray(whole.real, float)
-        given[InputNumber(DIMENSION, name, "y")] = np.asarray(whole.imag, float)
+        for given_as, part in zip(one.inputs, (whole.real, whole.imag), strict=False):
+            given[given_as] = np.asarray(part, float)
     for name, numbers in driven.drives.items():
         for k, value in enumerate(numbers):
             given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.asarray(fitted(value), float))

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort
 from compoundkin.kinematics.lost_digits import Told
@@ -20,14 +18,20 @@ from compoundkin.programs.call_numbers import CallNumbers, call_numbers
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
+from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.derivatives.sensitivity_program import SensitivityPrograms
+from compoundkin.programs.dimensions.designed_mechanism import designed
+from compoundkin.programs.dimensions.dimension_values import dimension_values
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.named_dimensions import free_dimensions
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.limit_look import LimitPrograms
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
 from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
 from compoundkin.programs.settled_values import settled_values
-from compoundkin.programs.solved_designs import ProgramConfiguration, designed, solved_designs
+from compoundkin.programs.solved_designs import ProgramConfiguration, solved_designs
 from compoundkin.structure.kinematic_structure import Structure
 
 
@@ -51,17 +55,18 @@ def compile(
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
-    >>> two, path = np.array([[1.0], [2.0]]), compile(crank, "B.velocity.length", free="crank.B")
+    >>> two, path = [[1.0], [2.0]], compile(crank, "B.velocity.length", free="crank.B")
     >>> path([0.0, 1.0], {"crank.B": two}, speed=3.0)["B.velocity.length"][:, 0].tolist()
     [3.0, 6.0]
     """
-    names = (outputs,) if isinstance(outputs, str) else tuple(outputs)
-    dimensions = (free,) if isinstance(free, str) else tuple(free)
+    names = (outputs,) if isinstance(outputs, str) else tuple(dict.fromkeys(outputs))
+    freed = (free,) if isinstance(free, str) else tuple(free)
     with warnings.catch_warnings():
         # what is not assembled or has few digits is told at each call
         warnings.simplefilter("ignore")
         motion = solve(mechanism, values, order=0, modes=modes, hint=hint)
     found = tuple(output_of(motion.solving_order, name) for name in names)
+    dimensions = free_dimensions(StatedDimensions(motion.mechanism, motion.inputs.ends), freed)
     return CompiledPath(motion, found, dimensions, backend)
 
 
@@ -74,10 +79,25 @@ class CompiledPath(PrintsShort):
 
     reference: Motion
     outputs: tuple[ProgramOutput, ...]
-    free: tuple[str, ...]
+    dimensions: tuple[FreeDimension, ...]
     chosen_backend: str | None = None
     _variants: dict[Any, RecordedPath] = field(default_factory=dict)
     _programs: dict[Any, ReadyProgram] = field(default_factory=dict)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The names of its free dimensions."""
+        return tuple(one.name for one in self.dimensions)
+
+    @cached_property
+    def stated(self) -> StatedDimensions:
+        """All dimensions of its mechanism."""
+        return StatedDimensions(self.reference.mechanism, self.reference.inputs.ends)
+
+    def mechanism(self, dimensions: Mapping[str, Any] | None = None) -> Mechanism:
+        """Return its mechanism with other values of free dimensions, arrays of designs."""
+        values = dimension_values(self.stated, self.dimensions, dimensions or {})
+        return designed(self.stated, {one: value for one, value in values.items() if one.name in (dimensions or {})})
 
     @property
     def order(self) -> int:
@@ -115,7 +135,7 @@ class CompiledPath(PrintsShort):
     ) -> CallNumbers:
         """Return the numbers of a call; raises InvalidInput for what does not fit."""
         rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk}
-        return call_numbers(self.reference.solving_order, self.free, values, dimensions, rates)
+        return call_numbers(self.reference.solving_order, self.stated, self.dimensions, values, dimensions, rates)
 
     @checked
     def objective(self, function: Callable[[ObjectivePose], Any]) -> PathObjective:
@@ -164,23 +184,17 @@ class CompiledPath(PrintsShort):
 
     def _computed(self, numbers: CallNumbers, threads: int) -> PathValues:
         program = self.program(numbers)
-        arrays, rows = [], []
-        for nodes in program.nodes:
-            shape = program.flat.shape(max(nodes, key=lambda n: program.flat.strata[n]), *numbers.extent)
-            array = np.empty(shape, complex if len(nodes) > 1 else float)
-            arrays.append(array)
-            rows += [array.real, array.imag] if len(nodes) > 1 else [array]
-        least = np.empty(program.flat.shape(program.flat.outputs[-1], *numbers.extent))
-        program.runner(numbers.arrays(program.flat), [*rows, least], numbers.extent, threads)
         names = [output.name for output in self.outputs]
+        nodes = dict(zip((*names, ""), (*program.nodes, program.flat.outputs[-1:]), strict=True))
+        found = results(program.flat, program.runner, numbers, nodes, threads)
+        least, arrays = found.pop(""), list(found.values())
         failed = settled_values(self.limits, numbers, names, arrays, least, self.solved)
         return PathValues(numbers, dict(zip(names, arrays, strict=True)), failed, self.solved)
 
     @cached_property
     def limits(self) -> LimitPrograms:
         """The programs that look at designs near limits."""
-        recording = Recording(self.reference.solving_order, self.signs, self.free, self.order)
-        return LimitPrograms(recording, self.reference, self.configuration.shown, self.chosen_backend)
+        return LimitPrograms(self._recording(), self.reference, self.configuration.shown, self.chosen_backend)
 
     @cached_property
     def configuration(self) -> ProgramConfiguration:
@@ -189,15 +203,18 @@ class CompiledPath(PrintsShort):
 
     def solved(self, numbers: CallNumbers) -> Told:
         """Solve the designs of some numbers instead, in its configuration."""
-        mechanism = designed(self.reference.mechanism, self.free, numbers)
+        mechanism = designed(self.stated, {one: one.value_in(numbers.given) for one in self.dimensions})
         return solved_designs(mechanism, numbers, self.configuration, self.order)
 
     def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
         """Return it recorded where some rates of drivers are zero."""
         if still not in self._variants:
-            recording = Recording(self.reference.solving_order, self.signs, self.free, self.order, still)
-            self._variants[still] = RecordedPath.of(recording, self.outputs)
+            self._variants[still] = RecordedPath.of(self._recording(still), self.outputs)
         return self._variants[still]
+
+    def _recording(self, still: frozenset[tuple[str, int]] = frozenset()) -> Recording:
+        own = self.reference
+        return Recording(own.solving_order, self.signs, self.dimensions, self.order, still, own.inputs.ends)
 
     def program(self, numbers: CallNumbers) -> ReadyProgram:
         """Return the program for numbers of these forms."""

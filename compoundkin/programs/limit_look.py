@@ -125,8 +125,7 @@ class LimitPrograms(PrintsShort):
 
     @cached_property
     def _squares(self) -> tuple[RecordedLimits, Sequence[int]] | None:
-        order = self.recording.solving_order
-        limits = RecordedLimits(recorded(Recording(order, self.recording.signs, self.recording.free, 1)))
+        limits = RecordedLimits(recorded(replace(self.recording, order=1)))
         nodes = [number.x for pair in limits.squares for number in pair]
         return (limits, nodes) if nodes else None
 

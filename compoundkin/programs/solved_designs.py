@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from compoundkin.base.display import PrintsShort
-from compoundkin.base.series import Number
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration, solved, solving_order_of
-from compoundkin.model.elements import Link
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.call_numbers import CallNumbers
-from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
+from compoundkin.programs.recording.input_kinds import DRIVE
 
 
 @dataclass(frozen=True)
@@ -53,14 +49,3 @@ def solved_designs(designed: Mechanism, numbers: CallNumbers, configuration: Pro
     with np.errstate(all="ignore"):
         given = inputs(solving_order, values, rates[0], rates[1], rates[2])
         return solved(solving_order, given, configuration.signs, configuration.shown, order)
-
-
-def designed(mechanism: Mechanism, free: Sequence[str], numbers: CallNumbers) -> Mechanism:
-    """Return the mechanism with the values of its free dimensions."""
-    links: dict[str, dict[str, Number]] = {}
-    for name in free:
-        link, _, letter = name.partition(".")
-        x, y = (numbers.given[InputNumber(DIMENSION, name, part)] for part in "xy")
-        own = links.setdefault(link, dict(mechanism.geometry.points[link]))
-        own[letter] = x + 1j * y
-    return mechanism.replace(*(Link(name, points) for name, points in links.items()))

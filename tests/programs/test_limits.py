@@ -10,7 +10,6 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.kinematics.motion import Motion
-from compoundkin.programs.call_numbers import call_numbers
 from compoundkin.programs.compiled_path import CompiledPath
 
 DESIGNS = 60
@@ -29,9 +28,7 @@ def _free(mechanism: Any) -> dict[str, complex]:
 
 
 def _solved(path: CompiledPath, dimensions: Any, speed: Any) -> Motion:
-    rates = {"speed": speed, "acceleration": None, "jerk": None}
-    numbers = call_numbers(path.reference.solving_order, path.free, None, dimensions, rates)
-    return path.solved(numbers).motion
+    return path.solved(path.numbers(None, dimensions, speed, None, None)).motion
 
 
 @pytest.mark.parametrize("name", NAMES)

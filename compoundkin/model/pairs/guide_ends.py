@@ -161,7 +161,7 @@ def reach_key(kind: Kind, doc: str) -> dict[str, Any]:
 
 
 def _plain(end: Any) -> Number:
-    return float(end) if np.ndim(end) == 0 else np.asarray(end, dtype=float)
+    return 1.0 * end if np.ndim(end) == 0 else np.asarray(end, dtype=float)
 
 
 def _told(end: Number | str | None, value: Number) -> str:

@@ -14,6 +14,7 @@ from compoundkin.base.series import Number, Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Pair, Poses
+from compoundkin.model.pairs.drawn_numbers import DrawnPhase
 
 
 class Drivable(Pair):
@@ -82,7 +83,7 @@ def as_orienting(pair: Pair) -> Orienting | None:
     return pair if isinstance(pair, Orienting) else None
 
 
-class TurnCounting(Orienting):
+class TurnCounting(DrawnPhase, Orienting):
     """A pair that asks for its members' angles with full turns. Such are gears, belts, racks, wheels that roll."""
 
     def with_link_turns(self, ends: Ends, geometry: Geometry, turns: tuple[Number, ...]) -> Ends:

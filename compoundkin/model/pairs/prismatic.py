@@ -17,6 +17,7 @@ from compoundkin.model.attributes import NORMAL
 from compoundkin.model.fields import NameWording, link_key, point_key, value_key, word
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Point, Poses, table
+from compoundkin.model.pairs.drawn_numbers import DrawnGuide
 from compoundkin.model.pairs.dry_contacts import RubbingGuide
 from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
@@ -26,7 +27,7 @@ from compoundkin.model.pairs.symbols import Mark, Sliding, reach
 
 
 @dataclass(frozen=True, eq=False)
-class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended):
+class Prismatic(RubbingGuide, Drivable, Orienting, Guided, Ended, DrawnGuide):
     """The link `link` slides on the link `on`. Its point `at` runs along a guide.
 
     The guide is the line through the point `through` of `on`, in the direction `angle` (radians, from the x axis of

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number, Series
@@ -11,9 +11,12 @@ from compoundkin.kinematics.block import rates
 from compoundkin.kinematics.limits import noted_root
 from compoundkin.kinematics.solving_order import SolvingOrder, run
 from compoundkin.model.geometry import Geometry
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
+from compoundkin.programs.recording.input_kinds import DRIVE
 from compoundkin.programs.recording.recorded_block import RecordedBlock
+from compoundkin.programs.recording.recorded_dimensions import recorded_ends, recorded_geometry
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.recording.seeded_order import SeededChoice, seeded_order
 
@@ -23,14 +26,16 @@ class Recording:
     """A mechanism in a configuration, and which of its numbers are inputs.
 
     `signs` are those of the groups by index. `free` are the dimensions that are inputs, `still` the drivers' rates,
-    (driver, order), that are zero and cost nothing.
+    (driver, order), that are zero and cost nothing. `ends` are the sides of pairs in its
+    own motion.
     """
 
     solving_order: SolvingOrder
     signs: Mapping[int, int]
-    free: tuple[str, ...] = ()
+    free: tuple[FreeDimension, ...] = ()
     order: int = 2
     still: Collection[tuple[str, int]] = ()
+    ends: Mapping[str, Ends] | None = None
 
 
 @dataclass(frozen=True, repr=False)
@@ -56,25 +61,15 @@ class RecordedMechanism(PrintsShort):
 def recorded(recording: Recording) -> RecordedMechanism:
     """Return a mechanism recorded."""
     graph, order = OperationGraph(), recording.solving_order
-    geometry = _geometry(graph, order.structure.mechanism.geometry, recording.free)
-    ends = {name: pair.ends(geometry) for name, pair in order.pairs.items()}
-    bound = seeded_order(order, {**ends, **order.guide_ends.bounds(geometry)}, graph, recording.order)
+    geometry = recorded_geometry(graph, order.structure.mechanism.geometry, recording.free)
+    ends = recorded_ends(graph, order, geometry, recording.free, recording.ends or order.ends)
+    bound = seeded_order(order, ends, graph, recording.order)
     drives = {drive.name: _driver(graph, drive.name, recording) for drive in order.structure.mechanism.drives}
     notes: dict[int, list[Series]] = {solver.index: [] for solver in order.solvers if solver.modes_may_meet}
     block = RecordedBlock.of(bound.start(bound.ends, drives, recording.order, (1, 1)))
     block.roots = {k: noted_root(found) for k, found in notes.items()}
     run(bound, block, SeededChoice(graph, recording.signs))
     return RecordedMechanism(recording, graph, geometry, drives, bound, block, notes)
-
-
-def _geometry(graph: OperationGraph, geometry: Geometry, free: tuple[str, ...]) -> Geometry:
-    """Return the dimensions with the free points of links as inputs."""
-    points = {name: dict(own) for name, own in geometry.points.items()}
-    for name in free:
-        link, _, letter = name.partition(".")
-        x, y = (InputNumber(DIMENSION, name, part) for part in "xy")
-        points[link][letter] = RecordedNumber.given(graph, x, y)
-    return replace(geometry, points=points)
 
 
 def _driver(graph: OperationGraph, name: str, recording: Recording) -> Series:

@@ -1,0 +1,42 @@
+"""The mechanism itself with other values of its free dimensions; all else of it is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.model.elements import Link
+from compoundkin.model.field_numbers import fields_with
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+
+
+def designed(stated: StatedDimensions, values: Mapping[FreeDimension, Number]) -> Mechanism:
+    """Return the mechanism with these dimensions, several designs where they are arrays.
+
+    What its pairs read off the drawing stays as it was. Raises InvalidMechanism for dimensions that
+    no such mechanism can have.
+    """
+    links: dict[str, dict[str, Number]] = {}
+    numbers: dict[str, dict[str, Number]] = {}
+    for one, value in values.items():
+        if one.is_of_link:
+            points = links.setdefault(one.owner, dict(stated.mechanism.geometry.points[one.owner]))
+            points[one.word] = value if one.is_vector else _with_part(points[one.word], one.part, value)
+        else:
+            numbers.setdefault(one.owner, {})[one.number] = value
+    items: list[Any] = [Link(name, points) for name, points in links.items()]
+    for name, item in stated.items.items():
+        changes = {**stated.read_off.get(name, {}), **fields_with(item, numbers.get(name, {}))}
+        if changes:
+            items.append(replace(item, **changes))
+    return stated.mechanism.replace(*items) if items else stated.mechanism
+
+
+def _with_part(point: Number, part: str, value: Number) -> Number:
+    return value + 1j * np.imag(point) if part == "x" else np.real(point) + 1j * value

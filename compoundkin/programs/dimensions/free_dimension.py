@@ -1,0 +1,63 @@
+"""A free dimension: a point of a link, a coordinate of one, or a number of a pair; found by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.series import Number
+from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.recording.input_kinds import DIMENSION
+
+AXES = ("x", "y")
+
+
+@dataclass(frozen=True)
+class FreeDimension:
+    """A dimension by its name.
+
+    It is of a link (`word` is the letter of a point, `part` empty for both coordinates) or of a pair or cylinder
+    (`word` is a field, `part` which of two numbers).
+    """
+
+    name: str
+    owner: str
+    word: str
+    part: str = ""
+    is_of_link: bool = False
+
+    @property
+    def is_vector(self) -> bool:
+        """Whether it is a point, not a number."""
+        return self.is_of_link and not self.part
+
+    @property
+    def base(self) -> str:
+        """The name without its part."""
+        return f"{self.owner}.{self.word}"
+
+    @property
+    def number(self) -> str:
+        """The name of a pair's number, as `numbers_of` has it."""
+        return f"{self.word}.{self.part}" if self.part else self.word
+
+    @property
+    def inputs(self) -> tuple[InputNumber, ...]:
+        """The inputs of a program that it is: two of a point."""
+        if self.is_vector:
+            return tuple(InputNumber(DIMENSION, self.name, part) for part in AXES)
+        if self.is_of_link:
+            return (InputNumber(DIMENSION, self.base, self.part),)
+        return (InputNumber(DIMENSION, self.name),)
+
+    def part_of(self, value: Number) -> Number:
+        """Return its part of a point."""
+        return {"x": np.real, "y": np.imag}[self.part](value) if self.part else value
+
+    def value_in(self, given: Mapping[InputNumber, Number]) -> Number:
+        """Return its value among the inputs of a call, perhaps a single number."""
+        parts = [given[one] for one in self.inputs]
+        whole = parts[0] + 1j * parts[1] if self.is_vector else parts[0]
+        return whole.item() if np.size(whole) == 1 else whole

@@ -1,0 +1,64 @@
+"""All dimensions of a mechanism as numbers; what pairs read off the drawing is stated, and stays when points move."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.model.field_numbers import numbers_of
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import pairs_among
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.drawn_numbers import read_off
+from compoundkin.programs.dimensions.free_dimension import AXES, FreeDimension
+
+
+@dataclass(frozen=True, repr=False)
+class StatedDimensions(PrintsShort):
+    """The dimensions of a mechanism.
+
+    `ends` are the sides of pairs in its motion: phases that are drawn are those for the turns that it has made.
+    """
+
+    mechanism: Mechanism
+    ends: Mapping[str, Ends]
+
+    @cached_property
+    def read_off(self) -> dict[str, Mapping[str, Number]]:
+        """What pairs read off the drawing, by their names and fields."""
+        geometry, pairs = self.mechanism.geometry, self.mechanism.written_pairs
+        return {pair.name: read_off(pair, self.ends[pair.name], geometry) for pair in pairs}
+
+    @cached_property
+    def items(self) -> Mapping[str, Any]:
+        """What is written with numbers besides points, by name: pairs and cylinders."""
+        return {**{pair.name: pair for pair in pairs_among(self.mechanism.items)}, **self.mechanism.cylinders}
+
+    @cached_property
+    def known(self) -> dict[str, FreeDimension]:
+        """All dimensions by name."""
+        return {one.name: one for one in (*self._numbers(), *self._points())}
+
+    def own(self, one: FreeDimension) -> Number:
+        """Return the mechanism's own value of a dimension."""
+        if one.is_of_link:
+            return one.part_of(self.mechanism.geometry.points[one.owner][one.word])
+        return self._stated(one.owner)[one.number]
+
+    def _numbers(self) -> Iterator[FreeDimension]:
+        for owner in self.items:
+            for number in self._stated(owner):
+                yield FreeDimension(f"{owner}.{number}", owner, *number.partition(".")[::2])
+
+    def _points(self) -> Iterator[FreeDimension]:
+        for owner, link in self.mechanism.rigid_links.items():
+            for letter in link.points:
+                for part in ("", *AXES):
+                    yield FreeDimension(".".join((owner, letter, *part)), owner, letter, part, True)
+
+    def _stated(self, owner: str) -> Mapping[str, Number]:
+        return {**numbers_of(self.items[owner]), **self.read_off.get(owner, {})}
