@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -206,11 +206,12 @@ class CompiledPath(PrintsShort):
         mechanism = designed(self.stated, {one: one.value_in(numbers.given) for one in self.dimensions})
         return solved_designs(mechanism, numbers, self.configuration, self.order)
 
-    def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
-        """Return it recorded where some rates of drivers are zero."""
-        if still not in self._variants:
-            self._variants[still] = RecordedPath.of(self._recording(still), self.outputs)
-        return self._variants[still]
+    def variant(self, still: frozenset[tuple[str, int]], is_seeded: bool = False) -> RecordedPath:
+        """Return it recorded where some rates of drivers are zero, the signs of its groups perhaps as seeds."""
+        if (still, is_seeded) not in self._variants:
+            recording = replace(self._recording(still), signs={}) if is_seeded else self._recording(still)
+            self._variants[still, is_seeded] = RecordedPath.of(recording, self.outputs)
+        return self._variants[still, is_seeded]
 
     def _recording(self, still: frozenset[tuple[str, int]] = frozenset()) -> Recording:
         own = self.reference

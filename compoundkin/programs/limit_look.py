@@ -45,6 +45,11 @@ class LimitLook(PrintsShort):
     failed: Number
     handed: Number
 
+    @property
+    def lost(self) -> Number:
+        """The designs, by index, that have unassembled poses and need not be solved."""
+        return np.setdiff1d(np.flatnonzero(self.failed.any(axis=1)), self.handed)
+
 
 def bound(order: SolvingOrder, numbers: CallNumbers) -> float:
     """Return the margin above which a design needs no look.
@@ -83,6 +88,22 @@ class LimitPrograms(PrintsShort):
             return near, np.zeros_like(near)
         early = self._computed(self._poses, _driven(numbers, way, {name: np.zeros((1, 1)) for name in way}))[1]
         return near, np.any(early < NEAR, axis=1)
+
+    def doubtful(self, numbers: CallNumbers, least: Number) -> LimitLook | None:
+        """Look at the designs that need it; return None where none does.
+
+        `least` is the least of `RecordedLimits.certain` over poses, (1 or designs, 1).
+        """
+        near, early = (np.broadcast_to(each, numbers.extent[:1]) for each in self.needed(numbers, least))
+        if not (near.any() or early.any()):
+            return None
+        failed, handed = np.zeros(numbers.extent, dtype=np.int32), early.copy()
+        designs = np.flatnonzero(near)
+        if len(designs):
+            look = self.look(picked(numbers, designs))
+            failed[designs] = look.failed
+            handed[designs[look.handed]] = True
+        return LimitLook(failed, np.flatnonzero(handed))
 
     def look(self, numbers: CallNumbers) -> LimitLook:
         """Look at all designs of some numbers."""

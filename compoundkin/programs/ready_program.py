@@ -10,7 +10,9 @@ from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
+from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.graph.operations import LEAST
+from compoundkin.programs.recording.input_kinds import SEED
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
 from compoundkin.programs.recording.recorded_number import RecordedNumber
@@ -34,6 +36,13 @@ class RecordedPath:
     def nodes(self) -> tuple[tuple[int, ...], ...]:
         """The nodes of each output: one, or two of a vector."""
         return tuple((o.x,) if o.y is None else (o.x, o.y) for o in self.outputs)
+
+    @cached_property
+    def seeds(self) -> tuple[InputNumber, ...]:
+        """What it asks to be found outside."""
+        graph = self.mechanism.graph
+        needed = graph.inputs([k for nodes in self.nodes for k in nodes])
+        return tuple(given for k in needed if (given := graph.nodes[k].given) and given.kind == SEED)
 
 
 @dataclass(frozen=True)

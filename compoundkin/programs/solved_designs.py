@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import InvalidMechanism, NotAssembled, NotDetermined
+from compoundkin.base.series import Number
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.driver_values import inputs
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration, solved, solving_order_of
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.call_numbers import CallNumbers, picked
 from compoundkin.programs.recording.input_kinds import DRIVE
+
+# Solves the designs of some numbers.
+Solving: TypeAlias = Callable[[CallNumbers], Told]
 
 
 @dataclass(frozen=True)
@@ -35,6 +42,24 @@ class ProgramConfiguration(PrintsShort):
         if near is None or tracker.shown.points:
             return cls(signs, tracker.shown)
         return cls(signs, Shown("configuration", near.points, near.poses, near.points))
+
+
+def solved_parts(by: Solving, numbers: CallNumbers, designs: Number) -> Iterator[tuple[Number, Told | None]]:
+    """Solve some designs, and yield them in parts; None where nothing can be built or assembled.
+
+    One design of which there is nothing must not take the others with it.
+    """
+    if not len(designs):
+        return
+    try:
+        yield designs, by(picked(numbers, designs))
+    except (NotAssembled, NotDetermined, InvalidMechanism):
+        half = len(designs) // 2
+        if not half:
+            yield designs, None
+            return
+        yield from solved_parts(by, numbers, designs[:half])
+        yield from solved_parts(by, numbers, designs[half:])
 
 
 def solved_designs(designed: Mechanism, numbers: CallNumbers, configuration: ProgramConfiguration, order: int) -> Told:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.derivatives.adjoints import reverse
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose, recorded_cost
 from compoundkin.programs.derivatives.result_arrays import results
+from compoundkin.programs.derivatives.told_designs import known_poses
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import LEAST, TOTAL
@@ -33,14 +35,14 @@ _TOTAL, _LEAST = "", " "
 class ObjectiveForm:
     """What is asked of an objective.
 
-    Whether there are slopes, and masks, which are not needed where all poses are known to be assembled. `given` tells
-    of each name given with the call whether it is complex.
+    Whether there are slopes, and how it is known which poses there are. `given` tells of each name given with the call
+    whether it is complex.
     """
 
     function: Callable[[ObjectivePose], Any]
     given: Mapping[str, bool]
     is_sloped: bool
-    is_masked: bool
+    known: str
 
 
 @dataclass(frozen=True, repr=False)
@@ -54,17 +56,22 @@ class ObjectiveValues(PrintsShort):
     least: Number
     slopes: Mapping[str, Number]
 
-    def replaced(self, designs: Number, other: ObjectiveValues, count: int) -> ObjectiveValues:
-        """Return it with some of the designs computed otherwise."""
+    @classmethod
+    def joined(cls, count: int, parts: Sequence[tuple[Number, ObjectiveValues]]) -> ObjectiveValues:
+        """Join the values of some designs, by index; later ones take the place of earlier ones."""
 
-        def put(old: Number, new: Number) -> Number:
-            whole = np.array(np.broadcast_to(old, (count, old.shape[1])))
-            whole[designs] = new
+        def put(arrays: Sequence[Number]) -> Number:
+            whole = np.empty((count, arrays[0].shape[1]), arrays[0].dtype)
+            for (designs, _), array in zip(parts, arrays, strict=True):
+                whole[designs] = array
             return whole
 
-        lost = np.isnan(other.value)  # a sum that is none has no slopes
-        slopes = {name: put(old, np.where(lost, np.nan, other.slopes[name])) for name, old in self.slopes.items()}
-        return ObjectiveValues(put(self.value, other.value), put(self.least, other.least), slopes)
+        values = [part for _, part in parts]
+        slopes = {name: put([each.slopes[name] for each in values]) for name in values[0].slopes}
+        value = put([each.value for each in values])
+        for slope in slopes.values():
+            slope[np.isnan(value[:, 0])] = np.nan  # a sum that is none has no slopes
+        return cls(value, put([each.least for each in values]), slopes)
 
     def shaped(self, shape: tuple[int, ...]) -> tuple[Any, dict[str, Any]]:
         """Return sum and slopes in the form of the call.
@@ -90,17 +97,18 @@ class ObjectiveProgram(PrintsShort):
 
     @classmethod
     def of(
-        cls, path: RecordedPath, names: Sequence[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
+        cls, path: RecordedPath, names: list[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
     ) -> ObjectiveProgram:
         """Make the program of an objective for numbers of some form."""
-        graph, limits = path.mechanism.graph, RecordedLimits(path.mechanism)
-        assembled = limits.failed == 0.0 if form.is_masked else path.mechanism.number(True)
-        outputs = dict(zip(names, (_masked(each, assembled) for each in path.outputs), strict=True))
+        graph, certain = path.mechanism.graph, RecordedLimits(path.mechanism).certain
+        assembled, known = known_poses(path, names, form.known)
+        outputs = {name: _masked(each, known[name]) for name, each in zip(names, path.outputs, strict=True)}
         cost = recorded_cost(form.function, graph, outputs, form.given, assembled)
-        root, least, strata = graph.apply(TOTAL, cost), graph.apply(LEAST, limits.certain.x), numbers.strata(graph)
+        root, least, strata = graph.apply(TOTAL, cost), graph.apply(LEAST, certain.x), numbers.strata(graph)
+        kept = reduce(RecordedNumber.__and__, _read(graph, cost, known), assembled)
         by = _dimensions(graph, numbers) if form.is_sloped else {}
         every = [k for nodes in by.values() for k in nodes]
-        found = dict(zip(every, reverse(graph, root, every, strata, assembled.x), strict=True))
+        found = dict(zip(every, reverse(graph, root, every, strata, kept.x), strict=True))
         slopes = {name: tuple(found[k] for k in nodes) for name, nodes in by.items()}
         flat = flat_program(graph, [root, least, *(k for nodes in slopes.values() for k in nodes)], strata)
         return cls(flat, runner_of(flat, backend), slopes)
@@ -115,6 +123,12 @@ class ObjectiveProgram(PrintsShort):
 
 def _masked(output: RecordedNumber, assembled: RecordedNumber) -> RecordedNumber:
     return chosen(assembled, output, complex(np.nan, np.nan) if output.y is not None else np.nan)
+
+
+def _read(graph: OperationGraph, cost: int, known: Mapping[str, RecordedNumber]) -> list[RecordedNumber]:
+    """Return where the outputs are known that a cost hangs on."""
+    needed = set(graph.needed([cost]))
+    return [truth for truth in known.values() if truth.x in needed]
 
 
 def _dimensions(graph: OperationGraph, numbers: CallNumbers) -> dict[str, tuple[int, ...]]:

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import UnassembledPoses, warn
 from compoundkin.programs.call_numbers import CallNumbers, picked
 from compoundkin.programs.derivatives.objective_program import ObjectiveForm, ObjectiveProgram, ObjectiveValues
 from compoundkin.programs.derivatives.parameters import with_parameters
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
+from compoundkin.programs.derivatives.told_designs import ASSEMBLED, EVERYWHERE, SOLVED, told_designs
 
 if TYPE_CHECKING:
     from compoundkin.programs.compiled_path import CompiledPath
@@ -90,23 +93,35 @@ class PathObjective(PrintsShort):
     ) -> tuple[Any, dict[str, Any]]:
         """Return value and slopes; designs that come near a limit are computed again with masks."""
         whole, complex_names = with_parameters(numbers, given)
-        found = self._run(whole, complex_names, is_sloped, False, threads)
-        near = np.flatnonzero(np.logical_or(*self.path.limits.needed(whole, found.least)))
-        if len(near):
-            masked = self._run(picked(whole, near), complex_names, is_sloped, True, threads)
-            found = found.replaced(near, masked, whole.extent[0])
-        return found.shaped(whole.shape)
+        run, path = partial(self._run, complex_names, is_sloped, threads), self.path
+        every = np.arange(whole.extent[0])
+        if path.variant(whole.still).seeds:
+            parts, handed = [], every
+        else:
+            found = run(whole, EVERYWHERE)
+            look = path.limits.doubtful(whole, found.least)
+            if look is None:
+                return found.shaped(whole.shape)
+            parts, handed = [(every, found)], look.handed
+            if len(look.lost):
+                parts.append((look.lost, run(picked(whole, look.lost), ASSEMBLED)))
+        parts += [(part, run(told, SOLVED)) for part, told in told_designs(path, whole, handed)]
+        joined = ObjectiveValues.joined(len(every), parts)
+        missing = int(np.count_nonzero(np.isnan(joined.value)))
+        if missing:
+            of_all = f"{missing} of {len(every)} designs have poses that cannot be assembled"
+            warn(f"{of_all}: numpy.where(at.assembled, ..., 0.0) leaves them out", UnassembledPoses)
+        return joined.shaped(whole.shape)
 
     def _run(
-        self, numbers: CallNumbers, given: Mapping[str, bool], is_sloped: bool, is_masked: bool, threads: int
+        self, given: Mapping[str, bool], is_sloped: bool, threads: int, numbers: CallNumbers, known: str
     ) -> ObjectiveValues:
-        key = numbers.form, tuple(given.items()), is_sloped, is_masked
+        key = numbers.form, tuple(given.items()), is_sloped, known
         if key not in self._programs:
             path, names = self.path, [output.name for output in self.path.outputs]
-            form = ObjectiveForm(self.function, given, is_sloped, is_masked)
-            self._programs[key] = ObjectiveProgram.of(
-                path.variant(numbers.still), names, numbers, form, path.chosen_backend
-            )
+            form = ObjectiveForm(self.function, given, is_sloped, known)
+            variant = path.variant(numbers.still, known == SOLVED)
+            self._programs[key] = ObjectiveProgram.of(variant, names, numbers, form, path.chosen_backend)
         return self._programs[key].run(numbers, threads)
 
     def __repr__(self) -> str:

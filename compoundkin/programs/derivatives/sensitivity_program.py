@@ -85,6 +85,7 @@ class SensitivityPrograms(PrintsShort):
         found = self._program(numbers, wanted).run(numbers, threads)
         names, least = [output.name for output in self.path.outputs], found.pop(_MARGIN)
         outputs = [found.pop((name, "")) for name in names]
+        raw = [array.copy() for array in outputs]
         failed = settled_values(self.path.limits, numbers, names, outputs, least, self.path.solved)
         values = PathValues(numbers, dict(zip(names, outputs, strict=True)), failed, self.path.solved)
         return PathSensitivities(values, {key: _masked(values.found[key[0]], slope) for key, slope in found.items()})
