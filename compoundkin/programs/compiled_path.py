@@ -188,7 +188,7 @@ class CompiledPath(PrintsShort):
         nodes = dict(zip((*names, ""), (*program.nodes, program.flat.outputs[-1:]), strict=True))
         found = results(program.flat, program.runner, numbers, nodes, threads)
         least, arrays = found.pop(""), list(found.values())
-        failed = settled_values(self.limits, numbers, names, arrays, least, self.solved)
+        failed = settled_values(numbers, names, arrays, self.limits.doubtful(numbers, least), self.solved)
         return PathValues(numbers, dict(zip(names, arrays, strict=True)), failed, self.solved)
 
     @cached_property

@@ -11,7 +11,7 @@ from compoundkin.base.errors import FewDigits, UnassembledPoses, warn
 from compoundkin.base.series import Number
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.programs.call_numbers import CallNumbers
-from compoundkin.programs.limit_look import LimitPrograms
+from compoundkin.programs.limit_look import LimitLook
 from compoundkin.programs.solved_designs import Solving, solved_parts
 
 if TYPE_CHECKING:
@@ -19,14 +19,13 @@ if TYPE_CHECKING:
 
 
 def settled_values(
-    limits: LimitPrograms, numbers: CallNumbers, names: Sequence[str], arrays: list[Number], least: Number, by: Solving
+    numbers: CallNumbers, names: Sequence[str], arrays: list[Number], look: LimitLook | None, by: Solving
 ) -> Number | None:
     """Make outputs certain in place; return which poses failed, None where none did.
 
-    `arrays` are (1 or designs, 1 or poses), and put at their full size in the list; `least` is the least of
-    `RecordedLimits.certain` over poses, as narrow. Warns UnassembledPoses and FewDigits as `solve`.
+    `arrays` are (1 or designs, 1 or poses), and put at their full size in the list; `look` is what was found at limits,
+    if any design came near one. Warns UnassembledPoses and FewDigits as `solve`.
     """
-    look = limits.doubtful(numbers, least)
     if look is None:
         return None
     for k, array in enumerate(arrays):

@@ -22,7 +22,6 @@ from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import LEAST, TOTAL
 from compoundkin.programs.ready_program import RecordedPath
-from compoundkin.programs.recording.input_kinds import DIMENSION
 from compoundkin.programs.recording.recorded_functions import chosen
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_number import RecordedNumber
@@ -35,13 +34,13 @@ _TOTAL, _LEAST = "", " "
 class ObjectiveForm:
     """What is asked of an objective.
 
-    Whether there are slopes, and how it is known which poses there are. `given` tells of each name given with the call
-    whether it is complex.
+    `given` tells of each name given with the call whether it is complex, `by` what slopes are by, one input or two of a
+    point, and `known` how it is known which poses there are.
     """
 
     function: Callable[[ObjectivePose], Any]
     given: Mapping[str, bool]
-    is_sloped: bool
+    by: Mapping[str, tuple[InputNumber, ...]]
     known: str
 
 
@@ -106,7 +105,7 @@ class ObjectiveProgram(PrintsShort):
         cost = recorded_cost(form.function, graph, outputs, form.given, assembled)
         root, least, strata = graph.apply(TOTAL, cost), graph.apply(LEAST, certain.x), numbers.strata(graph)
         kept = reduce(RecordedNumber.__and__, _read(graph, cost, known), assembled)
-        by = _dimensions(graph, numbers) if form.is_sloped else {}
+        by = {name: tuple(map(graph.input, parts)) for name, parts in form.by.items()}
         every = [k for nodes in by.values() for k in nodes]
         found = dict(zip(every, reverse(graph, root, every, strata, kept.x), strict=True))
         slopes = {name: tuple(found[k] for k in nodes) for name, nodes in by.items()}
@@ -129,12 +128,3 @@ def _read(graph: OperationGraph, cost: int, known: Mapping[str, RecordedNumber])
     """Return where the outputs are known that a cost hangs on."""
     needed = set(graph.needed([cost]))
     return [truth for truth in known.values() if truth.x in needed]
-
-
-def _dimensions(graph: OperationGraph, numbers: CallNumbers) -> dict[str, tuple[int, ...]]:
-    """Return the inputs of the free dimensions by their names: one, or two of a point."""
-    found: dict[str, list[InputNumber]] = {}
-    for given in numbers.given:
-        if given.kind == DIMENSION:
-            found.setdefault(given.name, []).append(given)
-    return {name: tuple(graph.input(part) for part in parts) for name, parts in found.items()}

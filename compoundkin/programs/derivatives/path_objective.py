@@ -119,7 +119,8 @@ class PathObjective(PrintsShort):
         key = numbers.form, tuple(given.items()), is_sloped, known
         if key not in self._programs:
             path, names = self.path, [output.name for output in self.path.outputs]
-            form = ObjectiveForm(self.function, given, is_sloped, known)
+            by = {one.name: one.inputs for one in path.dimensions} if is_sloped else {}
+            form = ObjectiveForm(self.function, given, by, known)
             variant = path.variant(numbers.still, known == SOLVED)
             self._programs[key] = ObjectiveProgram.of(variant, names, numbers, form, path.chosen_backend)
         return self._programs[key].run(numbers, threads)

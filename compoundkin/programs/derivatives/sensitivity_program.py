@@ -17,6 +17,7 @@ from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.derivatives.tangents import forward
+from compoundkin.programs.derivatives.told_designs import told_designs
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.graph.operations import LEAST
@@ -82,21 +83,30 @@ class SensitivityPrograms(PrintsShort):
         if unknown:
             raise UnknownName([Problem(f"by.{name}", "it is no input", nearest(name, list(known))) for name in unknown])
         wanted = {name: known[name] for name in (known if by is None else by)}
-        found = self._program(numbers, wanted).run(numbers, threads)
-        names, least = [output.name for output in self.path.outputs], found.pop(_MARGIN)
+        path, names = self.path, [output.name for output in self.path.outputs]
+        found = self._run(numbers, wanted, False, threads)
+        look = path.limits.doubtful(numbers, found.pop(_MARGIN))
         outputs = [found.pop((name, "")) for name in names]
-        raw = [array.copy() for array in outputs]
-        failed = settled_values(self.path.limits, numbers, names, outputs, least, self.path.solved)
-        values = PathValues(numbers, dict(zip(names, outputs, strict=True)), failed, self.path.solved)
-        return PathSensitivities(values, {key: _masked(values.found[key[0]], slope) for key, slope in found.items()})
+        failed = settled_values(numbers, names, outputs, look, path.solved)
+        slopes = found
+        if look is not None:
+            slopes = {key: np.array(np.broadcast_to(slope, numbers.extent)) for key, slope in found.items()}
+            for designs, told in told_designs(path, numbers, look.handed):
+                solved = self._run(told, wanted, True, threads)
+                for key, slope in slopes.items():
+                    slope[designs] = solved[key]
+        values = PathValues(numbers, dict(zip(names, outputs, strict=True)), failed, path.solved)
+        return PathSensitivities(values, {key: _masked(values.found[key[0]], slope) for key, slope in slopes.items()})
 
-    def _program(self, numbers: CallNumbers, by: Mapping[str, InputNumber]) -> SensitivityProgram:
-        key = numbers.form, tuple(by)
+    def _run(
+        self, numbers: CallNumbers, by: Mapping[str, InputNumber], is_seeded: bool, threads: int
+    ) -> dict[Wanted, Number]:
+        key = numbers.form, tuple(by), is_seeded
         if key not in self._programs:
             names = [output.name for output in self.path.outputs]
-            path, backend = self.path.variant(numbers.still), self.path.chosen_backend
+            path, backend = self.path.variant(numbers.still, is_seeded), self.path.chosen_backend
             self._programs[key] = SensitivityProgram.of(path, names, by, numbers, backend)
-        return self._programs[key]
+        return self._programs[key].run(numbers, threads)
 
 
 def _directions(numbers: CallNumbers) -> dict[str, InputNumber]:
