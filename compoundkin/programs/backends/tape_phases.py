@@ -23,7 +23,7 @@ from compoundkin.programs.graph.operations import CONSTANT, INPUT, REDUCTIONS
 
 @dataclass(frozen=True)
 class Sink:
-    """Where a value goes: an output, later phases, or the reduction that a node is."""
+    """Where a value goes. It is an output, for later phases, or for a reduction."""
 
     kind: str
     node: int
