@@ -25,6 +25,7 @@ from compoundkin.programs.dimensions.dimension_values import dimension_values
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.named_dimensions import free_dimensions
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.jax_path import JaxPath, jax_path
 from compoundkin.programs.limit_look import LimitPrograms
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
@@ -181,6 +182,10 @@ class CompiledPath(PrintsShort):
     def sensitivities(self) -> SensitivityPrograms:
         """The programs that compute slopes at every pose."""
         return SensitivityPrograms(self)
+
+    def jax(self) -> JaxPath:
+        """Return it as a pure function of JAX; raises InvalidInput where there is none."""
+        return jax_path(self)
 
     def _computed(self, numbers: CallNumbers, threads: int) -> PathValues:
         program = self.program(numbers)

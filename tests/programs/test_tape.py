@@ -38,12 +38,12 @@ def plain(graph: OperationGraph, outputs: list[int], given: dict[int, Any], shap
     return [values[k] for k in outputs]
 
 
-def program_of_everything(seed: int) -> tuple[OperationGraph, dict[InputNumber, int], list[int]]:
+def program_of_everything(seed: int, times: int = 6) -> tuple[OperationGraph, dict[InputNumber, int], list[int]]:
     """A graph of all operations on values of all strata, with reductions and what depends on them."""
     random, graph = np.random.default_rng(seed), OperationGraph()
     given = {InputNumber("parameter", f"{n}"): STRATA[n % 4] for n in range(8)}
     numbers, truths = [graph.input(each) for each in given], []
-    for name in [name for name in OPERATIONS for _ in range(6)]:
+    for name in [name for name in OPERATIONS for _ in range(times)]:
         operands = [int(k) for k in random.choice(numbers[:2] + numbers[-30:], OPERATIONS[name].operands)]
         if name in ("and", "or", "not"):
             operands = [int(k) for k in random.choice(truths, OPERATIONS[name].operands)]

@@ -24,7 +24,7 @@ class GuardedNumber(NamedTuple):
 
 
 def evaluated(graph: OperationGraph, wanted: Sequence[int], given: Mapping[int, Any]) -> list[Any]:
-    """Return some nodes as JAX arrays, from arrays of the inputs that broadcast; the last axis is the motion."""
+    """Return some nodes as JAX arrays. The inputs' arrays broadcast; their last axis is the motion."""
     import jax.numpy as jnp
 
     arrays = {k: _real(jnp, array) for k, array in given.items()}

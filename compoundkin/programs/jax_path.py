@@ -1,0 +1,169 @@
+"""A compiled path as a pure function of JAX: traced, mapped over designs and differentiated by its users."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Any, Protocol
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.kinematics.driver_values import by_name
+from compoundkin.kinematics.motion import Motion
+from compoundkin.programs.backends.jax_operations import evaluated
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.recording.input_kinds import DRIVE, SEED
+from compoundkin.programs.recording.recorded_limits import RecordedLimits
+from compoundkin.programs.recording.recorded_outputs import ProgramOutput
+
+RATES = ("speed", "acceleration", "jerk")
+ASSEMBLED = "assembled"
+
+
+class RecordedVariants(Protocol):
+    """What is asked of a compiled path."""
+
+    @property
+    def reference(self) -> Motion:
+        """Its motion."""
+
+    @property
+    def outputs(self) -> tuple[ProgramOutput, ...]:
+        """What it computes."""
+
+    @property
+    def dimensions(self) -> tuple[FreeDimension, ...]:
+        """What is free."""
+
+    @property
+    def stated(self) -> StatedDimensions:
+        """All dimensions of its mechanism."""
+
+    def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
+        """Return it recorded where some rates of drivers are zero."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class JaxPath(PrintsShort):
+    """The outputs of a compiled path as a pure function. `CompiledPath.jax` makes it.
+
+    It takes the names of the path, `f({"crank": angles}, {"plate.C": places}, speed=10)`, and runs on any device. Its
+    numbers have the precision that JAX gives them: seven digits, or sixteen where its user enables 64 bits (`with
+    jax.enable_x64():`). The configuration is that of the path everywhere, with fixed signs: what the path solves anew
+    next to limits is here masked or left as it is.
+    """
+
+    path: RecordedVariants
+
+    def __call__(
+        self,
+        values: Any,
+        dimensions: Mapping[str, Any] | None = None,
+        *,
+        speed: Any = None,
+        acceleration: Any = None,
+        jerk: Any = None,
+    ) -> dict[str, Any]:
+        """Return the outputs by their names, and which poses are assembled.
+
+        Everything broadcasts, the last axis the motion. What is left out has the value of the mechanism.
+        """
+        import jax.numpy as jnp
+
+        drives = self._drives(values, dict(zip(RATES, (speed, acceleration, jerk), strict=True)))
+        given = {**drives, **self._dimensions(dimensions or {})}
+        still = frozenset((one.name, int(one.part)) for one, value in drives.items() if one.part > "0" and _zero(value))
+        path = self.path.variant(still)
+        graph, wanted = path.mechanism.graph, _wanted(path)
+        shape = jnp.broadcast_shapes(*(jnp.shape(value) for value in given.values()))
+        used = {k: graph.nodes[k].given for k in graph.inputs(wanted)}
+        *found, failed = evaluated(graph, wanted, {k: given[one] for k, one in used.items() if one is not None})
+        assembled = jnp.broadcast_to(failed == 0.0, shape)
+        parts = iter(jnp.where(assembled, value, jnp.nan) for value in found)
+        vectors = (tuple(next(parts) for _ in nodes) for nodes in path.nodes)
+        values_by_name = dict(
+            zip((o.name for o in self.path.outputs), (_joined(each) for each in vectors), strict=True)
+        )
+        return {**values_by_name, ASSEMBLED: assembled}
+
+    def _drives(self, values: Any, rates: Mapping[str, Any]) -> dict[InputNumber, Any]:
+        """Return the drivers' values and rates."""
+        mechanism = self.path.reference.mechanism
+        values = by_name(mechanism, values) or {}
+        drives = {drive.name: drive for drive in mechanism.drives}
+        _only_known("values", values, drives)
+        found = {}
+        for name, drive in drives.items():
+            value = values.get(name, drive.values)
+            if value is None:
+                raise InvalidInput(Problem(f"values.{name}", "the driver is given no values", f"{{{name!r}: angles}}"))
+            found[InputNumber(DRIVE, name, "0")] = value
+            for k, word in enumerate(RATES, 1):
+                given = {} if rates[word] is None else by_name(mechanism, rates[word]) or {}
+                _only_known(word, given, drives)
+                found[InputNumber(DRIVE, name, str(k))] = given.get(name, getattr(drive, word))
+        return found
+
+    def _dimensions(self, dimensions: Mapping[str, Any]) -> dict[InputNumber, Any]:
+        """Return the free dimensions, their own values where none are given."""
+        import jax.numpy as jnp
+
+        free = self.path.dimensions
+        _only_known("dimensions", dimensions, [one.name for one in free])
+        found = {}
+        for one in free:
+            value = dimensions.get(one.name, self.path.stated.own(one))
+            found.update(zip(one.inputs, (jnp.real(value), jnp.imag(value)), strict=False))
+        return found
+
+    def __repr__(self) -> str:
+        return f"JaxPath({', '.join(output.name for output in self.path.outputs)})"
+
+
+def jax_path(path: RecordedVariants) -> JaxPath:
+    """Return a path as a function of JAX.
+
+    Raises InvalidInput where JAX is not installed, and for what is found by search: states of general groups, contacts
+    of profiles, counted turns.
+    """
+    if not find_spec("jax"):
+        raise InvalidInput(Problem("jax", "JAX is not installed", "pip install 'compoundkin[jax]'"))
+    found = path.variant(frozenset())
+    graph = found.mechanism.graph
+    given = [graph.nodes[k].given for k in graph.inputs(_wanted(found))]
+    what, remedy = "it is found by search, which is no pure function", "call the path itself, or its derivatives"
+    searched = dict.fromkeys(one.name for one in given if one is not None and one.kind == SEED)
+    if searched:
+        raise InvalidInput([Problem(name, what, remedy) for name in searched])
+    return JaxPath(path)
+
+
+def _wanted(path: RecordedPath) -> list[int]:
+    """Return the nodes of the outputs, then that of what failed."""
+    return [*(node for nodes in path.nodes for node in nodes), RecordedLimits(path.mechanism).failed.x]
+
+
+def _joined(parts: tuple[Any, ...]) -> Any:
+    from jax.lax import complex as joined
+
+    return parts[0] if len(parts) == 1 else joined(*parts)
+
+
+def _zero(value: Any) -> bool:
+    """Tell whether a rate is a number known to be zero; what JAX traces is not known."""
+    return type(value) in (int, float) and value == 0
+
+
+def _only_known(where: str, given: Mapping[str, Any], known: Any) -> None:
+    wrong = [
+        Problem(f"{where}.{name}", "there is no such name", nearest(name, known)) for name in given if name not in known
+    ]
+    if wrong:
+        raise UnknownName(wrong)
+
+
+__all__ = ["JaxPath", "jax_path"]
