@@ -114,7 +114,7 @@ class JaxPath(PrintsShort):
 
         free = self.path.dimensions
         _only_known("dimensions", dimensions, [one.name for one in free])
-        found = {}
+        found: dict[InputNumber, Any] = {}
         for one in free:
             value = dimensions.get(one.name, self.path.stated.own(one))
             found.update(zip(one.inputs, (jnp.real(value), jnp.imag(value)), strict=False))
