@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import degrees
+from compoundkin.base.arrays import PLAIN, degrees
 from compoundkin.base.display import way
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.derived import FIGURES
-from compoundkin.kinematics.derived.contract import HasQuantities, Lack, OfMotion, motion_of
+from compoundkin.kinematics.derived.contract import HasQuantities, OfMotion, motion_of
+from compoundkin.kinematics.quantity_owners import Owner, check_part, owner_and_part
 from compoundkin.model.attributes import (
-    ALSO,
-    CATALOGUE,
     DEGREES,
     DERIVED,
     LENGTH,
@@ -24,12 +22,9 @@ from compoundkin.model.attributes import (
     RADIANS,
     Attribute,
     Dimension,
-    Kind,
-    coordinate_dimension,
     course_figure,
     readable,
     unit_of,
-    vector_of,
 )
 
 
@@ -93,11 +88,6 @@ class Quantity:
         return f"Quantity({self.name!r}{symbol}, {shape} {kind}{' in ' + self.unit if self.unit else ''})"
 
 
-def known_owners(motion: HasQuantities) -> list[str]:
-    """List what has quantities: points, links, pairs and drivers, each once."""
-    return list(dict.fromkeys(name for kind in CATALOGUE for name in getattr(motion, kind)))
-
-
 @checked
 def quantity(motion: HasQuantities | OfMotion, name: str) -> Quantity:
     """Return the quantity of a name such as "G.velocity".
@@ -128,93 +118,27 @@ def whole_and_part(motion: HasQuantities, name: str) -> tuple[Quantity, str]:
     of, figure = course_figure(name)
     if figure:
         return way("course")(motion, of, figure), ""
-    try:
-        return _whole(motion, name), ""
-    except UnknownName:
-        vector, _, part = name.rpartition(".")
-        if not vector_of(name)[1] and not _is_known(motion, vector):
-            raise
-    found = _whole(motion, vector)
-    if not found.is_vector:
-        raise UnknownName(Problem(name, f"{vector} is no vector", f"leave .{part} out"))
-    if part not in PARTS:
-        raise UnknownName(Problem(name, f"{vector} has no {part!r}", nearest(part, list(PARTS))))
+    owner, word, part = owner_and_part(motion, name)
+    found = replace(read_of(owner, word), name=name.removesuffix(f".{part}") if part else name)
+    if part:
+        check_part(name, part, found.is_vector)
     return found, part
 
 
-def _is_known(motion: HasQuantities, name: str) -> bool:
-    """Tell whether a name is that of an owner with one of its attributes."""
-    owner, _, word = name.rpartition(".")
-    return any(owner in getattr(motion, k) and owner_of(motion, k, owner).has(word) for k in CATALOGUE)
+def read_of(owner: Owner, word: str) -> Quantity:
+    """Return the quantity of an attribute of a point, link, pair or driver."""
+    if word not in owner.attributes:
+        figure = FIGURES[owner.kind][word]
+        found = _quantity(owner, DERIVED[owner.kind][word], figure.values(owner.whole, owner.name))
+        return replace(found, **figure.own(owner.whole, owner.name))
+    attribute, motion = owner.attributes[word], getattr(owner.whole, owner.kind)[owner.name]
+    known = hasattr(type(motion), word)
+    return _quantity(owner, attribute, getattr(motion, word) if known else motion.derivative(attribute.order))
 
 
-def _whole(motion: HasQuantities, name: str) -> Quantity:
-    """Return a quantity that is no part of another."""
-    owner, dot, word = name.rpartition(".") if "." in name else (name, "", "")
-    found = [owner_of(motion, kind, owner) for kind in CATALOGUE if owner in getattr(motion, kind)]
-    if not found:
-        what = f"there is no point, link, pair or driver {owner!r}"
-        raise UnknownName(Problem(name, what, nearest(owner, known_owners(motion))))
-    for one in found:
-        if not dot or one.has(word):
-            return replace(one.read(word if dot else next(iter(one.attributes))), name=name)
-    for lack in filter(None, (one.lack(word) for one in found)):
-        raise UnknownName(Problem(name, f"{owner!r} has no {word!r}: {lack.reason}", lack.remedy))
-    words = list(dict.fromkeys(word for one in found for word in one.words))
-    others = ", ".join(kind for kind in DERIVED if word in DERIVED[kind])
-    what = f"{owner!r} has no {word!r}{f', which only {others} have' if others else ''}"
-    raise UnknownName(Problem(name, what, _nearest(owner, word, words)))
-
-
-class Owner(NamedTuple):
-    """A point, link, pair or driver of a motion. Its name, the attributes it has, the unit of each order."""
-
-    name: str
-    kind: Kind
-    whole: HasQuantities
-    dimension: Dimension
-    attributes: Mapping[str, Attribute]
-
-    def read(self, word: str) -> Quantity:
-        """Return the quantity of an attribute."""
-        if word not in self.attributes:
-            return self._derived(word)
-        found, motion = self.attributes[word], getattr(self.whole, self.kind)[self.name]
-        known = hasattr(type(motion), word)
-        return self._quantity(found, getattr(motion, word) if known else motion.derivative(found.order))
-
-    def has(self, word: str) -> bool:
-        """Tell whether it has an attribute, or what is derived of such an owner."""
-        return word in self.attributes or (word in DERIVED[self.kind] and self.lack(word) is None)
-
-    def lack(self, word: str) -> Lack | None:
-        """Return why it has not what is derived of others. None where there is no reason."""
-        return FIGURES[self.kind][word].lack(self.whole, self.name) if word in DERIVED[self.kind] else None
-
-    @property
-    def words(self) -> list[str]:
-        """All that it has."""
-        return [word for word in (*self.attributes, *DERIVED[self.kind]) if self.has(word)]
-
-    def _derived(self, word: str) -> Quantity:
-        figure = FIGURES[self.kind][word]
-        found = self._quantity(DERIVED[self.kind][word], figure.values(self.whole, self.name))
-        return replace(found, **figure.own(self.whole, self.name))
-
-    def _quantity(self, found: Attribute, values: Any) -> Quantity:
-        dimension, symbol = found.dimension or self.dimension, f"{found.symbol}({self.name})"
-        unit = unit_of(self.whole.mechanism.unit, dimension, found.order)
-        return Quantity(f"{self.name}.{found.word}", unit, np.asarray(values), found.order, dimension, symbol)
-
-
-def owner_of(motion: HasQuantities, kind: Kind, name: str) -> Owner:
-    """Return a point, link, pair or driver as the owner of quantities."""
-    if kind not in ("pairs", "drives"):
-        return Owner(name, kind, motion, "length" if kind == "points" else "angle", CATALOGUE[kind])
-    dimension = coordinate_dimension(getattr(motion, kind)[name].is_angle)
-    return Owner(name, kind, motion, dimension, {**CATALOGUE[kind], **ALSO[dimension]})
-
-
-def _nearest(owner: str, word: str, known: list[str]) -> str:
-    remedy = nearest(word, known)
-    return f"did you mean '{owner}.{remedy.split(chr(39))[1]}'?" if remedy.startswith("did") else remedy
+def _quantity(owner: Owner, found: Attribute, values: Any) -> Quantity:
+    dimension, symbol = found.dimension or owner.dimension, f"{found.symbol}({owner.name})"
+    unit = unit_of(owner.whole.mechanism.unit, dimension, found.order)
+    # what a recorded motion has stays as it is
+    plain = np.asarray(values) if isinstance(values, (np.ndarray, *PLAIN, complex)) else values
+    return Quantity(f"{owner.name}.{found.word}", unit, plain, found.order, dimension, symbol)

@@ -13,7 +13,8 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics.derived.contract import HasQuantities
-from compoundkin.kinematics.quantities import Quantity, owner_of, quantity
+from compoundkin.kinematics.quantities import Quantity, quantity, read_of
+from compoundkin.kinematics.quantity_owners import owner_of
 from compoundkin.model.attributes import TABULATED, TIME, VALUE, unit_of
 from compoundkin.model.elements import FRAME
 
@@ -126,7 +127,7 @@ def table_of(motion: AtPoses, *names: str) -> Table:
 def _chosen(motion: AtPoses, names: Sequence[str]) -> Iterator[Quantity]:
     """Return the drivers' values and what is named."""
     found = [quantity(motion, name) for name in names]
-    yield from (owner_of(motion, "drives", name).read(VALUE) for name in motion.drives)
+    yield from (read_of(owner_of(motion, "drives", name), VALUE) for name in motion.drives)
     yield from found
 
 
@@ -152,4 +153,5 @@ def _everything(motion: AtPoses) -> Iterator[Quantity]:
         for name in getattr(motion, kind):
             first = int(kind == "pairs" and name in motion.drives)
             if (kind, name) != ("links", FRAME):
-                yield from map(owner_of(motion, kind, name).read, words[first : motion.order + 1])
+                owner = owner_of(motion, kind, name)
+                yield from (read_of(owner, word) for word in words[first : motion.order + 1])

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import unwrapped
 from compoundkin.base.display import PrintsShort
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
@@ -66,7 +67,7 @@ def compile(
         # what is not assembled or has few digits is told at each call
         warnings.simplefilter("ignore")
         motion = solve(mechanism, values, order=0, modes=modes, hint=hint)
-    found = tuple(output_of(motion.solving_order, name) for name in names)
+    found = tuple(output_of(motion, name) for name in names)
     dimensions = free_dimensions(StatedDimensions(motion.mechanism, motion.inputs.ends), freed)
     return CompiledPath(motion, found, dimensions, backend)
 
@@ -194,7 +195,8 @@ class CompiledPath(PrintsShort):
         found = results(program.flat, program.runner, numbers, nodes, threads)
         least, arrays = found.pop(""), list(found.values())
         failed = settled_values(numbers, names, arrays, self.limits.doubtful(numbers, least), self.solved)
-        return PathValues(numbers, dict(zip(names, arrays, strict=True)), failed, self.solved)
+        whole = (unwrapped(array) if o.is_wrapped else array for o, array in zip(self.outputs, arrays, strict=True))
+        return PathValues(numbers, dict(zip(names, whole, strict=True)), failed, self.solved)
 
     @cached_property
     def limits(self) -> LimitPrograms:

@@ -53,7 +53,7 @@ def test_every_point_equals_solve(name):
     motion, recording = motion_of(name)
     mechanism = recorded(recording)
     letters = list(motion.mechanism.carriers)
-    places = [recorded_output(mechanism, output_of(recording.solving_order, f"{letter}.{word}"))
+    places = [recorded_output(mechanism, output_of(motion, f"{letter}.{word}"))
               for word in WORDS for letter in letters]  # fmt: skip
     nodes = [node for place in places for node in (place.x, place.part(1))]
     graph = mechanism.graph

@@ -12,7 +12,8 @@ from compoundkin.analysis.characteristics.outputs_of_motion import Output
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes.measures import ROUNDING
-from compoundkin.kinematics.quantities import Quantity, owner_of
+from compoundkin.kinematics.quantities import Quantity
+from compoundkin.kinematics.quantity_owners import owner_of
 from compoundkin.model.attributes import ADVANTAGE, GREATEST, LEAST, VELOCITY_RATIO, coordinate_dimension, ratio_unit
 
 # Links that turn by less (radians) stay parallel but for rounding, and have no torque.

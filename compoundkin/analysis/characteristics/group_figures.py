@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.analysis.characteristics.figure import Range, scalar
 from compoundkin.analysis.characteristics.outputs_of_motion import Output
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.quantities import owner_of
+from compoundkin.kinematics.quantity_owners import owner_of
 from compoundkin.model.attributes import (
     CORIOLIS,
     GREATEST,

@@ -43,7 +43,7 @@ def _transmission(motion: HasQuantities, link: str) -> Number:
     solver = solver_of_link(motion, link)
     assert solver is not None
     with np.errstate(all="ignore"):
-        return np.asarray(solver.transmission(block_of(motion, solver)))
+        return solver.transmission(block_of(motion, solver))
 
 
 def block_of(motion: HasQuantities, solver: GroupSolver) -> Block:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -69,7 +70,7 @@ def fastest(motion: HasQuantities) -> Number:
     size = motion.solving_order.size
     rates = [np.abs(d.rate) / (1.0 if d.is_angle else size) for d in motion.drives.values()]
     rates += [np.abs(link.angular_velocity) for link in motion.links.values()]
-    return np.maximum.reduce(np.broadcast_arrays(*rates, np.zeros(motion.grid.shape)))
+    return reduce(np.maximum, rates, np.zeros(motion.grid.shape))
 
 
 def ratio_of(motion: HasQuantities, kind: Kind, name: str) -> Advantage:
@@ -79,7 +80,7 @@ def ratio_of(motion: HasQuantities, kind: Kind, name: str) -> Advantage:
     """
     driver = rate_of(motion, motion.drives, mover(motion, name))
     own = rate_of_link(motion, name) if kind == "links" else rate_of(motion, getattr(motion, kind), name)
-    return balance(own, driver, motion.regular.reshape(motion.grid.shape))
+    return balance(own, driver, motion.grid.shaped(motion.regular))
 
 
 def unit_of_ratio(motion: HasQuantities, kind: Kind, name: str, inverse: bool = False) -> str:
@@ -105,9 +106,9 @@ def _translates(motion: HasQuantities, name: str) -> bool:
     turns = np.abs(link.angular_velocity) > UNTURNED * scale
     if motion.grid.order > 1:
         drivers = (d.second if d.is_angle else d.second / motion.solving_order.size for d in motion.drives.values())
-        hardest = np.maximum.reduce(np.broadcast_arrays(scale**2, *map(np.abs, drivers)))
+        hardest = reduce(np.maximum, map(np.abs, drivers), scale**2)
         turns = turns | (np.abs(link.angular_acceleration) > UNTURNED * hardest)
-    moves = np.abs(np.asarray(link.origin.velocity)) > SMALL * scale * motion.solving_order.size
+    moves = np.abs(link.origin.velocity) > SMALL * scale * motion.solving_order.size
     return bool(np.any(moves) and not np.any(turns))
 
 

@@ -43,6 +43,8 @@ class RecordedNumber(NumpyAnswers):
             return value
         if np.ndim(value):
             raise TypeError("an array of several numbers met a recorded one")
+        if isinstance(value, np.ndarray):
+            value = value.item()
         if isinstance(value, (bool, np.bool_)):
             return RecordedNumber(self.graph, self.graph.constant(float(value)))
         if isinstance(value, complex | np.complexfloating):
@@ -158,6 +160,10 @@ class RecordedNumber(NumpyAnswers):
         """Return the whole of it, as an array without axes does."""
         if index != ():
             raise TypeError("a recorded number has no entries")
+        return self
+
+    def reshape(self, *shape: Any) -> RecordedNumber:
+        """Return itself: one number has one shape."""
         return self
 
     @property

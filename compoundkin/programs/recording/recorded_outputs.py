@@ -1,108 +1,98 @@
-"""Outputs of a program by name: positions, angles and their rates, read off a recorded mechanism."""
+"""Outputs of a program by name: whatever a motion has at each pose, read off a recorded mechanism."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
-
-from compoundkin.base.errors import Problem, UnknownName, nearest
-from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import quantity
+from compoundkin.kinematics.quantity_owners import check_part, owner_and_part
 from compoundkin.model.attributes import (
-    ALSO,
-    CATALOGUE,
-    LENGTH,
+    CORIOLIS,
+    DERIVED,
+    FORCES,
     OF_POINTS,
-    PARTS,
-    SPEED,
+    TRANSMISSION_INDEX,
     Attribute,
     Kind,
-    coordinate_dimension,
+    course_figure,
 )
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
+from compoundkin.programs.recording.recorded_motion import RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber
+
+# What is said of names that a motion knows and a program does not.
+ASK_SOLVE = "ask the motion: quantity(solve(...), name)"
 
 
 class ProgramOutput(NamedTuple):
-    """An owner's attribute that a name asks for, perhaps a part of a vector."""
+    """An owner's attribute that a name asks for, perhaps a part of a vector.
+
+    An angle whose full turns nobody counts `is_wrapped`: made continuous along the motion afterwards.
+    """
 
     name: str
     kind: Kind
     owner: str
     attribute: Attribute
     part: str = ""
+    is_wrapped: bool = False
+
+    @property
+    def is_derived(self) -> bool:
+        """Whether it is a figure that only some owners have."""
+        return self.attribute.word in DERIVED[self.kind]
 
 
-def output_of(order: SolvingOrder, name: str) -> ProgramOutput:
-    """Return what a name asks for; raises UnknownName."""
-    found = _found(order, name)
-    if found is None:
-        vector, _, part = name.rpartition(".")
-        found = _found(order, vector) if part in PARTS else None
-        if found is None:
-            known = [one for kind in _owners(order).values() for one in kind]
-            raise UnknownName(Problem(name, "no program can have this output", nearest(name.partition(".")[0], known)))
-        return found._replace(name=name, part=part)
-    return found
+def output_of(motion: Motion, name: str) -> ProgramOutput:
+    """Return what a name asks for. Raises UnknownName, and InvalidInput for what no program tells."""
+    if isinstance(name, str) and course_figure(name)[1]:
+        whole, figure = course_figure(name)
+        what = f"{figure!r} is a figure of a whole motion, a program tells {whole!r} at each pose"
+        raise InvalidInput(Problem(name, what, ASK_SOLVE))
+    if not isinstance(name, str):
+        raise InvalidInput(Problem("outputs", f"{name!r} is no name", 'write "G.velocity", one text for each'))
+    owner, word, part = owner_and_part(motion, name)
+    _check_recorded(motion, name, owner.kind, word)
+    if part:
+        check_part(name, part, word in (*OF_POINTS, CORIOLIS))
+    known = DERIVED[owner.kind] if word in DERIVED[owner.kind] else owner.attributes
+    is_wrapped = not part and _is_wrapped(motion, owner.kind, owner.name, known[word])
+    return ProgramOutput(name, owner.kind, owner.name, known[word], part, is_wrapped)
 
 
-def _owners(order: SolvingOrder) -> Mapping[Kind, tuple[str, ...]]:
-    mechanism = order.structure.mechanism
-    return {
-        "points": tuple(mechanism.carriers),
-        "links": tuple(mechanism.links),
-        "pairs": tuple(order.pairs),
-        "drives": tuple(drive.name for drive in mechanism.drives),
-    }
+def _check_recorded(motion: Motion, name: str, kind: Kind, word: str) -> None:
+    """Raise InvalidInput for figures that are no straight-line arithmetic of one pose."""
+    if word in FORCES[kind]:
+        raise InvalidInput(Problem(name, "forces are no outputs of a program", "ask force_analysis(solve(...))"))
+    owner = name.partition(".")[0]
+    numbered = [solver.group.links for solver in motion.solving_order.solvers if solver.is_numbered]
+    if word == TRANSMISSION_INDEX and any(owner in links for links in numbered):
+        what = "the index of a group without a closed form is no output of a program"
+        raise InvalidInput(Problem(name, what, ASK_SOLVE))
 
 
-def _found(order: SolvingOrder, name: str) -> ProgramOutput | None:
-    owner, dot, word = name.rpartition(".") if "." in name else (name, "", "")
-    for kind, names in _owners(order).items():
-        if owner in names:
-            words = dict(CATALOGUE[kind])
-            if kind in ("pairs", "drives"):
-                is_angle = order.pairs[owner].free_is_angle if kind == "pairs" else order.structure.driven_angles[owner]
-                words.update(ALSO[coordinate_dimension(is_angle)])
-            word = word if dot else next(iter(words))
-            if word in words:
-                return ProgramOutput(name, kind, owner, words[word])
-    return None
+def _is_wrapped(motion: Motion, kind: Kind, owner: str, attribute: Attribute) -> bool:
+    """Tell whether an output is an angle without full turns."""
+    if attribute.order or attribute.word in DERIVED[kind]:
+        return False
+    if kind == "links":
+        return motion.poses[owner].theta is None
+    if kind != "pairs":
+        return False
+    pair = motion.solving_order.pairs[owner]
+    return pair.free_is_angle and any(motion.poses[member].theta is None for member in pair.members)
 
 
 def recorded_output(mechanism: RecordedMechanism, output: ProgramOutput) -> RecordedNumber:
-    """Return an output as a recorded number: complex for a planar vector."""
-    found = _READERS[output.kind](mechanism, output)
-    if output.part:
-        found = np.abs(found) if output.part == LENGTH else getattr(found, "real" if output.part == "x" else "imag")
-    return RecordedNumber(mechanism.graph, mechanism.graph.constant(0.0)).like(found)
+    """Return an output as a recorded number: complex for a planar vector.
 
-
-def _point(mechanism: RecordedMechanism, output: ProgramOutput) -> Any:
-    carriers = mechanism.recording.solving_order.structure.mechanism.carriers
-    link, word = carriers[output.owner][0], output.attribute.word
-    found = mechanism.block.world[link].derivative(
-        mechanism.geometry.points[link][output.owner], output.attribute.order
-    )
-    if word in OF_POINTS:
-        return found
-    return np.abs(found) if word == SPEED else getattr(found, "real" if word == "x" else "imag")
-
-
-def _link(mechanism: RecordedMechanism, output: ProgramOutput) -> Any:
-    pose, k = mechanism.block.world[output.owner], output.attribute.order
-    return pose.u.turning().derivative(k - 1) if k else pose.angle.c[0]
-
-
-def _pair(mechanism: RecordedMechanism, output: ProgramOutput) -> Any:
-    pair, block = mechanism.order.pairs[output.owner], mechanism.block
-    poses = tuple(block.world[member] for member in pair.members)
-    return pair.coordinate(block.ends[output.owner], poses).derivative(output.attribute.order)
-
-
-def _drive(mechanism: RecordedMechanism, output: ProgramOutput) -> Any:
-    return mechanism.drives[output.owner].derivative(output.attribute.order)
-
-
-_READERS = {"points": _point, "links": _link, "pairs": _pair, "drives": _drive}
+    Raises InvalidInput for a figure that is no straight-line arithmetic of one pose.
+    """
+    try:
+        return mechanism.number(quantity(RecordedMotion(mechanism), output.name).values)
+    except (TypeError, AttributeError) as error:
+        if not output.is_derived:
+            raise
+        raise InvalidInput(Problem(output.name, f"no program can tell it: {error}", ASK_SOLVE)) from None

@@ -11,7 +11,8 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.quantities import Quantity, known_owners, whole_and_part
+from compoundkin.kinematics.quantities import Quantity, whole_and_part
+from compoundkin.kinematics.quantity_owners import known_owners
 from compoundkin.model.attributes import (
     ADVANTAGE,
     LENGTH,

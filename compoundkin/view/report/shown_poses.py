@@ -11,7 +11,8 @@ import numpy as np
 from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.lost_digits import uncertain
-from compoundkin.kinematics.quantities import Quantity, owner_of, quantity
+from compoundkin.kinematics.quantities import Quantity, quantity, read_of
+from compoundkin.kinematics.quantity_owners import owner_of
 from compoundkin.model.attributes import OF_FORCES, TIME, VALUE, unit_of
 from compoundkin.view.report.report_data import Column
 from compoundkin.view.report.wording import listed, number
@@ -61,7 +62,7 @@ class Sample:
     @cached_property
     def drivers(self) -> tuple[Quantity, ...]:
         """The values of the drivers, angles in degrees."""
-        found = [(name, owner_of(self.motion, "drives", name).read(VALUE).shown) for name in self.motion.drives]
+        found = [(name, read_of(owner_of(self.motion, "drives", name), VALUE).shown) for name in self.motion.drives]
         return tuple(replace(one, name=name, values=self.of(one.values)) for name, one in found)
 
     @cached_property
