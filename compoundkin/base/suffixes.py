@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 
 from compoundkin.base.errors import InvalidInput, Problem
 
-Kind: TypeAlias = Literal["mechanism", "table", "picture", "plot", "animation", "page", "report"]
+Kind: TypeAlias = Literal["mechanism", "table", "picture", "plot", "animation", "page", "report", "program"]
 
 # Of each kind its suffixes and the form that each means; the first suffix of a form is told to people.
 SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
@@ -29,6 +29,7 @@ SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
             ".html": "html",
             ".htm": "html",
         },
+        "program": {".c": "c", ".py": "python", ".js": "javascript", ".m": "matlab"},
     }
 )
 # What a name without a suffix means, where there is one form that everybody expects.

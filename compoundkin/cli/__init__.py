@@ -27,6 +27,7 @@ VERBS = {
     "characteristics": "Stroke, dead points, time ratio, transmission, advantage, dwells.",
     "forces": "Forces in all pairs, drivers' efforts, shaking force.",
     "simulate": "How it moves under its masses and loads, in time.",
+    "export": "A function in C, Python, JavaScript or MATLAB, for programs of your own.",
     "check": "Verify a motion: a table of all findings.",
     "catalog": "List, show or copy the shipped mechanisms.",
     "atlas": "All kinematic chains, trusses and Assur groups of a size.",

@@ -108,6 +108,16 @@ class Tabulated(Protocol):
         """Return the quantities of these names; everything without names."""
 
 
+@runtime_checkable
+class Contained(Protocol):
+    """What has contents of files in the forms of its kind: a compiled path."""
+
+    saved_as: ClassVar[Kind]
+
+    def content(self, form: str) -> bytes:
+        """Return the bytes of a file in a form."""
+
+
 class Savable:
     """What saves itself in forms of its own: pictures, plots, animations, pages, reports."""
 
@@ -132,8 +142,8 @@ def save(what: Any, path: str | os.PathLike[str]) -> None:
 
     A mechanism is a .toml or .json file; a motion, its forces or a table .csv or .json (angles in degrees), .npz or
     .parquet (radians); a picture .svg, .png, .pdf; a plot the same; an animation .gif, .mp4, .svg; a page .html; a
-    report .txt, .md, .json, .html. Raises InvalidInput for another suffix, for what cannot be saved, where the file
-    cannot be written, or where a library is missing.
+    report .txt, .md, .json, .html; a compiled path .c, .py, .js, .m. Raises InvalidInput for another suffix, for what
+    cannot be saved, where the file cannot be written, or where a library is missing.
 
     >>> import tempfile
     >>> from pathlib import Path
@@ -147,6 +157,9 @@ def save(what: Any, path: str | os.PathLike[str]) -> None:
     """
     if isinstance(what, Savable):
         what.save(path)
+    elif isinstance(what, Contained):
+        text = what.content(form_of(what.saved_as, path))
+        write_atomically(path, lambda file: file.write(text))
     elif isinstance(what, Mechanism):
         content = encoded(what, form_of("mechanism", path), path)
         write_atomically(path, lambda file: file.write(content))

@@ -34,6 +34,7 @@ from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
 from compoundkin.programs.settled_values import settled_values
 from compoundkin.programs.solved_designs import ProgramConfiguration, solved_designs
+from compoundkin.programs.sources.source_writer import WritesSources
 from compoundkin.structure.kinematic_structure import Structure
 
 
@@ -73,7 +74,7 @@ def compile(
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CompiledPath(PrintsShort):
+class CompiledPath(WritesSources, PrintsShort):
     """A mechanism compiled for some outputs.
 
     `reference` is its own motion, from which the configuration is taken.

@@ -16,6 +16,7 @@ import compoundkin as ck
 from compoundkin.base.suffixes import SUFFIXES, form_of
 from compoundkin.cli import cli
 from compoundkin.files.shipped_mechanisms import load_named
+from compoundkin.programs.compiled_path import compile
 
 
 @cache
@@ -31,10 +32,12 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "animation": lambda: motion().animate(size=60, seconds=0.2),
     "page": lambda: ck.report(motion()).page(),
     "report": lambda: ck.report(motion()),
+    "program": lambda: compile(load_named("crank-rocker"), "rocker.angle"),
 }
 BEGINS = {
     "toml": b"format = 1", "csv": b"crank.value [deg],rocker.angle [deg],assembled\n", "npz": b"PK", "parquet": b"PAR1",
     "png": b"\x89PNG", "pdf": b"%PDF", "gif": b"GIF8", "html": b"<!DOCTYPE html>", "markdown": b"# ", "json": b"{",
+    "c": b"/*", "python": b'"""', "javascript": b"/*", "matlab": b"function out = ",
 }  # fmt: skip
 ALL = [(kind, suffix) for kind, forms in SUFFIXES.items() for suffix in forms]
 

@@ -55,7 +55,7 @@ def _c(programs: Sequence[WrittenProgram], texts: Sequence[str], poses: Poses, f
         )
     source, library = folder / "all.c", folder / "all.so"
     source.write_text("\n".join(parts), encoding="utf-8")
-    command = ["gcc", "-std=c99", *WARNINGS, "-O1", "-shared", "-fPIC", str(source), "-o", str(library), "-lm"]
+    command = ["gcc", "-std=c99", *WARNINGS, "-shared", "-fPIC", str(source), "-o", str(library), "-lm"]
     made = subprocess.run(command, capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
     loaded = ctypes.CDLL(str(library))

@@ -9,12 +9,19 @@ from typing import Any
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
+from compoundkin.model.attributes import Dimension, unit_of
 from compoundkin.model.field_numbers import numbers_of
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import pairs_among
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.drawn_numbers import read_off
 from compoundkin.programs.dimensions.free_dimension import AXES, FreeDimension
+
+# Of the kinds of keys that are numbers.
+_DIMENSIONS: Mapping[str, Dimension] = {
+    **dict.fromkeys(("length", "reach"), "length"),
+    **dict.fromkeys(("angle", "turn", "sweep"), "angle"),
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,6 +55,13 @@ class StatedDimensions(PrintsShort):
         if one.is_of_link:
             return one.part_of(self.mechanism.geometry.points[one.owner][one.word])
         return self._stated(one.owner)[one.number]
+
+    def unit(self, one: FreeDimension) -> str:
+        """Return the unit of a dimension, nothing for a ratio."""
+        keys = () if one.is_of_link else self.items[one.owner].keys
+        kind = next((key.kind for key in keys if key.name == one.word), "length")
+        dimension = _DIMENSIONS.get(kind)
+        return unit_of(self.mechanism.unit, dimension) if dimension else ""
 
     def _numbers(self) -> Iterator[FreeDimension]:
         for owner in self.items:

@@ -81,7 +81,7 @@ def _body(program: WrittenProgram, statements: Statements) -> Iterator[str]:
     if not program.read:
         yield "    (void)in;"
     yield from statements.body(_line, lambda section: f"    /* {section} */")
-    yield from ("", f"    const int assembled = {statements.assembled.text};", "", "    out->assembled = assembled;")
+    yield from ("", *map(_line, statements.whether), "    out->assembled = assembled;")
     for result, written in zip(program.results, statements.results, strict=True):
         shown = written.text if program.always else f"assembled ? {written.within(EITHER)} : NAN"
         yield f"    out->{result.name} = {shown};"

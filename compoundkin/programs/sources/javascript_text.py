@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from compoundkin.programs.sources.contract import Argument, WrittenProgram
 from compoundkin.programs.sources.explanation import explanation
 from compoundkin.programs.sources.spellings import ARITHMETIC, EITHER, OF_BRACES, Phrase, Spelling, calls, number
-from compoundkin.programs.sources.statements import Statements, StatementWriter
+from compoundkin.programs.sources.statements import Statement, Statements, StatementWriter
 
 # Functions that the text brings along: Math.round takes halves upwards, Math.max keeps what is not a number.
 _OWN: Mapping[str, tuple[str, str]] = {
@@ -59,10 +59,8 @@ def _functions(statements: Statements) -> Iterator[str]:
 
 
 def _body(program: WrittenProgram, statements: Statements) -> Iterator[str]:
-    yield from statements.body(
-        lambda one: f"    const {one.name} = {one.expression};", lambda section: f"    // {section}"
-    )
-    yield from ("", f"    const assembled = {statements.assembled.text};", "    return {", "        assembled,")
+    yield from statements.body(_line, lambda section: f"    // {section}")
+    yield from ("", *map(_line, statements.whether), "    return {", "        assembled,")
     for result, written in zip(program.results, statements.results, strict=True):
         shown = written.text if program.always else f"assembled ? {written.within(EITHER)} : NaN"
         yield f"        {result.name}: {shown},"
@@ -71,3 +69,7 @@ def _body(program: WrittenProgram, statements: Statements) -> Iterator[str]:
 
 def _foot(program: WrittenProgram) -> tuple[str, ...]:
     return ("", f'if (typeof module !== "undefined") module.exports = {program.name};')
+
+
+def _line(one: Statement) -> str:
+    return f"    const {one.name} = {one.expression};"

@@ -22,7 +22,7 @@ from compoundkin.programs.sources.spellings import (
     infix,
     number,
 )
-from compoundkin.programs.sources.statements import Statements, StatementWriter
+from compoundkin.programs.sources.statements import Statement, Statements, StatementWriter
 
 # Functions that the text brings along: roots of negative numbers are complex there, its max leaves out what is not a
 # number, and its round takes halves away from zero.
@@ -87,8 +87,8 @@ def _head(program: WrittenProgram) -> Iterator[str]:
 
 
 def _body(program: WrittenProgram, statements: Statements) -> Iterator[str]:
-    yield from statements.body(lambda one: f"    {one.name} = {one.expression};", lambda section: f"    % {section}")
-    yield from ("", f"    assembled = {statements.assembled.text};", "    out.assembled = assembled;")
+    yield from statements.body(_line, lambda section: f"    % {section}")
+    yield from ("", *map(_line, statements.whether), "    out.assembled = assembled;")
     for result, written in zip(program.results, statements.results, strict=True):
         shown = written.text if program.always else f"choice(assembled, {written.text}, NaN)"
         yield f"    out.{result.name} = {shown};"
@@ -99,3 +99,7 @@ def _functions(body: tuple[str, ...]) -> Iterator[str]:
     for name, operands, lines in _OWN.values():
         if any(f"{name}(" in line for line in body):
             yield from ("", f"function y = {name}({operands})", *(f"    {line}" for line in lines), "end")
+
+
+def _line(one: Statement) -> str:
+    return f"    {one.name} = {one.expression};"

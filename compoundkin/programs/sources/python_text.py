@@ -20,7 +20,7 @@ from compoundkin.programs.sources.spellings import (
     infix,
     number,
 )
-from compoundkin.programs.sources.statements import Statements, StatementWriter
+from compoundkin.programs.sources.statements import Statement, Statements, StatementWriter
 
 # Functions that the text brings along: those of `math` raise errors where others answer what is not a number.
 _OF_ONE: Mapping[str, tuple[str, str]] = {
@@ -86,8 +86,8 @@ def _functions(statements: Statements) -> Iterator[str]:
 
 def _body(program: WrittenProgram, statements: Statements) -> Iterator[str]:
     yield from ("", f"def {program.name}({_parameters(program.arguments)}):", '    """Compute one pose."""')
-    yield from statements.body(lambda one: f"    {one.name} = {one.expression}", lambda section: f"    # {section}")
-    yield from ("", f"    assembled = {statements.assembled.text}", "    return {", '        "assembled": assembled,')
+    yield from statements.body(_line, lambda section: f"    # {section}")
+    yield from ("", *map(_line, statements.whether), "    return {", '        "assembled": assembled,')
     for result, written in zip(program.results, statements.results, strict=True):
         shown = written.text if program.always else f"{written.within(EITHER)} if assembled else math.nan"
         yield f'        "{result.name}": {shown},'
@@ -102,3 +102,7 @@ def _parameters(arguments: tuple[Argument, ...]) -> str:
             told.append("*")
         told.append(one.name if one.own is None else f"{one.name}={_number(one.own).text}")
     return ", ".join(told)
+
+
+def _line(one: Statement) -> str:
+    return f"    {one.name} = {one.expression}"

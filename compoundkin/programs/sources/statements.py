@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from math import isfinite
 
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.graph.operations import CONSTANT, REDUCTIONS
@@ -18,6 +19,8 @@ from compoundkin.programs.sources.spellings import QUOTIENT, Phrase, Spelling
 LINE, NAMELESS = 84, 44
 # A number that is written more than once gets a name where it is longer than this.
 SHORT = 6
+ASSEMBLED = "assembled"
+_OPPOSITE = {"add": "sub", "sub": "add"}
 OF_NUMBERS, OF_ASSEMBLING = "numbers of the mechanism", "whether it can be assembled"
 
 
@@ -48,6 +51,12 @@ class Statements:
                 section = one.section
                 yield from ("", comment(section))
             yield line(one)
+
+    @property
+    def whether(self) -> tuple[Statement, ...]:
+        """What tells whether it is assembled, unless it is among the values."""
+        found = Statement(ASSEMBLED, self.assembled.text, True, "")
+        return () if found.expression == ASSEMBLED else (found,)
 
     def calls(self, function: str) -> bool:
         """Tell whether a function is called anywhere."""
@@ -119,9 +128,14 @@ class StatementWriter:
                 self._operation(k)
 
     def _constant(self, k: int, value: float) -> None:
-        self.texts[k] = made = self.number(value)
-        if self.uses[k] > 1 and len(made.text) > SHORT:
+        self.texts[k] = self.number(value)
+        if self._has_name(k):
             self._name(k, self.numbers, "c")
+
+    def _has_name(self, k: int) -> bool:
+        """Whether a number has a name."""
+        value = self.graph.nodes[k].value
+        return self.uses[k] > 1 and isfinite(value) and len(self.number(value).text) > SHORT
 
     def _operation(self, k: int) -> None:
         """Write a node; where the line would be too long, its longest operands get names first."""
@@ -129,20 +143,27 @@ class StatementWriter:
         if operation in REDUCTIONS:
             self.texts[k] = self.texts[operands[0]]  # over one pose
             return
+        operation, last = self._without_minus(operation, operands[-1])
         spelling = self.spelled[operation]
-        made = spelling.of([self.texts[n] for n in operands])
+
+        def phrases() -> list[Phrase]:
+            return [*(self.texts[n] for n in operands[:-1]), last or self.texts[operands[-1]]]
+
+        made = spelling.of(phrases())
         while len(made.text) > LINE and (nameless := self.nameless.intersection(operands)):
             # of two as long the earlier one, so that the text is always the same
             self._name(max(sorted(nameless), key=lambda n: len(self.texts[n].text)), self.values, "t")
-            made = spelling.of([self.texts[n] for n in operands])
+            made = spelling.of(phrases())
         self.texts[k] = made
         self.nameless.add(k)
-        if self.uses[k] > 1 or k in self.program.called or len(made.text) > NAMELESS:
+        if self.uses[k] > 1 or k in self.program.called or k == self.program.assembled or len(made.text) > NAMELESS:
             self._name(k, self.values, "t")
 
     def _name(self, k: int, among: list[Statement], letter: str) -> None:
         called = self.program.called.get(k)
-        if called is None:
+        if k == self.program.assembled:
+            name = ASSEMBLED
+        elif called is None:
             name, self.last[letter] = self.names.take_numbered(letter, self.last[letter] + 1)
         else:
             name = self.names.take(called)
@@ -160,6 +181,13 @@ class StatementWriter:
             return node.operation, node.operands[::-1] if is_turned else node.operands
         other = next(n for n in node.operands if n != divisor)
         return QUOTIENT, (other, self.graph.nodes[divisor].operands[0])
+
+    def _without_minus(self, operation: str, last: int) -> tuple[str, Phrase | None]:
+        """The operation for a number added that is below zero: x - 2.0, not x + (-2.0)."""
+        node = self.graph.nodes[last]
+        if operation not in _OPPOSITE or node.operation != CONSTANT or not node.value < 0.0 or self._has_name(last):
+            return operation, None
+        return _OPPOSITE[operation], self.number(-node.value)
 
     def _divisor(self, k: int) -> int | None:
         """The operand of a product that is a reciprocal nothing else uses."""

@@ -1,0 +1,153 @@
+"""Texts of the shipped mechanisms, run in every language, against `solve`."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.base.series import Number
+from compoundkin.programs.compiled_path import CompiledPath, compile
+from compoundkin.programs.recording.recorded_outputs import output_of
+from compoundkin.programs.sources import LANGUAGES
+from compoundkin.programs.sources.contract import WrittenProgram
+from tests.catalog import mechanism, motion
+from tests.programs.languages import run
+
+POSES = 12
+# Every kind of pair and group that texts have, several drivers, drivers on moving links, counted turns, ends of guides.
+WRITTEN = (
+    "andrews-squeezer", "atkinson-engine", "belt-coupled-cranks", "cardan-gear-straight-line", "dixon-mechanism",
+    "disc-cam-offset-roller", "excavator-arm", "ferguson-paradox", "five-bar", "geared-coupler", "geared-five-bar",
+    "geared-press", "geneva-wheel", "hydraulic-digger", "jansen-leg", "jaw-crusher", "marghitu-r-rtr-rrt",
+    "oldham-coupling", "oscillating-cylinder", "planetary-train", "rack-and-pinion-steering", "rapson-slide",
+    "rolling-wheel", "scotch-yoke", "six-bar", "slider-crank-driven-by-piston", "stephenson-iii", "sun-and-planet",
+    "watt-i", "whitworth-turning-guide", "windscreen-wiper",
+)  # fmt: skip
+# Mechanisms whose texts are refused, with a word of the reason.
+REFUSED = {
+    "parallelogram": "change point", "parallelogram-third-crank": "change point", "roberts-cognates": "change point",
+}  # fmt: skip
+
+
+class Case(NamedTuple):
+    """A mechanism as a program, its arguments at some poses; what `solve` finds there, and how large its kind is."""
+
+    program: WrittenProgram
+    poses: Number
+    assembled: Number
+    expected: list[Number]
+    sizes: list[float]
+
+
+@cache
+def path_of(name: str) -> CompiledPath:
+    """A mechanism compiled for the outputs of its file, and for a link's angle."""
+    order, names = motion(name).solving_order, []
+    for output in (*mechanism(name).outputs, list(mechanism(name).links)[-1]):
+        try:
+            names.append(output_of(order, output).name)
+        except ck.errors.UnknownName:
+            continue
+    return compile(mechanism(name), list(dict.fromkeys(names)))
+
+
+@cache
+def case(name: str) -> Case:
+    path, found = path_of(name), motion(name)
+    program = path.written(f"m_{name}")
+    count = found.shape[-1]
+    chosen = np.unique(np.linspace(0, count - 1, POSES).astype(int))
+
+    def at(values: Number) -> Number:
+        return np.broadcast_to(np.ravel(values), (count,))[chosen]
+
+    rows = []
+    for one in (argument.given for argument in program.arguments):
+        if one.kind == "drive":
+            drive = found.drives[one.name]
+            rows.append(at((drive.value, drive.rate, drive.second)[int(one.part)]))
+        else:
+            rows.append(at(found.links[one.name].angle))  # about which angle it is, full turns counted
+    wanted = [one for output in path.outputs for one in ck.quantity(found, output.name).components]
+    pace = max(np.max(np.abs(drive.rate)) / found.solving_order.unit(name) for name, drive in found.drives.items())
+    sizes = [pace**one.order * (found.size if one.dimension == "length" else 1.0) for one in wanted]
+    return Case(program, np.array(rows), at(found.assembled), [at(one.values) for one in wanted], sizes)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_texts_are_equal_to_what_is_solved(language: str, tmp_path: Path) -> None:
+    """Within 1e-12 of the largest of each kind, or of what the driver's pace makes of the mechanism's size."""
+    every = [case(name) for name in WRITTEN]
+    programs, poses = [one.program for one in every], [one.poses for one in every]
+    for one, found in zip(every, run(language, programs, poses, tmp_path), strict=True):
+        name = one.program.name
+        assert np.array_equal(found[0] != 0.0, one.assembled), name
+        for result, values, wanted, size in zip(one.program.results, found[1:], one.expected, one.sizes, strict=True):
+            alike = [other for other, r in zip(one.expected, one.program.results, strict=True) if r.unit == result.unit]
+            known = np.isfinite(wanted)
+            assert np.all(np.isfinite(values) <= one.assembled), name
+            largest = max(size, *(np.max(np.abs(other[np.isfinite(other)]), initial=0.0) for other in alike))
+            off = values - wanted
+            if result.unit == "rad":
+                off = (off + np.pi) % (2.0 * np.pi) - np.pi  # of pi and -pi either is told
+            assert np.all(np.abs(off)[known] <= 1e-12 * largest), (name, result.name)
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_passes_change_points_is_refused_by_name(name: str) -> None:
+    with pytest.raises(ck.errors.InvalidInput, match=REFUSED[name]):
+        path_of(name).source("c")
+
+
+def test_between_change_points_it_is_written(tmp_path: Path) -> None:
+    """A parallelogram's follower turns with its crank."""
+    values = np.linspace(0.2, 2.9, 7)
+    path = compile(mechanism("parallelogram"), "follower.angle", values=values)
+    (found,) = run("python", [path.written()], [values[None, :]], tmp_path)
+    assert found[1] == pytest.approx(values, abs=1e-12)
+
+
+def test_where_it_cannot_be_assembled_all_is_nan(tmp_path: Path) -> None:
+    """Beyond the range of a rocker, and where the numbers given are none."""
+    rocker = mechanism("double-rocker")
+    given = np.array([*np.linspace(-3.0, 3.0, 61), np.nan, np.inf])
+    path = compile(rocker, ["coupler.angle", "coupler.angular_velocity"])
+    with pytest.warns(ck.errors.UnassembledPoses):
+        assembled = ck.solve(rocker, given[:-2], speed=1.0).assembled
+    assert 0 < np.count_nonzero(assembled) < 61
+    for language in ("python", "javascript"):
+        (found,) = run(language, [path.written()], [np.array([given, np.ones(63)])], tmp_path)
+        assert np.array_equal(found[0] != 0.0, [*assembled, False, False])
+        assert np.array_equal(np.isnan(found[1:]), np.broadcast_to(found[0] == 0.0, (2, 63)))
+
+
+def test_free_dimensions_are_arguments_whose_own_numbers_stand_in_for_them(tmp_path: Path) -> None:
+    path = compile(mechanism("six-bar"), ["G.position", "bar.angular_velocity"], free=["plate.C", "crank.D"])
+    program = path.written()
+    assert [one.name for one in program.arguments[2:]] == ["plate_C_x", "plate_C_y", "crank_D_x", "crank_D_y"]
+    own = [one.own for one in program.arguments[2:]]
+    assert own == [x for place in (12.287280664334878 + 8.60364654526569j, 14.0) for x in (place.real, place.imag)]
+    crank = np.linspace(0.0, 6.0, 5)
+    rows = np.array([crank, np.full(5, 3.0), np.full(5, 12.0), np.full(5, 9.0), np.full(5, 13.5), np.full(5, 0.5)])
+    (found,) = run("python", [program], [rows], tmp_path)
+    wanted = path(crank, {"plate.C": 12.0 + 9.0j, "crank.D": 13.5 + 0.5j}, speed=3.0)
+    assert found[1] + 1j * found[2] == pytest.approx(wanted["G.position"], rel=1e-12)
+    assert found[3] == pytest.approx(wanted["bar.angular_velocity"], rel=1e-12)
+
+
+def test_an_unknown_language_is_told() -> None:
+    with pytest.raises(ck.errors.UnknownName, match="python"):
+        path_of("six-bar").source("pyton")
+
+
+def test_the_comment_tells_of_modes_units_and_range() -> None:
+    text = path_of("double-rocker").source("c", "rocker")
+    told = " ".join(line.strip(" *") for line in text.partition("*/")[0].splitlines())
+    assert f"{mechanism('double-rocker').title} " in told
+    for words in ("rad  ", "Assembly modes, which it keeps: coupler", "poses that were tried", "NaN where it cannot"):
+        assert words in told or words.strip() in told
