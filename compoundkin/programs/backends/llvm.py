@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import threading
 from collections.abc import Sequence
 from typing import Any
@@ -11,7 +10,7 @@ import numpy as np
 
 from compoundkin.programs.backends.kept_threads import done_by_threads
 from compoundkin.programs.backends.llvm_engine import compiled, target
-from compoundkin.programs.backends.llvm_layout import RECORDS_ARE_KNOWN, layout_of, recorded_arrays
+from compoundkin.programs.backends.llvm_layout import FIRST, RECORDS_ARE_KNOWN, layout_of, recorded_arrays
 from compoundkin.programs.backends.llvm_plan import ARRAY_KIND, DESIGNS_AT_ONCE, HEADER, NUMBER_KIND, LanePlan
 from compoundkin.programs.backends.llvm_program import ANGLE_TOO_LARGE, FITS_NOT, program_text, segment_length
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
@@ -41,7 +40,7 @@ class PlannedCode:
             self._own.words, self._own.address = words, address
             return address
 
-    def part(self, objects: Any, shape: tuple[int, int], *bounds: int, sums: int | None = None, last: int = 1) -> int:
+    def part(self, objects: int, shape: tuple[int, int], *bounds: int, sums: int | None = None, last: int = 1) -> int:
         """Run some designs and segments; answer 0, or why not."""
         return self.run(objects, self.scratch(), *shape, *bounds, sums, last)  # type: ignore[no-any-return]
 
@@ -55,8 +54,6 @@ class LlvmRunner:
         self._recent: dict[int, PlannedCode] = {}
         carried = {one.given for one in program.carried}
         self._given = [i for i, k in enumerate(program.inputs) if k not in carried]
-        self._count = len(self._given) + len(program.outputs)
-        self._objects = ctypes.c_void_p * self._count
 
     def __call__(self, inputs: Sequence[Any], outputs: Sequence[Any], shape: tuple[int, int], threads: int = 1) -> None:
         """Compute the outputs."""
@@ -67,20 +64,21 @@ class LlvmRunner:
         axis = BY_DESIGN if by_designs or self.program.carried else BY_POSE
         code = self._recent.get(axis)
         answer = FITS_NOT
-        if code is not None and RECORDS_ARE_KNOWN:
-            answer = _done(code, self._objects(*map(id, inputs), *map(id, outputs)), shape, threads)
+        arrays = (*inputs, *outputs)
+        if code is not None and RECORDS_ARE_KNOWN and len(arrays) == code.plan.arrays:
+            answer = _done(code, id(arrays) + FIRST, shape, threads)
         if answer:
             self._other_way(answer, axis, (inputs, outputs), shape, threads)
 
     def _other_way(self, answer: int, axis: int, arrays: Any, shape: tuple[int, int], threads: int) -> None:
         """Run the code that suits the arrays, or the angles."""
-        inputs, outputs = arrays
         program = self.program
-        kept, objects = recorded_arrays(program, self._given, inputs, outputs, shape)
-        layout = layout_of(program, self._given, kept[0], axis)
+        inputs, outputs = arrays
+        arrays, objects, _kept = recorded_arrays(program, self._given, inputs, outputs, shape)
+        layout = layout_of(program, self._given, arrays, axis)
         if answer == FITS_NOT:
-            self._recent[axis] = self._code(axis, layout, False)
-            answer = _done(self._recent[axis], objects, shape, threads)
+            code = self._recent[axis] = self._code(axis, layout, False)
+            answer = _done(code, objects, shape, threads)
         if answer == ANGLE_TOO_LARGE:
             answer = _done(self._code(axis, layout, True), objects, shape, threads)
         assert not answer
@@ -92,7 +90,7 @@ class LlvmRunner:
         return self._codes[key]
 
 
-def _done(code: PlannedCode, objects: Any, shape: tuple[int, int], threads: int) -> int:
+def _done(code: PlannedCode, objects: int, shape: tuple[int, int], threads: int) -> int:
     """Run all designs and poses, in so many threads."""
     designs, poses = shape
     length = segment_length(code.plan, poses)
@@ -106,7 +104,7 @@ def _done(code: PlannedCode, objects: Any, shape: tuple[int, int], threads: int)
     return _by_segments(code, objects, shape, segments, threads)
 
 
-def _by_segments(code: PlannedCode, objects: Any, shape: tuple[int, int], segments: int, threads: int) -> int:
+def _by_segments(code: PlannedCode, objects: int, shape: tuple[int, int], segments: int, threads: int) -> int:
     """Run all poses in so many threads, then what depends on reductions."""
     sums = np.empty(max(shape[0] * segments * code.plan.of_sums, 1))
     step = -(-segments // threads)
@@ -115,7 +113,7 @@ def _by_segments(code: PlannedCode, objects: Any, shape: tuple[int, int], segmen
         last = min(first + step, segments)
         return code.part(objects, shape, 0, shape[0], first, last, sums=sums.ctypes.data, last=0)
 
-    answer = max(done_by_threads(work, [(k,) for k in range(0, segments, step)]))
+    answer: int = max(done_by_threads(work, [(k,) for k in range(0, segments, step)]))
     if answer:
         return answer
     return code.part(objects, shape, 0, shape[0], 0, 0, sums=sums.ctypes.data)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -23,6 +24,8 @@ from compoundkin.programs.graph.flat_program import BY_POSE, FlatProgram
 
 NUMBER = np.dtype(float)
 WORDS_OF_RECORD = 16
+# Where a tuple has its first object.
+FIRST = tuple.__basicsize__
 
 
 def _record(array: Any) -> Any:
@@ -39,6 +42,8 @@ def _record(array: Any) -> Any:
 
 def _are_records_known() -> bool:
     """Tell whether this NumPy keeps arrays as is expected here, on this Python."""
+    if sys.implementation.name != "cpython":
+        return False
     array = np.zeros((4, 6))[::2, ::3]
     at, words = id(array), _record(array)
     if ctypes.sizeof(ctypes.c_void_p) != 8 or array.__sizeof__() < FLAGS + 4:
@@ -49,7 +54,8 @@ def _are_records_known() -> bool:
 
     same = all(word(at + byte) == words[byte // 8] for byte in (KIND, DATA, NUMBERS))
     same &= all(ctypes.c_int.from_address(at + byte).value == words[byte // 8] for byte in (DIMENSIONS, FLAGS))
-    if not same or ctypes.pythonapi is None:
+    row = (array, same)
+    if not same or [word(id(row) + FIRST + 8 * k) for k in (0, 1)] != [id(array), id(same)]:
         return False
     return all(
         [word(word(at + byte) + 8 * k) for k in (0, 1)] == list(row)
@@ -63,7 +69,7 @@ RECORDS_ARE_KNOWN = _are_records_known()
 def recorded_arrays(
     program: FlatProgram, given: Sequence[int], inputs: Any, outputs: Any, shape: tuple[int, int]
 ) -> Any:
-    """Return the arrays of a call as they can be read, and their records."""
+    """Return the arrays of a call, where their records are, and what keeps these."""
     nodes = [*(program.inputs[i] for i in given), *program.outputs]
     arrays: list[Any] = []
     for k, array in zip(nodes, (*inputs, *outputs), strict=True):
@@ -75,8 +81,9 @@ def recorded_arrays(
             raise ValueError("an array of results cannot be written")
         arrays.append(found.view(NUMBER) if found.dtype is not NUMBER else found)
     records = arrays if RECORDS_ARE_KNOWN else [_record(array) for array in arrays]
-    places = map(id, arrays) if RECORDS_ARE_KNOWN else (words.ctypes.data for words in records)
-    return (arrays, records), (ctypes.c_void_p * len(nodes))(*places)
+    places = [id(array) if RECORDS_ARE_KNOWN else array.ctypes.data for array in records]
+    row = np.array(places, np.int64)
+    return arrays, row.ctypes.data, (records, row)
 
 
 def layout_of(program: FlatProgram, given: Sequence[int], arrays: Sequence[Any], axis: int) -> ArrayLayout:

@@ -49,7 +49,9 @@ def program_text(plan: LanePlan) -> str:
     parts.append(_by_poses(plan) if plan.axis == BY_POSE else _by_designs(plan))
     width = 64 * min(plan.machine.lanes, 8)
     vectors = f'"prefer-vector-width"="{width}" "min-legal-vector-width"="{width}"'
-    return "\n".join([*sorted(declared), *parts, f"attributes #0 = {{ nounwind {vectors} }}", "!0 = !{}"])
+    # registers that do not last are put on the stack: in whole cache lines only if it starts at one
+    attributes = f'attributes #0 = {{ nounwind alignstack=64 "stackrealign" {vectors} }}'
+    return "\n".join([*sorted(declared), *parts, attributes, "!0 = !{}"])
 
 
 def _is_used(plan: LanePlan, name: str) -> bool:
