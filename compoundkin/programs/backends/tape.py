@@ -76,9 +76,10 @@ def _finished(sink: Sink, found: Any, shape: tuple[int, int]) -> Any:
     """Return what later phases are given: for each design the reduction of its pieces."""
     if sink.kind == STORE:
         return found
-    reduced = REDUCTIONS[sink.kind](found, axis=1, keepdims=True)
-    times = shape[1] if sink.kind == TOTAL and not sink.stratum & BY_POSE else 1
-    return np.broadcast_to(reduced * times, (shape[0], 1))
+    reduced = found if found.shape[1] == 1 else REDUCTIONS[sink.kind](found, axis=1, keepdims=True)
+    if sink.kind == TOTAL and not sink.stratum & BY_POSE:
+        reduced = reduced * shape[1]
+    return reduced if len(reduced) == shape[0] else np.broadcast_to(reduced, (shape[0], 1))
 
 
 class TapeRunner:
