@@ -80,15 +80,15 @@ def command(file: str, path: str | None, form: str | None, force: bool, **asked:
 
 def _own_outputs(structure: Structure) -> list[str]:
     """The outputs of the file that a program can have, else the places of all points."""
-    from compoundkin.base.errors import UnknownName
-    from compoundkin.kinematics.solving_order import SolvingOrder
+    from compoundkin.base.errors import InvalidInput, UnknownName
+    from compoundkin.kinematics import solve
     from compoundkin.programs.recording.recorded_outputs import output_of
 
-    mechanism, found = structure.mechanism, []
-    order = SolvingOrder(structure)
-    for name in mechanism.outputs:
+    found: list[str] = []
+    motion = solve(structure, order=0)
+    for name in structure.mechanism.outputs:
         try:
-            found.append(output_of(order, name).name)
-        except UnknownName:
-            say(f"Left out: no program can have {name}.")
-    return found or [f"{point}.{OF_POINTS[0]}" for point in mechanism.carriers]
+            found.append(output_of(motion, name).name)
+        except (UnknownName, InvalidInput) as error:
+            say(f"Left out: {error}")
+    return found or [f"{point}.{OF_POINTS[0]}" for point in structure.mechanism.carriers]

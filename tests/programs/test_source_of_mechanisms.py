@@ -47,12 +47,12 @@ class Case(NamedTuple):
 @cache
 def path_of(name: str) -> CompiledPath:
     """A mechanism compiled for the outputs of its file, and for a link's angle."""
-    order, names = motion(name).solving_order, []
+    names = []
     for output in (*mechanism(name).outputs, list(mechanism(name).links)[-1]):
         try:
-            names.append(output_of(order, output).name)
-        except ck.errors.UnknownName:
-            continue
+            names.append(output_of(motion(name), output).name)
+        except ck.errors.InvalidInput:
+            continue  # figures of whole motions, forces
     return compile(mechanism(name), list(dict.fromkeys(names)))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import OF_POINTS, RATES, coordinate_dimension, unit_of
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
@@ -18,8 +19,9 @@ from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import DRIVE, SEED, TURNS
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
+from compoundkin.programs.recording.recorded_motion import RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber
-from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of, recorded_output
+from compoundkin.programs.recording.recorded_outputs import ProgramOutput
 from compoundkin.programs.sources.contract import Argument, Result, WrittenProgram
 from compoundkin.programs.sources.identifiers import Identifiers, identifier
 from compoundkin.programs.sources.told_configuration import notes
@@ -109,23 +111,13 @@ def _outside(one: InputNumber, names: Identifiers) -> Argument:
 
 
 def _results(path: PathToWrite, recorded: RecordedPath) -> Iterator[Result]:
-    names = Identifiers()
+    names, motion = Identifiers(), RecordedMotion(recorded.mechanism)
     for output, nodes in zip(path.outputs, recorded.nodes, strict=True):
-        unit = _unit(path.reference, output)
+        unit, turns = quantity(motion, output.name).unit, ", from -pi to pi" if output.is_wrapped else ""
         parts = ("x", "y") if len(nodes) > 1 else ("",)
         for node, part in zip(nodes, parts, strict=True):
             word = f"{output.name}.{part}" if part else output.name
-            yield Result(node, names.take(word), word, unit)
-
-
-def _unit(motion: Motion, output: ProgramOutput) -> str:
-    order, owner = motion.solving_order, output.owner
-    is_angle = output.kind == "links"
-    if output.kind == "pairs":
-        is_angle = order.pairs[owner].free_is_angle
-    elif output.kind == "drives":
-        is_angle = order.structure.driven_angles[owner]
-    return unit_of(motion.mechanism.unit, coordinate_dimension(is_angle), output.attribute.order)
+            yield Result(node, names.take(word), f"{word}{turns}", unit)
 
 
 def _called(mechanism: RecordedMechanism) -> Mapping[int, str]:
@@ -144,9 +136,7 @@ def _known(mechanism: RecordedMechanism) -> Iterator[tuple[str, RecordedNumber]]
     for link, pose in mechanism.block.world.items():
         u = mechanism.number(pose.u.c[0])
         yield from ((f"cos_{link}", u.real), (f"sin_{link}", u.imag))
-    order = mechanism.recording.solving_order
-    for point in order.structure.mechanism.carriers:
-        for word in OF_POINTS[: mechanism.recording.order + 1]:
-            place = recorded_output(mechanism, output_of(order, f"{point}.{word}"))
-            name = point if word == OF_POINTS[0] else f"{point}_{word}"
+    for point, found in RecordedMotion(mechanism).points.items():
+        for k, word in enumerate(OF_POINTS[: mechanism.recording.order + 1]):
+            name, place = f"{point}_{word}" if k else point, mechanism.number(found.derivative(k))
             yield from ((f"{name}_x", place.real), (f"{name}_y", place.imag))
