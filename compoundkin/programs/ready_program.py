@@ -16,7 +16,7 @@ from compoundkin.programs.recording.input_kinds import SEED
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
 from compoundkin.programs.recording.recorded_number import RecordedNumber
-from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recorded_output
+from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recorded_outputs
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class RecordedPath:
     def of(cls, recording: Recording, outputs: Sequence[ProgramOutput]) -> RecordedPath:
         """Record a mechanism and outputs of it."""
         mechanism = recorded(recording)
-        return cls(mechanism, tuple(recorded_output(mechanism, output) for output in outputs))
+        return cls(mechanism, recorded_outputs(mechanism, outputs))
 
     @cached_property
     def nodes(self) -> tuple[tuple[int, ...], ...]:

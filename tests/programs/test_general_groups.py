@@ -9,7 +9,7 @@ from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, flat_pro
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE, SEED
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, recorded
-from compoundkin.programs.recording.recorded_outputs import output_of, recorded_output
+from compoundkin.programs.recording.recorded_outputs import output_of, recorded_outputs
 from compoundkin.programs.seed_values import seed_values
 
 NAMES = (
@@ -53,8 +53,8 @@ def test_every_point_equals_solve(name):
     motion, recording = motion_of(name)
     mechanism = recorded(recording)
     letters = list(motion.mechanism.carriers)
-    places = [recorded_output(mechanism, output_of(motion, f"{letter}.{word}"))
-              for word in WORDS for letter in letters]  # fmt: skip
+    names = (f"{letter}.{word}" for word in WORDS for letter in letters)
+    places = recorded_outputs(mechanism, (output_of(motion, name) for name in names))
     nodes = [node for place in places for node in (place.x, place.part(1))]
     graph = mechanism.graph
     given = {node.given: BY_DESIGN if node.given.kind == DIMENSION else BY_BOTH for node in graph.nodes if node.given}

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quantities import quantity
-from compoundkin.kinematics.quantity_owners import check_part, owner_and_part
+from compoundkin.kinematics.quantities import read_of
+from compoundkin.kinematics.quantity_owners import check_part, owner_and_part, owner_of
 from compoundkin.model.attributes import (
     CORIOLIS,
     DERIVED,
     FORCES,
     OF_POINTS,
+    PARTS,
     TRANSMISSION_INDEX,
     Attribute,
     Kind,
@@ -85,14 +88,21 @@ def _is_wrapped(motion: Motion, kind: Kind, owner: str, attribute: Attribute) ->
     return pair.free_is_angle and any(motion.poses[member].theta is None for member in pair.members)
 
 
-def recorded_output(mechanism: RecordedMechanism, output: ProgramOutput) -> RecordedNumber:
-    """Return an output as a recorded number: complex for a planar vector.
+def recorded_outputs(mechanism: RecordedMechanism, outputs: Iterable[ProgramOutput]) -> tuple[RecordedNumber, ...]:
+    """Return outputs as recorded numbers: complex for planar vectors.
 
     Raises InvalidInput for a figure that is no straight-line arithmetic of one pose.
     """
+    motion = RecordedMotion(mechanism)
+    return tuple(mechanism.number(_recorded(motion, output)) for output in outputs)
+
+
+def _recorded(motion: RecordedMotion, output: ProgramOutput) -> Number:
+    owner = owner_of(motion, output.kind, output.owner)
     try:
-        return mechanism.number(quantity(RecordedMotion(mechanism), output.name).values)
+        found = read_of(owner, output.attribute.word)
     except (TypeError, AttributeError) as error:
         if not output.is_derived:
             raise
         raise InvalidInput(Problem(output.name, f"no program can tell it: {error}", ASK_SOLVE)) from None
+    return PARTS[output.part](found.values) if output.part else found.values
