@@ -10,8 +10,10 @@ import numpy as np
 from compoundkin.analysis.characteristics.characteristics_of_motion import characteristics
 from compoundkin.analysis.characteristics.outputs_of_motion import chosen_outputs
 from compoundkin.analysis.checks import Check, verify
+from compoundkin.base.given_numbers import hold_design
 from compoundkin.dynamics.loaded_motions import loaded_forces
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections
 from compoundkin.view.report.findings_table import finding_sentence, findings_table, with_forces
@@ -46,28 +48,28 @@ def checks_section(sample: Sample, check: Check) -> Section:
     return Section("checks", "Checks", (Paragraph(text), findings_table(sample, check)))
 
 
-def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 0) -> Report:
-    """Report one design of a motion."""
+def report_of_motion(motion: Motion, outputs: Sequence[str] = (), told: str = "") -> Report:
+    """Report a motion of one design. What it is one of is `told` of it."""
     # they are gone through more than once
-    sample, structure, outputs = Sample(motion, design), motion.structure, tuple(outputs)
+    sample, structure, outputs = Sample(motion), motion.structure, tuple(outputs)
     # outputs first: an unknown name is said before the slower work is done
     chosen = chosen_outputs(motion, outputs)
-    moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen, design)
+    moving, figures = moving_sections(sample, chosen), characteristics(motion, chosen)
     check, missing, published = verify(motion), gaps_of(sample), comparisons(structure)
     forces = loaded_forces(motion)
     outcome = outcome_of(motion, with_forces(check, forces), published)
     return Report(
         motion.mechanism.title,
         (
-            about_section(structure, f"{structure_in_short(structure)} {motion_in_short(outcome)}", _design_of(sample)),
-            *counted_sections(structure, design, motion),
-            solving_section(structure, motion, design),
+            about_section(structure, f"{structure_in_short(structure)} {motion_in_short(outcome)}", told),
+            *counted_sections(structure, motion=motion),
+            solving_section(structure, motion),
             drivers_section(structure, sample),
             *([equivalent] if (equivalent := equivalent_section(sample)) else []),
-            *assembly_sections(motion, design),
+            *assembly_sections(motion, 0),
             *moving,
             performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
-            *([forces_section(forces, design)] if forces is not None else []),
+            *([forces_section(forces)] if forces is not None else []),
             *([gaps_section(sample, missing)] if missing else []),
             checks_section(sample, check),
             *([published_section(structure, published)] if published else []),
@@ -75,7 +77,6 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), design: int = 
         outcome,
         motion,
         outputs,
-        design,
     )
 
 
@@ -92,12 +93,6 @@ def outcome_of(motion: Motion, check: Check, published: tuple[Comparison, ...] =
         verified=check.passed,
         verdict=check.verdict,
     )
-
-
-def _design_of(sample: Sample) -> str:
-    designs = sample.motion.inputs.designs
-    text = f"Shown is design {sample.design} of {designs:,} (counted from 0); the checks cover all."
-    return text if designs > 1 else ""
 
 
 def motion_in_short(outcome: Outcome) -> str:
@@ -136,12 +131,14 @@ def check_report(motion: Motion) -> Report:
 
 def centres_report(motion: Motion, design: int = 0) -> Report:
     """Report a design's instant centres at the first pose. It says why where the pose cannot be assembled."""
-    sample = Sample(motion, design)
+    hold_design(design, motion.inputs.designs)
+    motion = motion_of_design(motion, design)
+    sample = Sample(motion)
     closed = bool(sample.assembled[0])
     # in a report on the whole motion the section of its own gaps has that key
     missing = tuple(replace(section, key="centres") for section in _missing(sample))
     sections = centres_sections(sample) if closed else missing
-    return Report(motion.mechanism.title, sections, Outcome(True, 1, int(closed), 0, 0, 0, 0), motion, design=design)
+    return Report(motion.mechanism.title, sections, Outcome(True, 1, int(closed), 0, 0, 0, 0), motion)
 
 
 def _missing(sample: Sample) -> tuple[Section, ...]:

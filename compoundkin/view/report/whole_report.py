@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from math import prod
 from typing import TYPE_CHECKING
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, UnassembledPoses
+from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.one_design import motion_of_design, shape_of
+from compoundkin.model.design_numbers import mechanism_of_design
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.view.report.groups_section import drivers_section, solving_section
@@ -32,7 +36,7 @@ def report(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), de
     A mechanism is solved over its drivers' own ranges first; of one that has none, or that is not determined, its
     structure is reported, faults included. `outputs` are quantities such as "G.velocity"; without any, those that the
     mechanism names. Of a motion with several designs one is reported, by its index in the order of the motion's axes
-    before the last; the checks cover all.
+    before the last: what is reported and checked is that design by itself, however many there are.
 
     Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
 
@@ -44,13 +48,13 @@ def report(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), de
     >>> print(report(crank).text().splitlines()[0])
     Crank
     """
-    subject = _solved(what) if isinstance(what, Mechanism) else what
+    subject, among = _picked(what, design)
     if isinstance(subject, Structure):
         return _of_structure(subject)
     # what a motion takes is not loaded for the report of a structure
     from compoundkin.view.report.motion_report import report_of_motion
 
-    return report_of_motion(subject, outputs, design)
+    return report_of_motion(subject, outputs, _design_of(design, among))
 
 
 @checked
@@ -67,18 +71,44 @@ def page(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), desi
     return report(what, outputs, design).page()
 
 
-def _solved(mechanism: Mechanism) -> Subject:
-    """The motion over the drivers' own ranges; the structure of what has faults or no ranges."""
+def _picked(what: Mechanism | Subject, design: int) -> tuple[Subject, int]:
+    """Return what is reported, a design of a motion by itself, and how many there are."""
+    if isinstance(what, Mechanism):
+        return _solved(what, design)
+    if isinstance(what, Structure):
+        return what, 0
+    hold_design(design, what.inputs.designs)
+    return motion_of_design(what, design), what.inputs.designs
+
+
+def _design_of(design: int, among: int) -> str:
+    text = f"Shown is design {design} of {among:,} (counted from 0); the checks are of it alone."
+    return text if among > 1 else ""
+
+
+def _solved(mechanism: Mechanism, design: int) -> tuple[Subject, int]:
+    """Solve one design over the drivers' own ranges; return also how many there are.
+
+    Of what has faults or no ranges it is the structure.
+    """
     structure = decompose(mechanism)
     if structure.faults:
-        return structure
+        return structure, 0
+    try:
+        shape = shape_of(structure)
+    except InvalidInput:
+        return structure, 0
+    among = prod(shape[:-1])
+    hold_design(design, among)
+    if among > 1:
+        structure = decompose(mechanism_of_design(mechanism, shape, design))
     with warnings.catch_warnings():
         # the report says what cannot be assembled
         warnings.simplefilter("ignore", UnassembledPoses)
         try:
-            return solve(structure)
+            return solve(structure), among
         except InvalidInput:
-            return structure
+            return structure, 0
 
 
 def _of_structure(structure: Structure) -> Report:

@@ -25,6 +25,7 @@ from compoundkin.base.given_numbers import hold_design
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Number, Series
 from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.one_design import alone, motion_of_design
 from compoundkin.model.attributes import RATES, after_number
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
@@ -71,7 +72,9 @@ def scene_of(what: Drawable, at: Any, pose: int | None, design: int) -> Scene:
     if at is not None and pose is not None:
         raise InvalidInput(Problem("pose", "driver values `at` are given too", "leave one of them out"))
     if isinstance(what, Motion):
-        return scene_in(what, at, pose, design)
+        hold_design(design, what.inputs.designs)
+        return scene_in(motion_of_design(what, design), at, pose, 0)
+    what, design = alone(what, design)
     motion = solved_over(what)
     if motion is not None:
         return scene_in(motion, at, pose, design)
@@ -111,10 +114,7 @@ def solved_over(what: Mechanism | Structure) -> Motion | None:
 
 
 def scene_in(motion: Motion, at: Any, pose: int | None, design: int) -> Scene:
-    """Return the scene at driver values, at an index, or near the drawing.
-
-    It is one of a motion, nearest to the drawing.
-    """
+    """Return the scene of a motion at driver values, at an index, or near the drawing."""
     hold_design(design, motion.inputs.designs)
     failed = np.broadcast_to(motion.failed, (motion.inputs.designs, motion.inputs.poses))[design]
     if pose is not None:

@@ -1,0 +1,158 @@
+"""One design of a solved motion, by itself: what concerns one costs no more where there are many."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import dataclass, replace
+from math import prod
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, NotDetermined
+from compoundkin.base.given_numbers import hold_design
+from compoundkin.base.poses import FIXED
+from compoundkin.base.series import Number, Series
+from compoundkin.kinematics.branch import TrackedBranch
+from compoundkin.kinematics.chosen_modes import Shown
+from compoundkin.kinematics.driver_values import inputs, times_of
+from compoundkin.kinematics.full_turns import Turns
+from compoundkin.kinematics.group_paths import GroupPath
+from compoundkin.kinematics.inputs import Inputs, mapped
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solution import solve, solving_order_of
+from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.kinematics.tracking import Tracker
+from compoundkin.model.attributes import RATES
+from compoundkin.model.design_numbers import mechanism_of_design, number_of_design
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.structure import decompose
+from compoundkin.structure.kinematic_structure import Structure
+
+
+def shape_of(what: Mechanism | Structure) -> tuple[int, ...]:
+    """Return the shape of the motion over the drivers' own ranges. Raises InvalidInput where they have none."""
+    solving_order = solving_order_of(what)
+    times = times_of(solving_order.structure.mechanism, None, None)
+    return inputs(solving_order, None, None, None, None, times, 0).shape
+
+
+def alone(what: Mechanism | Structure, design: int) -> tuple[Mechanism | Structure, int]:
+    """Return the mechanism that one of several designs is, and its index there, 0.
+
+    What has one design, or cannot be solved over its drivers' own ranges, stays as it is.
+    """
+    try:
+        shape = shape_of(what)
+    except (InvalidInput, NotDetermined):
+        return what, design
+    if prod(shape[:-1]) == 1:
+        return what, design
+    hold_design(design, prod(shape[:-1]))
+    return mechanism_of_design(what.mechanism if isinstance(what, Structure) else what, shape, design), 0
+
+
+def motion_of_design(motion: Motion, design: int) -> Motion:
+    """Return the motion of one of several designs, by itself.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.model.mechanism import Mechanism
+    >>> lengths = np.array([[1.0], [2.0]])
+    >>> cranks = Mechanism("m", link("frame", A=0), link("crank", A=0, B=lengths), drive("crank"))
+    >>> motion_of_design(solve(cranks, {"crank": [0.0, 1.0]}), 1).points["B"].position[0]
+    np.complex128(2+0j)
+    """
+    if motion.inputs.designs == 1:
+        return motion
+    shape, own = motion.shape, _Design(design)
+    structure = decompose(mechanism_of_design(motion.mechanism, shape, design))
+    given = own.inputs(motion.inputs)
+    time = number_of_design(motion.time, shape, design)
+    if [group.links for group in structure.groups] != [group.links for group in motion.structure.groups]:
+        # other pairs are redundant in it than in all of them
+        values, *rates = ({name: held[k] for name, held in given.drives.items()} for k in range(4))
+        return replace(solve(structure, values, **dict(zip(RATES, rates, strict=True)), order=motion.order), time=time)
+    poses = {name: pose if pose is FIXED else pose.mapped(own.series) for name, pose in motion.poses.items()}
+    tracker = own.tracker(motion.tracker, structure, given, shape)
+    failed = own.row(motion.failed)
+    return replace(motion, structure=structure, inputs=given, poses=poses, failed=failed, tracker=tracker, time=time)
+
+
+@dataclass(frozen=True)
+class _Design:
+    """One design, and its part of whatever is over (1 or designs, ...)."""
+
+    index: int
+
+    def row(self, value: Number) -> Number:
+        """Return its part of an array, which is of one row then."""
+        return value if np.ndim(value) == 0 or len(value) == 1 else value[self.index : self.index + 1]
+
+    def series(self, series: Series) -> Series:
+        """Return its part of a series."""
+        return Series(tuple([self.row(c) for c in series.c]))
+
+    def rows(self, values: Mapping[int, Number]) -> dict[int, Number]:
+        """Return its part of what groups have."""
+        return {k: self.row(value) for k, value in values.items()}
+
+    def inputs(self, given: Inputs) -> Inputs:
+        """Return its numbers as those of a motion without designs."""
+        ends = {name: tuple(mapped(end, self._number) for end in sides) for name, sides in given.ends.items()}
+        drives = {name: tuple(map(self._number, values)) for name, values in given.drives.items()}
+        return Inputs((given.poses,), ends, drives)
+
+    def tracker(self, tracker: Tracker, structure: Structure, given: Inputs, shape: tuple[int, ...]) -> Tracker:
+        """Return its tracker: all that was chosen and found of it."""
+        one = copy(tracker)
+        one.solving_order = _followed(solving_order_of(structure), tracker.solving_order)
+        one.given, one.approach_path = given, self.inputs(tracker.approach_path)
+        one.shown = self._shown(tracker.shown, shape)
+        one.course = None if tracker.course is None else replace(tracker.course, start=self.row(tracker.course.start))
+        one.signs, one.flips = self.rows(tracker.signs), self.rows(tracker.flips)
+        one.approach_flips = self.rows(tracker.approach_flips)
+        one.paths = self._paths(tracker.paths)
+        one.approach_paths = self._paths(tracker.approach_paths)
+        one.turns = {link: self._turns(turns) for link, turns in tracker.turns.items()}
+        one.rests = {k: [(0, pose) for d, pose in found if d == self.index] for k, found in tracker.rests.items()}
+        if tracker.expanded is not None:
+            designs, index, groups = tracker.expanded
+            here = index[designs == self.index]
+            one.expanded = np.zeros_like(here), here, groups
+        if tracker.branch is not None and one.course is not None:
+            one.branch = TrackedBranch(one.course, self._paths(tracker.branch.paths))
+        return one
+
+    def _number(self, value: Number) -> Number:
+        row = self.row(value)
+        return row.item() if np.size(row) == 1 and np.ndim(row) else row
+
+    def _paths(self, paths: Mapping[int, GroupPath]) -> dict[int, GroupPath]:
+        return {k: self._path(path) for k, path in paths.items()}
+
+    def _path(self, path: GroupPath) -> GroupPath:
+        s, states, slopes, reach, side = map(self.row, (path.s, path.states, path.slopes, path.reach, path.side))
+        return GroupPath(s, states, slopes, reach, side, tuple(self._path(one) for one in path.returns))
+
+    def _turns(self, turns: Turns) -> Turns:
+        (before, early), (along, late) = turns.approach, turns.motion
+        return Turns((before, self.row(early)), (along, self.row(late)))
+
+    def _shown(self, shown: Shown, shape: tuple[int, ...]) -> Shown:
+        def own(value: Any) -> Any:
+            return number_of_design(value, shape, self.index)
+
+        poses = {
+            name: pose if pose is FIXED else pose.mapped(lambda series: Series(own(series.c)))
+            for name, pose in shown.poses.items()
+        }
+        return Shown(shown.source, own(shown.points), poses, own(shown.beside))
+
+
+def _followed(own: SolvingOrder, whole: SolvingOrder) -> SolvingOrder:
+    """Return a solving order in which those groups are followed that are in another."""
+    for k, (one, other) in enumerate(zip(own.solvers, whole.solvers, strict=True)):
+        if other.is_numbered and not one.is_numbered:
+            own = own.following(k)
+    return own
