@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
+from math import pi
 from typing import Any, Protocol
 
 from compoundkin.base.display import PrintsShort
@@ -84,11 +85,11 @@ class JaxPath(PrintsShort):
         *found, failed = evaluated(graph, wanted, {k: given[one] for k, one in used.items() if one is not None})
         assembled = jnp.broadcast_to(failed == 0.0, shape)
         parts = iter(jnp.where(assembled, value, jnp.nan) for value in found)
-        vectors = (tuple(next(parts) for _ in nodes) for nodes in path.nodes)
-        values_by_name = dict(
-            zip((o.name for o in self.path.outputs), (_joined(each) for each in vectors), strict=True)
-        )
-        return {**values_by_name, ASSEMBLED: assembled}
+        whole = {}
+        for output, nodes in zip(self.path.outputs, path.nodes, strict=True):
+            value = _joined(tuple(next(parts) for _ in nodes))
+            whole[output.name] = continuous(value) if output.is_wrapped else value
+        return {**whole, ASSEMBLED: assembled}
 
     def _drives(self, values: Any, rates: Mapping[str, Any]) -> dict[InputNumber, Any]:
         """Return the drivers' values and rates."""
@@ -153,6 +154,21 @@ def _joined(parts: tuple[Any, ...]) -> Any:
     return parts[0] if len(parts) == 1 else joined(*parts)
 
 
+def continuous(angle: Any) -> Any:
+    """Return an angle made continuous along the last axis, over poses that are not assembled too."""
+    import jax.numpy as jnp
+    from jax import lax
+
+    if angle.ndim == 0 or angle.shape[-1] < 2:
+        return angle
+    known = ~jnp.isnan(angle)
+    first = jnp.argmax(known, axis=-1, keepdims=True)
+    last = lax.cummax(jnp.where(known, jnp.arange(angle.shape[-1]), first), axis=angle.ndim - 1)
+    filled = jnp.take_along_axis(lax.stop_gradient(angle), last, axis=-1)
+    turns = jnp.cumsum(jnp.rint(jnp.diff(filled) / (2.0 * pi)), axis=-1)
+    return angle - 2.0 * pi * jnp.concatenate([jnp.zeros_like(turns[..., :1]), turns], axis=-1)
+
+
 def _zero(value: Any) -> bool:
     """Tell whether a rate is a number known to be zero; what JAX traces is not known."""
     return type(value) in (int, float) and value == 0
@@ -166,4 +182,4 @@ def _only_known(where: str, given: Mapping[str, Any], known: Any) -> None:
         raise UnknownName(wrong)
 
 
-__all__ = ["JaxPath", "jax_path"]
+__all__ = ["JaxPath", "continuous", "jax_path"]

@@ -118,6 +118,19 @@ def test_it_has_the_digits_that_its_user_chose() -> None:
     np.testing.assert_allclose(found["bar.angle"], exact["bar.angle"], atol=1e-5)
 
 
+def test_angles_go_on_over_full_turns_and_gaps() -> None:
+    from compoundkin.programs.jax_path import continuous
+
+    turning, angles = compile(ck.catalog.load_named("double-crank"), ["follower.angle"]), np.linspace(0.0, 15.0, 200)
+    rocking = np.where(np.abs(angles - 7.0) < 1.0, np.nan, np.angle(np.exp(-0.7j * angles)))
+    with jax.enable_x64():
+        found = quick(turning.jax(), angles)["follower.angle"]
+        over_gaps = quick(lambda angle: continuous(angle), np.stack([rocking, angles, rocking[::-1]]))
+    np.testing.assert_allclose(found, turning(angles)["follower.angle"], atol=1e-12)
+    np.testing.assert_allclose(over_gaps[0], np.where(np.isnan(rocking), np.nan, -0.7 * angles), atol=1e-12)
+    np.testing.assert_allclose(over_gaps[2] - over_gaps[2, 0], 0.7 * angles + 0.0 * over_gaps[2], atol=1e-12)
+
+
 def test_a_slip_is_told() -> None:
     function = path().jax()
     for call in ({"values": {"cranck": 0.0}}, {"values": 0.0, "dimensions": {"plate.D": 1.0}}):
