@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import frexp
 from typing import TYPE_CHECKING
 
 from compoundkin.programs.graph.operations import CONSTANT
@@ -76,8 +77,26 @@ def _mul(graph: OperationGraph, a: int, b: int) -> int | None:
         node = graph.nodes[one]
         if node.operation == CONSTANT and node.value < 0.0:
             return graph.apply("neg", graph.apply("mul", graph.constant(-node.value), other))
+        if node.operation == CONSTANT:
+            return _scaled(graph, node.value, other)
     root = _inner(graph, a, "sqrt")
     return root if a == b and root is not None else None
+
+
+def _scaled(graph: OperationGraph, factor: float, node: int) -> int | None:
+    """Return a product with two numbers as one with theirs, where it is the same to the last digit."""
+    inner = graph.nodes[node]
+    if inner.operation != "mul":
+        return None
+    for one, other in (inner.operands, inner.operands[::-1]):
+        known = graph.nodes[one]
+        if known.operation == CONSTANT and (_is_power_of_two(factor) or _is_power_of_two(known.value)):
+            return graph.apply("mul", graph.constant(factor * known.value), other)
+    return None
+
+
+def _is_power_of_two(value: float) -> bool:
+    return abs(frexp(value)[0]) == 0.5
 
 
 def _neg(graph: OperationGraph, a: int) -> int | None:
