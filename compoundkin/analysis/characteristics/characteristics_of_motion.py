@@ -29,6 +29,7 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure, closed_cycles
+from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.model.elements import FRAME
 
 # A dwell changes by no more than this part of the stroke; a straight stretch is off by no more than that of the path.
@@ -136,27 +137,28 @@ def characteristics(
     (150.0, 2.0)
     """
     _check(motion, design, dwell, straight)
-    asked = outputs_of(motion, chosen_outputs(motion, outputs))
-    groups = index_names(motion)
-    pressures, guides = pressure_names(motion), coriolis_names(motion)
-    moving = moving_drivers(motion, design)
-    ratios = ratio_names(motion, asked, design)
-    found = (one for output in asked for one in output.measures(motion))
+    own = motion_of_design(motion, design)
+    asked = outputs_of(own, chosen_outputs(own, outputs))
+    groups = index_names(own)
+    pressures, guides = pressure_names(own), coriolis_names(own)
+    moving = moving_drivers(own, 0)
+    ratios = ratio_names(own, asked, 0)
+    found = (one for output in asked for one in output.measures(own))
     measures = {one.name if isinstance(one, Measure) else one: one for one in found}
     besides = dict.fromkeys((*groups, *pressures, *guides, *ratios.values()))
-    ranges = ranges_of(motion, design, [*measures.values(), *(name for name in besides if name not in measures)])
-    way = groups_on_the_way(motion.structure, asked)
-    figures = tuple(OutputFigures(motion, design, one, ranges, dwell, straight) for one in asked)
+    ranges = ranges_of(own, 0, [*measures.values(), *(name for name in besides if name not in measures)])
+    way = groups_on_the_way(own.structure, asked)
+    figures = tuple(OutputFigures(own, 0, one, ranges, dwell, straight) for one in asked)
     return Characteristics(
         motion,
         design,
         figures,
-        group_figures(motion, groups, ranges, way),
+        group_figures(own, groups, ranges, way),
         {name: ranges[name] for name in pressures if name in ranges},
         {name: ranges[name] for name in guides if name in ranges},
-        advantages(motion, design, asked, ratios, ranges),
-        limits_of(motion, design, figures),
-        tuple(_notes(motion, design, moving)),
+        advantages(own, 0, asked, ratios, ranges),
+        limits_of(own, 0, figures),
+        tuple(_notes(own, 0, moving)),
     )
 
 
