@@ -8,19 +8,28 @@ import numpy as np
 import pytest
 
 from compoundkin.base.errors import InvalidInput
-from compoundkin.programs.backends import chosen_back_end, runner_of
+from compoundkin.programs.backends import chosen_back_end, llvm, runner_of
+from compoundkin.programs.backends.llvm_plan import Machine
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, Carried, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from tests.benchmarks import six_bar
 from tests.programs.test_tape import arrays, plain, program_of_everything
 
-pytest.importorskip("llvmlite")
 SHAPES = [(1, 1), (1, 17), (1, 2500), (700, 1), (21, 5), (40, 1100), (3, 2100), (2, 8), (16, 16), (130, 31)]
 
 
 @pytest.fixture(autouse=True)
 def _own_cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COMPOUNDKIN_CACHE", str(tmp_path_factory.getbasetemp() / "objects"))
+    monkeypatch.setattr(llvm, "FOR_A_THREAD", 1)
+
+
+@pytest.fixture(params=[None, Machine(8, True, False), Machine(4, False, False)], ids=["this", "eight", "four"])
+def machine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """This processor, and code as for others: fewer lanes, and no masks for remainders."""
+    if request.param:
+        monkeypatch.setattr(llvm, "target", lambda: (request.param, ""))
+    return request.param
 
 
 def test_every_operation_in_every_stratum() -> None:
@@ -57,7 +66,7 @@ def placed(array: Any, way: str) -> Any:
 
 
 @pytest.mark.parametrize("shape", [(5, 43), (43, 5)])
-def test_arrays_of_any_strides(shape: tuple[int, int]) -> None:
+def test_arrays_of_any_strides(shape: tuple[int, int], machine: Any) -> None:
     graph = OperationGraph()
     strata = {InputNumber("parameter", str(s)): s for s in (BY_DESIGN, BY_POSE, BY_BOTH)}
     a, b, c = (graph.input(each) for each in strata)
@@ -85,7 +94,7 @@ def test_arrays_of_any_strides(shape: tuple[int, int]) -> None:
         assert not z[1 - n % 2].any()
 
 
-def test_nothing_is_written_beyond_an_array() -> None:
+def test_nothing_is_written_beyond_an_array(machine: Any) -> None:
     graph, x = OperationGraph(), InputNumber("drive", "crank", "0")
     nodes = [graph.apply(name, graph.input(x)) for name in ("cos", "sin")]
     runner = runner_of(flat_program(graph, [*nodes, nodes[0]], {x: BY_POSE}), "llvm")
@@ -121,7 +130,7 @@ def test_what_does_not_fit_is_refused() -> None:
                 runner(inputs, outputs, (1, 9))
 
 
-def test_totals_are_the_same_whatever_the_threads() -> None:
+def test_totals_are_the_same_whatever_the_threads(machine: Any) -> None:
     graph, x, a = OperationGraph(), InputNumber("drive", "crank", "0"), InputNumber("dimension", "a")
     wave = graph.apply("mul", graph.input(a), graph.apply("cos", graph.input(x)))
     root = graph.apply("sqrt", graph.input(x))
@@ -144,7 +153,7 @@ def test_totals_are_the_same_whatever_the_threads() -> None:
 
 
 @pytest.mark.parametrize("shape", [(1, 6), (600, 40), (3, 1100), (4, 1)])
-def test_a_march_carries_numbers_from_pose_to_pose(shape: tuple[int, int]) -> None:
+def test_a_march_carries_numbers_from_pose_to_pose(shape: tuple[int, int], machine: Any) -> None:
     """The mean of the last two with a drift: two numbers carried, one of them the other's past."""
     graph = OperationGraph()
     names = ("x", "y", "start", "drift", "share")
@@ -186,6 +195,19 @@ def test_the_six_bar_written_by_hand() -> None:
     for (name, order), ours in zip(names, found, strict=True):
         theirs = six_bar.by_hand(angles)[name][order]
         assert np.max(np.abs(ours[0] - theirs)) < 1e-13 * np.max(np.abs(theirs)), (name, order)
+
+
+def test_no_poses_and_no_designs() -> None:
+    graph, x, a = OperationGraph(), InputNumber("drive", "crank", "0"), InputNumber("dimension", "a")
+    length, wave = graph.input(a), graph.apply("cos", graph.input(x))
+    outputs = [graph.apply("neg", length), graph.apply("total", wave), graph.apply("mul", length, wave)]
+    program = flat_program(graph, outputs, {x: BY_POSE, a: BY_DESIGN})
+    runner = runner_of(program, "llvm")
+    for shape in ((3, 0), (0, 3), (0, 0)):
+        found = [np.full(program.shape(k, *shape), 7.0) for k in outputs]
+        runner([np.ones((shape[0], 1)), np.ones((1, shape[1]))], found, shape, 2)
+        assert np.all(found[0] == -1.0)
+        assert np.all(found[1] == 0.0)
 
 
 def test_a_back_end_is_chosen_by_its_name(monkeypatch: pytest.MonkeyPatch) -> None:

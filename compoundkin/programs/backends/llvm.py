@@ -15,6 +15,8 @@ from compoundkin.programs.backends.llvm_plan import ARRAY_KIND, DESIGNS_AT_ONCE,
 from compoundkin.programs.backends.llvm_program import ANGLE_TOO_LARGE, FITS_NOT, program_text, segment_length
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
 
+# Poses that are worth a thread: fewer take less time than to wake one.
+FOR_A_THREAD = 8_192
 # Poses below which lanes go along designs, where there are more of those.
 FEW_POSES = 12
 
@@ -42,7 +44,7 @@ class PlannedCode:
 
     def part(self, objects: int, shape: tuple[int, int], *bounds: int, sums: int | None = None, last: int = 1) -> int:
         """Run some designs and segments; answer 0, or why not."""
-        return self.run(objects, self.scratch(), *shape, *bounds, sums, last)  # type: ignore[no-any-return]
+        return self.run(objects, self.scratch(), *shape, *bounds, sums, last, segment_length(shape[1]))  # type: ignore[no-any-return]
 
 
 class LlvmRunner:
@@ -93,7 +95,8 @@ class LlvmRunner:
 def _done(code: PlannedCode, objects: int, shape: tuple[int, int], threads: int) -> int:
     """Run all designs and poses, in so many threads."""
     designs, poses = shape
-    length = segment_length(code.plan, poses)
+    threads = min(threads, designs * poses // FOR_A_THREAD + 1)
+    length = segment_length(poses)
     segments = max(-(-poses // length), 1)
     if threads == 1:
         return code.part(objects, shape, 0, designs, 0, segments)

@@ -17,7 +17,7 @@ from compoundkin.programs.backends.object_cache import cached_object, keep_objec
 # What code may call of the system's library: large angles, and rounding on processors without an instruction for it.
 LIBRARY = ("sin", "cos", "floor", "ceil", "rint", "fma")
 NUMBER, PLACE = ctypes.c_ssize_t, ctypes.c_void_p
-RUN = ctypes.CFUNCTYPE(ctypes.c_int, PLACE, PLACE, NUMBER, NUMBER, NUMBER, NUMBER, NUMBER, NUMBER, PLACE, NUMBER)
+RUN = ctypes.CFUNCTYPE(ctypes.c_int, PLACE, PLACE, *[NUMBER] * 6, PLACE, NUMBER, NUMBER)
 
 
 @dataclass(frozen=True)

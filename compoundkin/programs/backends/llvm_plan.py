@@ -19,6 +19,8 @@ HEADER = 8
 ARRAY_KIND, NUMBER_KIND, ROWS_OF, TOO_LARGE = 0, 1, 2, 3
 DESIGNS_AT_ONCE, SEGMENTS = 64, 64
 ROWS_IN_CACHE, POSES_AT_MOST = 32_768, 4_096  # numbers
+# Poses: whole vectors of any machine, and fewer than make it worth while to add up once more.
+POSES_TOGETHER, SHORTEST_SEGMENT = 64, 512
 
 
 @dataclass(frozen=True)
@@ -98,14 +100,19 @@ class LanePlan:
         """Return the stratum of an array of a call."""
         return self.program.strata[(*self.inputs, *self.program.outputs)[array]]
 
-    def nodes(self, name: str) -> list[int]:
-        """Return what a section computes, in order; reductions are no operations."""
-        return [k for k, home in self.section_of.items() if home == name and not self.program.graph.reduced(k)]
+    @cached_property
+    def nodes(self) -> dict[str, list[int]]:
+        """What each section computes, in order; reductions are no operations."""
+        found: dict[str, list[int]] = {name: [] for name in SECTIONS}
+        for k, own in self.section_of.items():
+            if not self.program.graph.reduced(k):
+                found[own].append(k)
+        return found
 
     def needs(self, name: str) -> Iterator[int]:
         """Yield the nodes that a section reads."""
         graph = self.program.graph
-        for k in self.nodes(name):
+        for k in self.nodes[name]:
             yield from graph.nodes[k].operands
         yield from (k for _, k in self.sinks[name])
         if name == LOOP:
@@ -121,7 +128,7 @@ class LanePlan:
     def piece(self) -> int:
         """The number of poses whose rows are kept at a time."""
         rows = max(len(self.kept[ROWS]), 1)
-        return max(min(ROWS_IN_CACHE // rows, POSES_AT_MOST) // 64, 1) * 64
+        return max(min(ROWS_IN_CACHE // rows, POSES_AT_MOST) // POSES_TOGETHER, 1) * POSES_TOGETHER
 
     @cached_property
     def arrays(self) -> int:

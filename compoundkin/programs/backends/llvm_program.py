@@ -15,24 +15,28 @@ from compoundkin.programs.backends.llvm_plan import (
     DESIGNS_AT_ONCE,
     FIXED,
     LOOP,
+    POSES_TOGETHER,
     ROWS,
     ROWS_OF,
     SECTIONS,
     SEGMENTS,
+    SHORTEST_SEGMENT,
     TOO_LARGE,
     LanePlan,
 )
 from compoundkin.programs.backends.llvm_records import unpacking_text
 from compoundkin.programs.graph.flat_program import BY_POSE
 
-RUN = "define i32 @run(ptr %O, ptr %S, i64 %D, i64 %P, i64 %d0, i64 %d1, i64 %s0, i64 %s1, ptr %E, i64 %last) #0 {"
+# The arrays, scratch, designs and poses, which designs and segments, where their sums are, whether it is the last call
+# for these designs, poses of a segment.
+ARGUMENTS = "ptr %O, ptr %S, i64 %D, i64 %P, i64 %d0, i64 %d1, i64 %s0, i64 %s1, ptr %E, i64 %last, i64 %L"
+RUN = f"define i32 @run({ARGUMENTS}) #0 {{"
 FITS_NOT, ANGLE_TOO_LARGE = 1, 2
 
 
-def segment_length(plan: LanePlan, poses: int) -> int:
-    """Return how many poses a segment has: whole pieces, and few segments."""
-    of_pieces = SEGMENTS * plan.piece
-    return max((poses + of_pieces - 1) // of_pieces, 1) * plan.piece
+def segment_length(poses: int) -> int:
+    """Return how many poses a segment has, whoever computes it."""
+    return max(-(-poses // (SEGMENTS * POSES_TOGETHER)) * POSES_TOGETHER, SHORTEST_SEGMENT)
 
 
 def program_text(plan: LanePlan) -> str:
@@ -57,7 +61,7 @@ def program_text(plan: LanePlan) -> str:
 def _is_used(plan: LanePlan, name: str) -> bool:
     """Tell whether a section does anything."""
     sums = plan.of_sums and (name == LOOP or (name == BEFORE and plan.width > 1))
-    return bool(sums or plan.nodes(name) or plan.sinks[name])
+    return bool(sums or plan.nodes[name] or plan.sinks[name])
 
 
 class _RunText(ControlText):
@@ -117,16 +121,10 @@ class _ByPoses(_RunText):
 
     def __init__(self, plan: LanePlan) -> None:
         super().__init__(plan)
-        of_pieces = SEGMENTS * plan.piece
-        pieces = self.whole("sdiv", self.whole("add", "%P", of_pieces - 1), of_pieces)
-        self.length = self.whole("mul", self._at_least_one(pieces), plan.piece)
-        segments = self.whole("sdiv", self.whole("sub", self.whole("add", "%P", self.length), 1), self.length)
-        self.segments = self._at_least_one(segments)
+        segments = self.whole("sdiv", self.whole("sub", self.whole("add", "%P", "%L"), 1), "%L")
+        self.segments = self.put(f"call i64 @llvm.smax.i64(i64 {segments}, i64 1)")
         own = self.put("icmp eq ptr %E, null")
         self.sums = self.put(f"select i1 {own}, ptr {self.words('%S', plan.at_sums)}, ptr %E")
-
-    def _at_least_one(self, number: str) -> str:
-        return self.put(f"call i64 @llvm.smax.i64(i64 {number}, i64 1)")
 
     def place(self, chunk: str, design: str, segment: str | int) -> tuple[str, str]:
         """Write where what a design fixes is, and its accumulators of a segment."""
@@ -144,8 +142,8 @@ class _ByPoses(_RunText):
 
     def segment(self, chunk: str, end: str, s: str) -> None:
         """Write the poses of a segment, for all designs of the chunk."""
-        first = self.whole("mul", s, self.length)
-        last = self.least(self.whole("add", first, self.length), "%P")
+        first = self.whole("mul", s, "%L")
+        last = self.least(self.whole("add", first, "%L"), "%P")
         with self.steps(first, last, self.plan.piece) as p:
             p_end = self.least(self.whole("add", p, self.plan.piece), last)
             self.rows(p, p_end)

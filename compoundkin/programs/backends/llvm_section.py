@@ -128,7 +128,7 @@ class LaneSection:
         sinks: dict[int, list[int]] = {}
         for array, k in self.plan.sinks[self.name]:
             sinks.setdefault(k, []).append(array)
-        for k in self.plan.nodes(self.name):
+        for k in self.plan.nodes[self.name]:
             self._compute(k)
             self._keep(k)
             for array in sinks.pop(k, ()):
