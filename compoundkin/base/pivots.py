@@ -16,9 +16,9 @@ CRAMER = 3
 class Elimination:
     """The solution of square systems whose matrix is given by rows.
 
-    Entries are numbers of any kind. Python's own are known: they are the first pivots, and zeros among them cost nothing. The
-    other pivots are found by comparison of magnitudes. All is worked through again for each right-hand side: where numbers record,
-    what is the same is recorded once.
+    Entries are numbers of any kind. Python's own are known: they are the first pivots, and zeros among them cost
+    nothing. The other pivots are found by comparison of magnitudes. All is worked through again for each right-hand
+    side: where numbers record, what is the same is recorded once.
 
     >>> halves = Elimination([{0: 2.0}, {1: 4.0, 3: 1.0}, {2: 8.0}, {0: 1.0, 3: np.array([1.0, 2.0])}], 4)
     >>> [np.round(x, 6).tolist() for x in halves.times([2.0, 4.0, 8.0, 3.0])]

@@ -104,9 +104,9 @@ class SolvingOrder(PrintsShort):
         assert solver is not None
         return self._solved_by((*self.solvers[:k], solver, *self.solvers[k + 1 :]))
 
-    def from_states(self) -> SolvingOrder:
+    def from_states(self, steps: int = 0) -> SolvingOrder:
         """Return it with groups that are searched or followed closed from their states instead."""
-        return self._solved_by(tuple(solver.from_state() or solver for solver in self.solvers))
+        return self._solved_by(tuple(solver.from_state(steps) or solver for solver in self.solvers))
 
     def _solved_by(self, solvers: tuple[GroupSolver, ...]) -> SolvingOrder:
         other = copy(self)

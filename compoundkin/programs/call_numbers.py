@@ -19,7 +19,7 @@ from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import INPUT
-from compoundkin.programs.recording.input_kinds import DRIVE
+from compoundkin.programs.recording.input_kinds import DRIVE, SEED, STEP
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,17 @@ class CallNumbers:
     @property
     def form(self) -> Any:
         """What a program depends on: which rates are zero, and how each input varies."""
-        return self.still, tuple(_stratum(array) for array in self.given.values())
+        return self.still, self.marches, tuple(_stratum(array) for array in self.given.values())
+
+    @property
+    def marches(self) -> bool:
+        """Whether states are carried along the motion: the drivers' steps are told."""
+        return any(one.part == STEP for one in self.given)
+
+    @property
+    def is_seeded(self) -> bool:
+        """Whether something of it was found by solving."""
+        return any(one.kind == SEED for one in self.given)
 
     def strata(self, graph: OperationGraph) -> dict[InputNumber, int]:
         """Return how each input varies; what is found outside varies by both."""
@@ -63,7 +73,8 @@ class CallNumbers:
 
     def arrays(self, flat: FlatProgram) -> list[Any]:
         """Return the arrays that a program reads."""
-        return [self.given[flat.graph.nodes[k].given] for k in flat.inputs]  # type: ignore[index]
+        begun = {one.given for one in flat.carried}
+        return [None if k in begun else self.given[flat.graph.nodes[k].given] for k in flat.inputs]  # type: ignore[index]
 
 
 def _stratum(array: Number) -> int:

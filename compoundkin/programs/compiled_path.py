@@ -16,6 +16,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.call_numbers import CallNumbers, call_numbers
+from compoundkin.programs.call_seeds import with_seeds
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
@@ -30,6 +31,7 @@ from compoundkin.programs.jax_path import JaxPath, jax_path
 from compoundkin.programs.limit_look import LimitPrograms
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
+from compoundkin.programs.recording.recorded_march import STEPS
 from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
 from compoundkin.programs.settled_values import settled_values
@@ -138,7 +140,8 @@ class CompiledPath(WritesSources, PrintsShort):
     ) -> CallNumbers:
         """Return the numbers of a call; raises InvalidInput for what does not fit."""
         rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk}
-        return call_numbers(self.reference.solving_order, self.stated, self.dimensions, values, dimensions, rates)
+        order = self.reference.solving_order
+        return with_seeds(self, call_numbers(order, self.stated, self.dimensions, values, dimensions, rates))
 
     @checked
     def objective(self, function: Callable[[ObjectivePose], Any]) -> PathObjective:
@@ -209,21 +212,22 @@ class CompiledPath(WritesSources, PrintsShort):
         """The configuration in which it stays."""
         return ProgramConfiguration.of(self.reference)
 
-    def solved(self, numbers: CallNumbers) -> Told:
+    def solved(self, numbers: CallNumbers, order: int | None = None) -> Told:
         """Solve the designs of some numbers instead, in its configuration."""
         mechanism = designed(self.stated, {one: one.value_in(numbers.given) for one in self.dimensions})
-        return solved_designs(mechanism, numbers, self.configuration, self.order)
+        return solved_designs(mechanism, numbers, self.configuration, self.order if order is None else order)
 
     def variant(self, still: frozenset[tuple[str, int]], is_seeded: bool = False) -> RecordedPath:
         """Return it recorded where some rates of drivers are zero, the signs of its groups perhaps as seeds."""
         if (still, is_seeded) not in self._variants:
-            recording = replace(self._recording(still), signs={}) if is_seeded else self._recording(still)
+            recording = replace(self._recording(still), signs={}, steps=0) if is_seeded else self._recording(still)
             self._variants[still, is_seeded] = RecordedPath.of(recording, self.outputs)
         return self._variants[still, is_seeded]
 
     def _recording(self, still: frozenset[tuple[str, int]] = frozenset()) -> Recording:
         own = self.reference
-        return Recording(own.solving_order, self.signs, self.dimensions, self.order, still, own.inputs.ends)
+        steps = STEPS if own.solving_order.numbered else 0
+        return Recording(own.solving_order, self.signs, self.dimensions, self.order, still, own.inputs.ends, steps)
 
     def program(self, numbers: CallNumbers) -> ReadyProgram:
         """Return the program for numbers of these forms."""

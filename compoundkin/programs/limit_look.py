@@ -24,7 +24,7 @@ from compoundkin.programs.backends import runner_of
 from compoundkin.programs.call_numbers import CallNumbers, picked
 from compoundkin.programs.graph.flat_program import flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import DRIVE
+from compoundkin.programs.recording.input_kinds import DRIVE, HOLDS
 from compoundkin.programs.recording.recorded_limits import CLOSE, NEAR, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, recorded
 
@@ -82,6 +82,11 @@ class LimitPrograms(PrintsShort):
     def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
         """Return which designs need a look, and which may change mode before their motion."""
         order = self.recording.solving_order
+        if numbers.is_seeded:
+            # solving has told how they begin; near a limit it tells the rest
+            known = numbers.given.get(HOLDS, np.ones((1, 1)))[:, 0] != 0.0
+            near = ~(known & (least.min(axis=1) >= bound(order, numbers)))
+            return np.zeros_like(near), near
         near = ~(least.min(axis=1) >= bound(order, numbers))
         way = approach_values(self.reference, self.shown, _driver_values(numbers)) if self._squares else None
         if way is None:

@@ -9,11 +9,12 @@ from functools import cached_property
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.call_numbers import CallNumbers
-from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
+from compoundkin.programs.graph.flat_program import Carried, FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.graph.operations import LEAST
-from compoundkin.programs.recording.input_kinds import SEED
+from compoundkin.programs.recording.input_kinds import SEED, SIDE
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
+from compoundkin.programs.recording.recorded_march import RecordedMarch
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recorded_outputs
@@ -25,12 +26,14 @@ class RecordedPath:
 
     mechanism: RecordedMechanism
     outputs: tuple[RecordedNumber, ...]
+    march: RecordedMarch | None = None
 
     @classmethod
     def of(cls, recording: Recording, outputs: Sequence[ProgramOutput]) -> RecordedPath:
         """Record a mechanism and outputs of it."""
         mechanism = recorded(recording)
-        return cls(mechanism, recorded_outputs(mechanism, outputs))
+        march = RecordedMarch.of(mechanism) if recording.steps else None
+        return cls(mechanism, recorded_outputs(mechanism, outputs), march)
 
     @cached_property
     def nodes(self) -> tuple[tuple[int, ...], ...]:
@@ -41,8 +44,18 @@ class RecordedPath:
     def seeds(self) -> tuple[InputNumber, ...]:
         """What it asks to be found outside."""
         graph = self.mechanism.graph
-        needed = graph.inputs([k for nodes in self.nodes for k in nodes])
-        return tuple(given for k in needed if (given := graph.nodes[k].given) and given.kind == SEED)
+        needed = graph.inputs([*(k for nodes in self.nodes for k in nodes), RecordedLimits(self.mechanism).certain.x])
+        found = (given for k in needed if (given := graph.nodes[k].given) and given.kind == SEED)
+        return tuple(given for given in found if given.part != SIDE)
+
+    @property
+    def can_march(self) -> bool:
+        """Whether all that it asks for are states that a march carries."""
+        return self.march is not None and {*self.seeds} <= {*self.march.seeds}
+
+    def carried(self, numbers: CallNumbers) -> tuple[Carried, ...]:
+        """Return the numbers that are carried along the motion."""
+        return self.march.carried if self.march and numbers.marches else ()
 
 
 @dataclass(frozen=True)
@@ -58,5 +71,6 @@ class ReadyProgram:
         """Make the program of a recorded path for numbers of some form."""
         graph = path.mechanism.graph
         least = graph.apply(LEAST, RecordedLimits(path.mechanism).certain.x)
-        flat = flat_program(graph, [*(n for each in path.nodes for n in each), least], numbers.strata(graph))
+        carried = path.carried(numbers)
+        flat = flat_program(graph, [*(n for each in path.nodes for n in each), least], numbers.strata(graph), carried)
         return cls(flat, path.nodes, runner_of(flat, backend))

@@ -39,8 +39,8 @@ def surroundings(equations: GroupEquations, block: Block) -> tuple[Number, Numbe
 def middle_of(body: Body, group: Group, ends: Mapping[str, Ends]) -> complex:
     """Return the point of a body by which its state tells where it is.
 
-    In its base's frame it is the origin, unless that lies outside the pairs on the base: then it is the midst of these. Points that are no
-    numbers, but stand for some, tell of no place.
+    In its base's frame it is the origin, unless that lies outside the pairs on the base: then it is the midst of
+    these. Points that are no numbers, but stand for some, tell of no place.
     """
     pairs = (*group.inner, *group.outer)
     sides = [(pair, side) for pair in pairs for side, name in enumerate(pair.members) if name == body.links[0]]

@@ -114,10 +114,11 @@ class GroupSolver(ABC):
         """Return the solver that follows configurations which have no sign here. It is None where there are none."""
         return None
 
-    def from_state(self) -> GroupSolver | None:
+    def from_state(self, steps: int = 0) -> GroupSolver | None:
         """Return the solver that closes it from a state nearby, in straight-line arithmetic.
 
-        Its mode is a sequence of numbers, those of `state`. It is None where a sign, or nothing, is enough.
+        Its mode is a sequence of numbers, those of `state`; a state that is only predicted takes more `steps`. It is
+        None where a sign, or nothing, is enough.
         """
         return None
 
@@ -129,6 +130,10 @@ class GroupSolver(ABC):
     def state(self, block: Block) -> Sequence[Number]:
         """Return the numbers by which an assembled group is found again, if any."""
         return ()
+
+    def side(self, block: Block, state: Sequence[Number]) -> Number:
+        """Return a number whose sign tells on which side of a singularity a numbered configuration is."""
+        raise NotImplementedError
 
     def margin(self, block: Block) -> Number | None:
         """Return how far it is from its limit position, negative beyond. It is None where it does not say."""

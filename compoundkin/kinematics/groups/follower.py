@@ -84,7 +84,7 @@ class FollowerSolver(GroupSolver):
         block.fail(closed, self.index)
         self._published(block, found, slope)
 
-    def from_state(self) -> GroupSolver:
+    def from_state(self, steps: int = 0) -> GroupSolver:
         """Return the solver that closes it from a coordinate nearby."""
         return FollowerFromState(self.index, self.group, self.size, self.mounted.lower, self.pair)
 

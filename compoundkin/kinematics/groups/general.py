@@ -150,6 +150,10 @@ class GeneralFromState(GeneralSolver):
         self.equations = GroupEquations(own.n, own.pairs, own.members, own.size)
         self.steps = NewtonSteps(self.equations, steps)
 
+    def side(self, block: Block, state: Sequence[Number]) -> Number:
+        """Return the determinant of its equations."""
+        return self.steps.closed(state, block, block.limits.leap).matrix.determinant
+
     def close(self, block: Block, mode: Sequence[Number]) -> None:
         """Correct a state, add the derivatives, and the group's links to what is known."""
         found = self.steps.closed(mode, block, block.limits.leap)

@@ -13,8 +13,9 @@ from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.group_equations import CONVERGED, GroupEquations
 
-# A last step below this (of the size, or radians) has a matrix that is exact to rounding at the pose that it leads to.
-EXACT = 1e-12
+# A last step below this (of the size, or radians) has a matrix that is exact at the pose to which it leads; rates
+# are off by some tens of times this.
+EXACT = 1e-13
 # After steps that are not known to have converged, a correction that moves farther than this may have left its branch.
 STRAY = 0.03
 
@@ -33,7 +34,8 @@ class ClosedState(NamedTuple):
 class NewtonSteps(NamedTuple):
     """So many of Newton's steps, and a last one.
 
-    The last shares its matrix with all rates. Steps before the last come from states that are only near, such as those predicted from another pose.
+    The last shares its matrix with all rates. Steps before the last come from states that are only near, such as
+    those predicted from another pose.
     """
 
     equations: GroupEquations

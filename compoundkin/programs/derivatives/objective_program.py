@@ -103,13 +103,15 @@ class ObjectiveProgram(PrintsShort):
         assembled, known = known_poses(path, names, form.known)
         outputs = {name: _masked(each, known[name]) for name, each in zip(names, path.outputs, strict=True)}
         cost = recorded_cost(form.function, graph, outputs, form.given, assembled)
+        carried = path.carried(numbers)
         root, least, strata = graph.apply(TOTAL, cost), graph.apply(LEAST, certain.x), numbers.strata(graph)
         kept = reduce(RecordedNumber.__and__, _read(graph, cost, known), assembled)
         by = {name: tuple(map(graph.input, parts)) for name, parts in form.by.items()}
         every = [k for nodes in by.values() for k in nodes]
         found = dict(zip(every, reverse(graph, root, every, strata, kept.x), strict=True))
         slopes = {name: tuple(found[k] for k in nodes) for name, nodes in by.items()}
-        flat = flat_program(graph, [root, least, *(k for nodes in slopes.values() for k in nodes)], strata)
+        wanted = [root, least, *(k for nodes in slopes.values() for k in nodes)]
+        flat = flat_program(graph, wanted, strata, carried)
         return cls(flat, runner_of(flat, backend), slopes)
 
     def run(self, numbers: CallNumbers, threads: int) -> ObjectiveValues:

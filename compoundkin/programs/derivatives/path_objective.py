@@ -95,17 +95,14 @@ class PathObjective(PrintsShort):
         whole, complex_names = with_parameters(numbers, given)
         run, path = partial(self._run, complex_names, is_sloped, threads), self.path
         every = np.arange(whole.extent[0])
-        if path.variant(whole.still).seeds:
-            parts, handed = [], every
-        else:
-            found = run(whole, EVERYWHERE)
-            look = path.limits.doubtful(whole, found.least)
-            if look is None:
-                return found.shaped(whole.shape)
-            parts, handed = [(every, found)], look.handed
-            if len(look.lost):
-                parts.append((look.lost, run(picked(whole, look.lost), ASSEMBLED)))
-        parts += [(part, run(told, SOLVED)) for part, told in told_designs(path, whole, handed)]
+        found = run(whole, EVERYWHERE)
+        look = path.limits.doubtful(whole, found.least)
+        if look is None:
+            return found.shaped(whole.shape)
+        parts = [(every, found)]
+        if len(look.lost):
+            parts.append((look.lost, run(picked(whole, look.lost), ASSEMBLED)))
+        parts += [(part, run(told, SOLVED)) for part, told in told_designs(path, whole, look.handed)]
         joined = ObjectiveValues.joined(len(every), parts)
         missing = int(np.count_nonzero(np.isnan(joined.value)))
         if missing:

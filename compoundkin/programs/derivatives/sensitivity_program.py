@@ -61,7 +61,8 @@ class SensitivityProgram(PrintsShort):
             found = dict(zip(wanted, forward(graph, wanted, {graph.input(given): 1.0}), strict=True))
             nodes |= {(name, word): tuple(found[k] for k in parts) for name, parts in outputs.items()}
         nodes[_MARGIN] = (graph.apply(LEAST, RecordedLimits(path.mechanism).certain.x),)
-        flat = flat_program(graph, [k for parts in nodes.values() for k in parts], numbers.strata(graph))
+        every, carried = [k for parts in nodes.values() for k in parts], path.carried(numbers)
+        flat = flat_program(graph, every, numbers.strata(graph), carried)
         return cls(flat, runner_of(flat, backend), nodes)
 
     def run(self, numbers: CallNumbers, threads: int) -> dict[Wanted, Number]:

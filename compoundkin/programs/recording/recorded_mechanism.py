@@ -27,7 +27,7 @@ class Recording:
 
     `signs` are those of the groups by index. `free` are the dimensions that are inputs, `still` the drivers' rates,
     (driver, order), that are zero and cost nothing. `ends` are the sides of pairs in its
-    own motion.
+    own motion. Where states of groups are only predicted, so many `steps` correct them before the last.
     """
 
     solving_order: SolvingOrder
@@ -36,6 +36,7 @@ class Recording:
     order: int = 2
     still: Collection[tuple[str, int]] = ()
     ends: Mapping[str, Ends] | None = None
+    steps: int = 0
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,7 +64,7 @@ def recorded(recording: Recording) -> RecordedMechanism:
     graph, order = OperationGraph(), recording.solving_order
     geometry = recorded_geometry(graph, order.structure.mechanism.geometry, recording.free)
     ends = recorded_ends(graph, order, geometry, recording.free, recording.ends or order.ends)
-    bound = seeded_order(order, ends, graph, recording.order)
+    bound = seeded_order(order, ends, graph, recording.order, recording.steps)
     drives = {drive.name: _driver(graph, drive.name, recording) for drive in order.structure.mechanism.drives}
     notes: dict[int, list[Series]] = {solver.index: [] for solver in order.solvers if solver.modes_may_meet}
     block = RecordedBlock.of(bound.start(bound.ends, drives, recording.order, (1, 1)))

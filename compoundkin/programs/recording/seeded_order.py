@@ -19,7 +19,9 @@ from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.parts import Group
 
 
-def seeded_order(order: SolvingOrder, ends: Mapping[str, Ends], graph: OperationGraph, highest: int) -> SolvingOrder:
+def seeded_order(
+    order: SolvingOrder, ends: Mapping[str, Ends], graph: OperationGraph, highest: int, steps: int = 0
+) -> SolvingOrder:
     """Return a solving order on other ends, its searches replaced by seeds.
 
     It is run for derivatives up to the highest.
@@ -29,7 +31,7 @@ def seeded_order(order: SolvingOrder, ends: Mapping[str, Ends], graph: Operation
         # a group that has signs else, but is in a configuration that has none
         if solver.is_numbered and not found.solvers[solver.index].is_numbered:
             found = found.following(solver.index)
-    return found.from_states()
+    return found.from_states(steps)
 
 
 def _with_local_profiles(structure: Structure, graph: OperationGraph, highest: int) -> Structure:
