@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,40 +12,40 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import DRIVE, HOLDS, STEP, start_of
 from compoundkin.programs.recording.recorded_march import side_of
 from compoundkin.programs.seed_values import seed_values
-from compoundkin.programs.solved_designs import solved_parts
-
-if TYPE_CHECKING:
-    from compoundkin.programs.compiled_path import CompiledPath
+from compoundkin.programs.solved_designs import Solving, solved_parts
 
 # Without compiled code a march of fewer designs than these takes longer than solving them.
 FEW = 32
 
 
-def with_seeds(path: CompiledPath, numbers: CallNumbers) -> CallNumbers:
-    """Return the numbers of a call with the seeds that its program needs."""
-    variant = path.variant(numbers.still)
-    if not variant.seeds:
+def with_seeds(path: RecordedPath, numbers: CallNumbers, by: Solving, backend: str | None) -> CallNumbers:
+    """Return the numbers of a call with the seeds that its program needs. Designs are solved `by` what is given."""
+    if not path.seeds:
         return numbers
     designs, poses = numbers.extent
-    is_quick = designs >= FEW or chosen_back_end(path.chosen_backend) != "numpy"
-    if not (variant.can_march and poses > 1 and is_quick):
-        sides = {side_of(solver): np.zeros((1, 1)) for solver in (variant.march.solvers if variant.march else ())}
-        return replace(numbers, given={**numbers.given, **_found(path, numbers, variant.seeds), **sides})
+    is_quick = designs >= FEW or chosen_back_end(backend) != "numpy"
+    signs = path.mechanism.recording.signs
+    if not (path.can_march and poses > 1 and is_quick):
+        sides = {side_of(solver): np.zeros((1, 1)) for solver in (path.march.solvers if path.march else ())}
+        return replace(numbers, given={**numbers.given, **_found(path.seeds, numbers, by, signs), **sides})
     found = {start_of(one) if one != HOLDS else one: value
-             for one, value in _found(path, _first_poses(numbers), variant.seeds).items()}  # fmt: skip
+             for one, value in _found(path.seeds, _first_poses(numbers), by, signs).items()}  # fmt: skip
     return replace(numbers, given={**numbers.given, **found, **_steps(numbers)})
 
 
-def _found(path: CompiledPath, numbers: CallNumbers, seeds: tuple[InputNumber, ...]) -> dict[InputNumber, Number]:
+def _found(
+    seeds: tuple[InputNumber, ...], numbers: CallNumbers, by: Solving, signs: Mapping[int, int]
+) -> dict[InputNumber, Number]:
     """Return seeds and whether they hold, read off the motions of all designs."""
     found = {one: np.full(numbers.extent, np.nan) for one in seeds}
     holds = np.zeros((numbers.extent[0], 1))
-    for designs, told in solved_parts(partial(path.solved, order=0), numbers, np.arange(numbers.extent[0])):
+    for designs, told in solved_parts(by, numbers, np.arange(numbers.extent[0])):
         if told:
-            holds[designs, 0] = _in_configuration(told.motion, path.signs)
+            holds[designs, 0] = _in_configuration(told.motion, signs)
             for one, value in seed_values(seeds, told.motion).items():
                 found[one][designs] = value
     return {**found, HOLDS: holds}

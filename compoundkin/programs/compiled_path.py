@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from compoundkin.base.arguments import checked
@@ -141,7 +141,8 @@ class CompiledPath(WritesSources, PrintsShort):
         """Return the numbers of a call; raises InvalidInput for what does not fit."""
         rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk}
         order = self.reference.solving_order
-        return with_seeds(self, call_numbers(order, self.stated, self.dimensions, values, dimensions, rates))
+        numbers = call_numbers(order, self.stated, self.dimensions, values, dimensions, rates)
+        return with_seeds(self.variant(numbers.still), numbers, partial(self.solved, order=0), self.chosen_backend)
 
     @checked
     def objective(self, function: Callable[[ObjectivePose], Any]) -> PathObjective:

@@ -132,7 +132,7 @@ class GroupSolver(ABC):
         return ()
 
     def side(self, block: Block, state: Sequence[Number]) -> Number:
-        """Return a number whose sign tells on which side of a singularity a numbered configuration is."""
+        """Return a number whose sign changes across a singularity."""
         raise NotImplementedError
 
     def margin(self, block: Block) -> Number | None:
