@@ -155,7 +155,7 @@ def _joined(parts: tuple[Any, ...]) -> Any:
 
 
 def continuous(angle: Any) -> Any:
-    """Return an angle made continuous along the last axis, over poses that are not assembled too."""
+    """Return an angle continuous along the last axis, over poses not assembled too."""
     import jax.numpy as jnp
     from jax import lax
 
