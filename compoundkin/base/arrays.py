@@ -137,8 +137,11 @@ def unwrapped(angle: Number) -> Number:
     """
     if np.ndim(angle) == 0 or np.shape(angle)[-1] < 2:
         return angle
-    if not np.isnan(angle).any():
-        return np.unwrap(angle)
+    turns = np.rint((angle[..., 1:] - angle[..., :-1]) * (0.5 / np.pi))
+    if not turns.any():
+        return angle
+    if not np.isnan(turns).any():
+        return np.concatenate([angle[..., :1], angle[..., 1:] - 2.0 * np.pi * np.cumsum(turns, axis=-1)], axis=-1)
     rows = np.array(angle).reshape(-1, np.shape(angle)[-1])
     for row in rows:
         known = ~np.isnan(row)

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from math import prod
 from typing import TypeVar
 
 import numpy as np
 
+from compoundkin.base.buffers import arrays_of_one_buffer, keep_freed_memory
 from compoundkin.base.series import Number
 from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.graph.flat_program import FlatProgram
 
 Name = TypeVar("Name")
+# Numbers in all: where memory comes from the system and not from what lies at hand.
+LARGE = 8192
 
 
 def results(
@@ -22,13 +26,12 @@ def results(
 
     Two nodes are the parts of a planar vector.
     """
-    found: dict[Name, Number] = {}
     rows: list[Number] = []
     narrow: list[tuple[Number, Number]] = []
-    for name, parts in nodes.items():
-        shapes = [flat.shape(k, *numbers.extent) for k in parts]
-        whole = found[name] = np.empty(np.broadcast_shapes(*shapes), complex if len(parts) > 1 else float)
-        for shape, part in zip(shapes, (whole.real, whole.imag), strict=False):
+    shapes = {name: [flat.shape(k, *numbers.extent) for k in parts] for name, parts in nodes.items()}
+    found = dict(zip(nodes, _empty([np.broadcast_shapes(*each) for each in shapes.values()], nodes), strict=True))
+    for name, whole in found.items():
+        for shape, part in zip(shapes[name], (whole.real, whole.imag), strict=False):
             rows.append(part if shape == whole.shape else np.empty(shape))
             if shape != whole.shape:
                 narrow.append((part, rows[-1]))
@@ -36,3 +39,12 @@ def results(
     for part, row in narrow:
         part[...] = row
     return found
+
+
+def _empty(shapes: Sequence[tuple[int, ...]], nodes: Mapping[Name, tuple[int, ...]]) -> Sequence[Number]:
+    """Return arrays to be filled; large ones lie in one piece of memory, which is had sooner than several."""
+    kinds = [np.dtype(complex if len(parts) > 1 else float) for parts in nodes.values()]
+    if sum(prod(shape) for shape in shapes) < LARGE:
+        return [np.empty(shape, kind) for shape, kind in zip(shapes, kinds, strict=True)]
+    keep_freed_memory()
+    return arrays_of_one_buffer(zip(shapes, kinds, strict=True))
