@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compoundkin.base.series import Number
@@ -112,7 +112,8 @@ def test_operations_and_random_graphs_are_those_of_the_tape(language: str, tmp_p
         assert_alike(found, by_tape(program, table))
 
 
-@given(st.lists(st.text(max_size=60), min_size=1, max_size=6))
+@settings(max_examples=12)
+@given(st.lists(st.text(max_size=50), min_size=1, max_size=5))
 def test_names_are_taken_by_every_language_and_no_two_are_alike(given: list[str]) -> None:
     names = Identifiers()
     found = [names.take(name) for name in given]

@@ -49,8 +49,8 @@ def _head(program: WrittenProgram) -> Iterator[str]:
     yield from ("#ifdef __cplusplus", 'extern "C" {', "#endif", "")
     yield from _structure(f"{name}_inputs", [f"double {one.name};" for one in program.arguments])
     yield from _structure(f"{name}_outputs", ["int assembled;", *(f"double {one.name};" for one in program.results)])
-    yield "/* The inputs as the mechanism has them, for an initialiser; drivers are at zero. */"
-    own = ", ".join("0.0" if one.own is None else _number(one.own).text for one in program.arguments)
+    yield "/* The inputs as the mechanism has them, for an initialiser; drivers as its own motion begins. */"
+    own = ", ".join(_number(one.start).text for one in program.arguments)
     yield from (f"#define {guard}_OWN {{{own or '0.0'}}}", "")
     yield f"int {name}(const {name}_inputs *in, {name}_outputs *out);"
 

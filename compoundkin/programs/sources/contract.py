@@ -16,7 +16,7 @@ class Argument:
     """A number that a program is given.
 
     It has a name there, a meaning and a unit. `own` is the number that the mechanism itself has;
-    who calls the program may leave it out where there is one.
+    who calls the program may leave it out where there is one. `start` is that of its own motion's first pose.
     """
 
     given: InputNumber
@@ -24,6 +24,7 @@ class Argument:
     meaning: str
     unit: str = ""
     own: float | None = None
+    start: float = 0.0
 
 
 @dataclass(frozen=True)

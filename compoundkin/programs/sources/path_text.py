@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import reduce
 from typing import Any, Protocol
 
@@ -17,11 +18,13 @@ from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.ready_program import RecordedPath
-from compoundkin.programs.recording.input_kinds import DRIVE, SEED, TURNS
+from compoundkin.programs.recording.input_kinds import DRIVE
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_motion import RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput
+from compoundkin.programs.seed_values import seed_values
+from compoundkin.programs.sources.carried_states import CarriedState, carried_states, followed, stay_near
 from compoundkin.programs.sources.contract import Argument, Result, WrittenProgram
 from compoundkin.programs.sources.identifiers import Identifiers, identifier
 from compoundkin.programs.sources.told_configuration import notes
@@ -53,18 +56,29 @@ def written_program(path: PathToWrite, name: str = "") -> WrittenProgram:
         what = "its dimensions are arrays, and a text is of one mechanism"
         raise InvalidInput(Problem(title, what, "give one number for each"))
     _of_one_configuration(motion)
-    goods = (mechanism.number(good) for _, good in mechanism.block.goods)
-    assembled = reduce(RecordedNumber.__and__, goods, mechanism.number(True)).x
+    wanted = {n for nodes in recorded.nodes for n in nodes} | {_assembled(mechanism, ())}
+    states = carried_states(mechanism, wanted)
+    assembled, called = _assembled(mechanism, states), _called(mechanism)
+    after = followed(mechanism.graph, states, {*wanted, assembled, *called})
+    results = (*_outputs(path, recorded), *(_next(one) for one in states))
+    names = Identifiers()
     return WrittenProgram(
         identifier(name or title).lower(),
         title,
         mechanism.graph,
-        tuple(_arguments(path, mechanism, (assembled, *(n for nodes in recorded.nodes for n in nodes)))),
-        tuple(_results(path, recorded)),
-        assembled,
-        tuple(notes(motion, mechanism.recording.order)),
-        _called(mechanism),
+        tuple(_arguments(path, mechanism, states)),
+        tuple(replace(one, node=after[one.node], name=names.take(one.name)) for one in results),
+        after[assembled],
+        tuple(notes(motion, mechanism.recording.order, bool(states))),
+        {after[k]: word for k, word in called.items()},
     )
+
+
+def _assembled(mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> int:
+    """The node of whether all groups close, and states are followed."""
+    goods = (mechanism.number(good) for _, good in mechanism.block.goods)
+    near = stay_near(states, mechanism.order.size)
+    return reduce(RecordedNumber.__and__, (*goods, *near), mechanism.number(True)).x
 
 
 def _of_one_configuration(motion: Motion) -> None:
@@ -77,47 +91,46 @@ def _of_one_configuration(motion: Motion) -> None:
             raise InvalidInput(Problem(where, what, "compile it with values that lie between two change points"))
 
 
-def _arguments(path: PathToWrite, mechanism: RecordedMechanism, wanted: tuple[int, ...]) -> Iterator[Argument]:
-    """Yield drivers with their rates, free dimensions, and what is found outside."""
-    names, own = Identifiers(), path.numbers(None, None, None, None, None).given
-    drivers, graph = path.reference.structure.driven_angles, mechanism.graph
-    unit = path.reference.mechanism.unit
+def _arguments(path: PathToWrite, mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> Iterator[Argument]:
+    """Yield drivers with their rates, free dimensions, and states; the motion's first assembled pose is their own."""
+    names, own, motion = Identifiers(), path.numbers(None, None, None, None, None).given, path.reference
+    first = int(np.argmax(motion.failed[0] == 0))
     for name in mechanism.drives:
+        dimension = coordinate_dimension(motion.structure.driven_angles[name])
         for k in range(mechanism.recording.order + 1):
             given = InputNumber(DRIVE, name, str(k))
             called = f"{name}.{RATES[k - 1]}" if k else name
             meaning = f"driver {name}, its {RATES[k - 1]}" if k else f"driver {name}"
-            value = float(own[given].flat[0]) if k else None
-            told = unit_of(unit, coordinate_dimension(drivers[name]), k)
-            yield Argument(given, names.take(called), meaning, told, value)
+            values = own[given][0]
+            unit = unit_of(motion.mechanism.unit, dimension, k)
+            start = float(values[first if len(values) > 1 else 0])
+            yield Argument(given, names.take(called), meaning, unit, start if k else None, start)
     for one in path.dimensions:
         for given in one.inputs:
             word = f"{given.name}.{given.part}" if given.part else given.name
             value = float(own[given].flat[0])
-            yield Argument(given, names.take(word), f"dimension {word}", path.stated.unit(one), value)
-    for k in graph.inputs(wanted):
-        seed = graph.nodes[k].given
-        if seed is not None and seed.kind == SEED:
-            yield _outside(seed, names)
+            yield Argument(given, names.take(word), f"dimension {word}", path.stated.unit(one), value, value)
+    seeds = seed_values([state.given for state in states], motion)
+    for state in states:
+        value = float(seeds[state.given][0, first])
+        told = _next(state)
+        yield Argument(state.given, names.take(told.name), f"{state.meaning}, before", told.unit, value, value)
 
 
-def _outside(one: InputNumber, names: Identifiers) -> Argument:
-    """What is found outside: the angle about which a link has one that is counted over full turns."""
-    if one.part != TURNS:
-        what = "no text can find it: it is followed from pose to pose"
-        raise InvalidInput(Problem(one.name, what, "solve the mechanism, or call the compiled path"))
-    meaning = f"about which angle {one.name} has, within half a turn: that of the pose before"
-    return Argument(one, names.take(f"{one.name}.before"), meaning, unit_of("", "angle"))
+def _next(state: CarriedState) -> Result:
+    """A state as a result."""
+    unit = unit_of("", "angle") if state.is_angle else ""
+    return Result(state.now.x, f"state.{state.name}", state.meaning, unit)
 
 
-def _results(path: PathToWrite, recorded: RecordedPath) -> Iterator[Result]:
-    names, motion = Identifiers(), RecordedMotion(recorded.mechanism)
+def _outputs(path: PathToWrite, recorded: RecordedPath) -> Iterator[Result]:
+    motion = RecordedMotion(recorded.mechanism)
     for output, nodes in zip(path.outputs, recorded.nodes, strict=True):
         unit, turns = quantity(motion, output.name).unit, ", from -pi to pi" if output.is_wrapped else ""
         parts = ("x", "y") if len(nodes) > 1 else ("",)
         for node, part in zip(nodes, parts, strict=True):
             word = f"{output.name}.{part}" if part else output.name
-            yield Result(node, names.take(word), f"{word}{turns}", unit)
+            yield Result(node, word, f"{word}{turns}", unit)
 
 
 def _called(mechanism: RecordedMechanism) -> Mapping[int, str]:

@@ -14,12 +14,19 @@ from compoundkin.model.attributes import coordinate_dimension, unit_of
 MOST = 6
 
 
-def notes(motion: Motion, order: int) -> Iterator[str]:
+def notes(motion: Motion, order: int, has_states: bool = False) -> Iterator[str]:
     """Yield paragraphs on a motion whose configuration a program keeps."""
     signed = [(mode.links, mode.sign) for mode in motion.modes.values() if mode.sign is not None]
     told = "; ".join(f"{', '.join(links)}: {sign:+d}" for links, sign in signed)
     yield f"Assembly modes, which it keeps: {told}." if told else "It has one assembly mode."
     yield f"With the dimensions of the mechanism it can be assembled {_where(motion)}."
+    if has_states:
+        first = np.arange(motion.failed.size) == np.argmax(np.ravel(motion.assembled))
+        begin = ", ".join(_stretch(motion, name, first) for name in motion.drives)
+        yield (
+            "It goes from pose to pose: what is called state is given as it was at the pose before, and answered as "
+            f"it is. Begin with the numbers told above, which are those at {begin}; take steps of a few degrees."
+        )
     if order:
         yield "At a limit position, where it can just be assembled, rates are no finite numbers or have no digits."
 
