@@ -53,7 +53,7 @@ class LlvmRunner:
     def __init__(self, program: FlatProgram) -> None:
         self.program = program
         self._codes: dict[Any, PlannedCode] = {}
-        self._recent: dict[int, PlannedCode] = {}
+        self._recent: dict[tuple[int, bool], PlannedCode] = {}
         carried = {one.given for one in program.carried}
         self._given = [i for i, k in enumerate(program.inputs) if k not in carried]
 
@@ -64,31 +64,32 @@ class LlvmRunner:
         designs, poses = shape
         by_designs = designs > 1 and poses < FEW_POSES and poses < designs
         axis = BY_DESIGN if by_designs or self.program.carried else BY_POSE
-        code = self._recent.get(axis)
+        way = (axis, designs == 1 and axis == BY_POSE)
+        code = self._recent.get(way)
         answer = FITS_NOT
         arrays = (*inputs, *outputs)
         if code is not None and RECORDS_ARE_KNOWN and len(arrays) == code.plan.arrays:
             answer = _done(code, id(arrays) + FIRST, shape, threads)
         if answer:
-            self._other_way(answer, axis, (inputs, outputs), shape, threads)
+            self._other_way(answer, way, (inputs, outputs), shape, threads)
 
-    def _other_way(self, answer: int, axis: int, arrays: Any, shape: tuple[int, int], threads: int) -> None:
+    def _other_way(self, answer: int, way: tuple[int, bool], arrays: Any, shape: tuple[int, int], threads: int) -> None:
         """Run the code that suits the arrays, or the angles."""
         program = self.program
         inputs, outputs = arrays
         arrays, objects, _kept = recorded_arrays(program, self._given, inputs, outputs, shape)
-        layout = layout_of(program, self._given, arrays, axis)
+        layout = layout_of(program, self._given, arrays, way[0])
         if answer == FITS_NOT:
-            code = self._recent[axis] = self._code(axis, layout, False)
+            code = self._recent[way] = self._code(way, layout, False)
             answer = _done(code, objects, shape, threads)
         if answer == ANGLE_TOO_LARGE:
-            answer = _done(self._code(axis, layout, True), objects, shape, threads)
+            answer = _done(self._code(way, layout, True), objects, shape, threads)
         assert not answer
 
-    def _code(self, axis: int, layout: Any, wide: bool) -> PlannedCode:
-        key = (axis, layout, wide)
+    def _code(self, way: tuple[int, bool], layout: Any, wide: bool) -> PlannedCode:
+        key = (way, layout, wide)
         if key not in self._codes:
-            self._codes[key] = PlannedCode(LanePlan(self.program, axis, layout, target()[0], wide))
+            self._codes[key] = PlannedCode(LanePlan(self.program, way[0], layout, target()[0], wide, way[1]))
         return self._codes[key]
 
 

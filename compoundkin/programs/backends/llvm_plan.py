@@ -50,7 +50,7 @@ def home(program: FlatProgram, node: int) -> str:
 class LanePlan:
     """A program with the axis of its lanes, and where each value is kept.
 
-    `wide` programs ask the system's library for sines and cosines, whatever the angle.
+    `wide` programs ask the system's library for sines and cosines, whatever the angle; `is_single` ones have one design.
     """
 
     program: FlatProgram
@@ -58,20 +58,27 @@ class LanePlan:
     layout: ArrayLayout
     machine: Machine
     wide: bool = False
+    is_single: bool = False
 
     @cached_property
     def section_of(self) -> dict[int, str]:
         """The section that computes each node; reductions are complete after the loop."""
         program = self.program
-        found = {k: OF_STRATUM[program.strata[k]] for k in (*program.before, *program.by_pose, *program.loop)}
+        found = {k: self._home(k) for k in (*program.before, *program.by_pose, *program.loop)}
         return found | dict.fromkeys(program.after, AFTER) | dict.fromkeys(self.reductions, LOOP)
+
+    def _home(self, node: int) -> str:
+        """Return the section after which a value is known."""
+        # rows of a single design are part of its loop
+        found = home(self.program, node)
+        return LOOP if self.is_single and found == ROWS else found
 
     @cached_property
     def sinks(self) -> dict[str, list[tuple[int, int]]]:
         """The arrays that each section writes, with their nodes."""
         found: dict[str, list[tuple[int, int]]] = {name: [] for name in SECTIONS}
         for i, k in enumerate(self.program.outputs):
-            found[home(self.program, k)].append((len(self.inputs) + i, k))
+            found[self._home(k)].append((len(self.inputs) + i, k))
         return found
 
     @cached_property
