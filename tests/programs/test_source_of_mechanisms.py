@@ -76,6 +76,9 @@ def case(name: str) -> Case:
             drive = found.drives[one.name]
             rows.append(at((drive.value, drive.rate, drive.second)[int(one.part)]))
         else:
+            if one.part == "side":
+                rows.append(np.zeros(len(chosen)))
+                continue
             state = seed_values([one], found)[one][0]
             rows.append(at(np.append(state[0], state[:-1])))  # of the pose before
     wanted = [one for output in path.outputs for one in ck.quantity(found, output.name).components]

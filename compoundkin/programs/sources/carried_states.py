@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.model.attributes import ANGLE
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.recording.input_kinds import SEED, TURNS, group_seed
+from compoundkin.programs.recording.recorded_march import side_of, state_seeds
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
@@ -22,38 +24,55 @@ LEAP = 0.5
 class CarriedState:
     """A number that is given as it was at the pose before, and answered.
 
-    `is_corrected` where Newton's steps lead to it.
+    `kept` is the truth that it does not leap. It `is_corrected` where Newton's steps lead to it.
     """
 
     given: InputNumber
     now: RecordedNumber
     name: str
     meaning: str
-    is_angle: bool
-    is_corrected: bool
+    is_angle: bool = False
+    is_corrected: bool = False
+    kept: RecordedNumber | None = None
 
 
 def carried_states(mechanism: RecordedMechanism, wanted: Collection[int]) -> tuple[CarriedState, ...]:
     """Return what some nodes depend on from the pose before. Raises InvalidInput for what no text can find."""
     graph = mechanism.graph
-    given = (graph.nodes[k].given for k in graph.inputs(wanted))
-    return tuple(_state(mechanism, one) for one in given if one is not None and one.kind == SEED)
+    inputs = (graph.nodes[k].given for k in graph.inputs(wanted))
+    given = [one for one in inputs if one is not None and one.kind == SEED]
+    states = [_state(mechanism, one) for one in given]
+    groups = {one.name for one, state in zip(given, states, strict=True) if state.is_corrected}
+    solvers = [solver for solver in mechanism.order.solvers if group_seed(solver.index) in groups]
+    return (*states, *(_side(mechanism, solver) for solver in solvers))
 
 
 def _state(mechanism: RecordedMechanism, given: InputNumber) -> CarriedState:
     if given.part == TURNS:
         angle = mechanism.number(mechanism.block.world[given.name].angle.c[0])
-        return CarriedState(
-            given, angle, f"{given.name}.{ANGLE}", f"angle of {given.name}, full turns too", True, False
-        )
+        what = f"angle of {given.name}, full turns too"
+        return CarriedState(given, angle, f"{given.name}.{ANGLE}", what, is_angle=True)
     for solver in mechanism.order.solvers:
         if given.name == group_seed(solver.index) and solver.width:
-            k, links = int(given.part), ", ".join(solver.group.links)
+            k = int(given.part)
             now = mechanism.number(solver.state(mechanism.block)[k])
-            what = f"number {k + 1} of the state of {links}"
-            return CarriedState(given, now, f"{solver.index + 1}.{k + 1}", what, k % 3 == 2, True)
+            is_angle = k % 3 == 2
+            far = LEAP * (1.0 if is_angle else mechanism.order.size)
+            kept = abs(now - RecordedNumber.given(mechanism.graph, given)) <= far
+            what = f"number {k + 1} of the state of {', '.join(solver.group.links)}"
+            return CarriedState(given, now, f"{solver.index + 1}.{k + 1}", what, is_angle, True, kept)
     what = "its contact with a profile is searched, which no text does"
     raise InvalidInput(Problem(given.name, what, "solve the mechanism, or call the compiled path"))
+
+
+def _side(mechanism: RecordedMechanism, solver: GroupSolver) -> CarriedState:
+    """On which side of a singularity a group is: it cannot pass to the other."""
+    given = side_of(solver)
+    state = [RecordedNumber.given(mechanism.graph, one) for one in state_seeds(solver)]
+    now = mechanism.number(solver.side(mechanism.block, state))
+    kept = now * RecordedNumber.given(mechanism.graph, given) >= 0.0
+    what = f"on which side of a singularity {', '.join(solver.group.links)} are, zero where it is not known"
+    return CarriedState(given, now, f"{solver.index + 1}.{given.part}", what, kept=kept)
 
 
 def followed(graph: OperationGraph, states: Sequence[CarriedState], wanted: Collection[int]) -> Mapping[int, int]:
@@ -64,14 +83,6 @@ def followed(graph: OperationGraph, states: Sequence[CarriedState], wanted: Coll
         found = replaced(graph, [one.now.x for one in given.values()], now)
         now = {k: found[one.now.x] for k, one in given.items()}
     return replaced(graph, [*wanted, *(one.now.x for one in states)], now)
-
-
-def stay_near(states: Sequence[CarriedState], size: float) -> Iterator[RecordedNumber]:
-    """Yield whether each state has moved as little as one that is followed."""
-    for one in states:
-        if one.is_corrected:
-            change = one.now - one.now.like(RecordedNumber.given(one.now.graph, one.given))
-            yield abs(change) <= LEAP * (1.0 if one.is_angle else size)
 
 
 def replaced(graph: OperationGraph, wanted: Collection[int], others: Mapping[int, int]) -> dict[int, int]:

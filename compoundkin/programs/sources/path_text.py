@@ -18,13 +18,13 @@ from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.ready_program import RecordedPath
-from compoundkin.programs.recording.input_kinds import DRIVE
+from compoundkin.programs.recording.input_kinds import DRIVE, SIDE
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_motion import RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput
 from compoundkin.programs.seed_values import seed_values
-from compoundkin.programs.sources.carried_states import CarriedState, carried_states, followed, stay_near
+from compoundkin.programs.sources.carried_states import CarriedState, carried_states, followed
 from compoundkin.programs.sources.contract import Argument, Result, WrittenProgram
 from compoundkin.programs.sources.identifiers import Identifiers, identifier
 from compoundkin.programs.sources.told_configuration import notes
@@ -50,7 +50,9 @@ class PathToWrite(Protocol):
 
 def written_program(path: PathToWrite, name: str = "") -> WrittenProgram:
     """Return a path as a program that every language can write. Raises InvalidInput where none can."""
-    motion, recorded = path.reference, path.variant(frozenset())
+    motion = path.reference
+    # groups without a closed form by single steps, of which a text takes as many as it needs
+    recorded = RecordedPath.of(replace(path.variant(frozenset()).mechanism.recording, steps=0), path.outputs)
     title, mechanism = motion.mechanism.title, recorded.mechanism
     if motion.shape[:-1]:
         what = "its dimensions are arrays, and a text is of one mechanism"
@@ -77,8 +79,8 @@ def written_program(path: PathToWrite, name: str = "") -> WrittenProgram:
 def _assembled(mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> int:
     """The node of whether all groups close, and states are followed."""
     goods = (mechanism.number(good) for _, good in mechanism.block.goods)
-    near = stay_near(states, mechanism.order.size)
-    return reduce(RecordedNumber.__and__, (*goods, *near), mechanism.number(True)).x
+    kept = (state.kept for state in states if state.kept is not None)
+    return reduce(RecordedNumber.__and__, (*goods, *kept), mechanism.number(True)).x
 
 
 def _of_one_configuration(motion: Motion) -> None:
@@ -110,9 +112,9 @@ def _arguments(path: PathToWrite, mechanism: RecordedMechanism, states: Sequence
             word = f"{given.name}.{given.part}" if given.part else given.name
             value = float(own[given].flat[0])
             yield Argument(given, names.take(word), f"dimension {word}", path.stated.unit(one), value, value)
-    seeds = seed_values([state.given for state in states], motion)
+    seeds = seed_values([state.given for state in states if state.given.part != SIDE], motion)
     for state in states:
-        value = float(seeds[state.given][0, first])
+        value = float(seeds[state.given][0, first]) if state.given in seeds else 0.0
         told = _next(state)
         yield Argument(state.given, names.take(told.name), f"{state.meaning}, before", told.unit, value, value)
 
