@@ -9,7 +9,6 @@ from functools import cached_property, partial
 from typing import Any
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import unwrapped
 from compoundkin.base.display import PrintsShort
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
@@ -200,7 +199,7 @@ class CompiledPath(WritesSources, PrintsShort):
         found = results(program.flat, program.runner, numbers, nodes, threads)
         least, arrays = found.pop(""), list(found.values())
         failed = settled_values(numbers, names, arrays, self.limits.doubtful(numbers, least), self.solved)
-        whole = (unwrapped(array) if o.is_wrapped else array for o, array in zip(self.outputs, arrays, strict=True))
+        whole = (output.continuous(array) for output, array in zip(self.outputs, arrays, strict=True))
         return PathValues(numbers, dict(zip(names, whole, strict=True)), failed, self.solved)
 
     @cached_property

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
+import numpy as np
+
+from compoundkin.base.arrays import unwrapped
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
@@ -46,6 +49,13 @@ class ProgramOutput(NamedTuple):
     def is_derived(self) -> bool:
         """Whether it is a figure that only some owners have."""
         return self.attribute.word in DERIVED[self.kind]
+
+    def continuous(self, values: Number) -> Number:
+        """Return its values along the motion, full turns of angles counted."""
+        if not self.is_wrapped:
+            return values
+        # the sign of a zero, which no formula keeps, tells half a turn back from half a turn on
+        return unwrapped(np.where(values == -np.pi, np.pi, values))
 
 
 def output_of(motion: Motion, name: str) -> ProgramOutput:
