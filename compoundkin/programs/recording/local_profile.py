@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import comb
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from compoundkin.base.curves import Curve
 from compoundkin.base.curves.samples import Samples
@@ -54,7 +54,7 @@ class LocalCurve(Curve):
         return farthest(self, as_series(n), self.parameter)
 
     @property
-    def samples(self) -> Samples:  # type: ignore[override]
+    def samples(self) -> Samples:
         """Those of the whole curve."""
         return self.curve.samples
 
@@ -102,4 +102,5 @@ def with_local_profile(pair: Pair, graph: OperationGraph, order: int) -> Pair:
         for k in range(order + MORE_ORDERS + 1)
     ]
     curve = LocalCurve(profiled.curve, parameter, coefficients)
-    return replace(profiled, profile=LocalProfile(profiled.profile, curve))
+    changed: dict[str, Any] = {"profile": LocalProfile(profiled.profile, curve)}
+    return replace(profiled, **changed)
