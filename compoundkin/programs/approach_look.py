@@ -31,7 +31,7 @@ def _is_passed(reference: Motion, shown: Shown, values: Mapping[str, Number]) ->
     if len(values) != 1:
         return False
     ((name, value),) = values.items()
-    drawn = _drawn(reference, shown, name)
+    drawn = drawn_driver(reference, shown, name)
     if drawn is None:
         return True
     if np.ndim(drawn) or value.shape[0] > 1:
@@ -43,7 +43,10 @@ def _is_passed(reference: Motion, shown: Shown, values: Mapping[str, Number]) ->
     return bool(first <= after <= last)
 
 
-def _drawn(reference: Motion, shown: Shown, name: str) -> Number | None:
+def drawn_driver(reference: Motion, shown: Shown, name: str) -> Number | None:
+    """Return the value at which a driver is drawn. None where it is not."""
+    if not (shown.poses or shown.beside):
+        return None
     kept = reference.__dict__.setdefault("_drawn_values", {})
     if name not in kept:
         kept[name] = drawn_value(reference.solving_order, reference.inputs, name, shown.poses, shown.beside)

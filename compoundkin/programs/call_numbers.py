@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.kinematics.driver_values import by_name, inputs
-from compoundkin.kinematics.inputs import fit
+from compoundkin.kinematics.driver_values import RATES, by_name, inputs, times_of
+from compoundkin.kinematics.inputs import Inputs, fit
+from compoundkin.kinematics.likely_slips import warn_of_degrees
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.programs.dimensions.dimension_values import dimension_values
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import INPUT
@@ -81,23 +81,38 @@ def _stratum(array: Number) -> int:
     return (BY_DESIGN if array.shape[0] > 1 else 0) | (BY_POSE if array.shape[1] > 1 else 0)
 
 
-def call_numbers(
-    order: SolvingOrder,
-    stated: StatedDimensions,
-    free: Sequence[FreeDimension],
-    values: Any,
-    dimensions: Mapping[str, Any] | None,
-    rates: Mapping[str, Any],
-) -> CallNumbers:
+class DriverNumbers(NamedTuple):
+    """What a call says of the drivers; the highest rate asked for."""
+
+    values: Any
+    speed: Any = None
+    acceleration: Any = None
+    jerk: Any = None
+    time: Any = None
+    order: int = RATES - 1
+
+    def inputs(self, order: SolvingOrder) -> Inputs:
+        """Return them as `solve` does; raises InvalidInput for what does not fit."""
+        mechanism = order.structure.mechanism
+        values = by_name(mechanism, self.values)
+        times = times_of(mechanism, values, self.time)
+        # laws that jump tell their corners at rates that are asked for only
+        found = inputs(order, values, self.speed, self.acceleration, self.jerk, times, self.order)
+        if times is None:
+            warn_of_degrees(order.structure, found)
+        return found
+
+
+def call_numbers(order: SolvingOrder, motion: DriverNumbers, dimensions: Mapping[FreeDimension, Number]) -> CallNumbers:
     """Return the numbers of a call; raises InvalidInput for what does not fit."""
-    values = by_name(order.structure.mechanism, values)
-    driven = inputs(order, values, rates["speed"], rates["acceleration"], rates["jerk"], None)
-    found = dimension_values(stated, free, dimensions or {})
-    shape = np.broadcast_shapes(driven.shape, *(np.shape(v) for v in found.values()))
+    driven = motion.inputs(order)
+    shape = driven.shape
+    for one, value in dimensions.items():
+        shape = _broadcast(shape, np.shape(value), f"dimensions.{one.name}")
     still = frozenset((name, k) for name, vs in driven.drives.items() for k, v in enumerate(vs) if k and np.all(v == 0))
     fitted = fit(shape)
     given: dict[InputNumber, Number] = {}
-    for one, place in found.items():
+    for one, place in dimensions.items():
         whole = np.atleast_2d(fitted(place))
         for given_as, part in zip(one.inputs, (whole.real, whole.imag), strict=False):
             given[given_as] = np.asarray(part, float)
@@ -105,6 +120,14 @@ def call_numbers(
         for k, value in enumerate(numbers):
             given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.asarray(fitted(value), float))
     return CallNumbers(given, shape, still)
+
+
+def _broadcast(shape: tuple[int, ...], other: tuple[int, ...], where: str) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(shape, other)
+    except ValueError:
+        remedy = "give a new axis to designs: the last axis is the motion"
+        raise InvalidInput(Problem(where, f"shape {other} does not broadcast with {shape}", remedy)) from None
 
 
 def picked(numbers: CallNumbers, designs: Number) -> CallNumbers:

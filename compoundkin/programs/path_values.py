@@ -2,40 +2,77 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from math import prod
 from typing import Any
 
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.display import PrintsShort
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import Problem, UnknownName, nearest
+from compoundkin.base.given_numbers import hold_design
 from compoundkin.base.series import Number
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.call_numbers import CallNumbers, picked
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class PathValues(PrintsShort):
-    """Outputs over designs and poses, arrays of the call's shape."""
+class PathValues(Mapping[str, Any]):
+    """Outputs over designs and poses by name.
 
-    numbers: CallNumbers
-    found: Mapping[str, Number]
-    failed: Number | None  # (designs, poses): the first group that does not close plus one; None where all do
-    solving: Callable[[CallNumbers], Told]
+    They are arrays of the call's `shape`, the last axis the motion. Points are complex, angles unwrapped along the
+    motion. `failed` (designs, poses) is the index of the first group that does not close plus one, else 0; None where
+    all close.
+
+    >>> import compoundkin as ck
+    >>> found = ck.compile(ck.catalog.load_named("slider-crank"), ["B", "B.x"])([0.0, 1.0])
+    >>> found, list(found), found["B.x"].shape
+    (PathValues(B, B.x at (2,) poses), ['B', 'B.x'], (2,))
+    """
+
+    __slots__ = ("_numbers", "_solving", "failed", "found", "shape")
+
+    def __init__(
+        self,
+        numbers: CallNumbers | Callable[[], CallNumbers],
+        found: Mapping[str, Number],
+        failed: Number | None,
+        solving: Callable[[CallNumbers], Told],
+        shape: tuple[int, ...] | None = None,
+    ) -> None:
+        self._numbers, self.found, self.failed, self._solving = numbers, found, failed, solving
+        self.shape = self.numbers.shape if shape is None else shape
+
+    @property
+    def numbers(self) -> CallNumbers:
+        """The inputs of the call."""
+        if not isinstance(self._numbers, CallNumbers):
+            self._numbers = self._numbers()
+        return self._numbers
 
     def __getitem__(self, name: str) -> Any:
-        """Return an output by its name."""
-        return np.broadcast_to(self.found[name], self.numbers.extent).reshape(self.numbers.shape)
+        """Return an output by its name; raises UnknownName."""
+        found = self.found.get(name)
+        if found is None:
+            raise UnknownName(Problem(str(name), "there is no such output", nearest(str(name), list(self.found))))
+        if found.size != prod(self.shape):
+            found = np.broadcast_to(found, self.numbers.extent)
+        return found.reshape(self.shape)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.found)
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
 
     @property
     def assembled(self) -> Any:
         """Which poses are assembled, a bool array of the call's shape."""
         if self.failed is None:
-            return np.broadcast_to(np.True_, self.numbers.shape)
-        return (self.failed == 0).reshape(self.numbers.shape)
+            return np.broadcast_to(np.True_, self.shape)
+        return (self.failed == 0).reshape(self.shape)
 
     @checked
     def motion(self, design: int = 0) -> Motion:
@@ -49,11 +86,9 @@ class PathValues(PrintsShort):
         >>> ck.gaps(found.motion())
         ()
         """
-        count = self.numbers.extent[0]
-        if not 0 <= design < count:
-            raise InvalidInput(Problem("design", f"there is no design {design}", f"0 to {count - 1}"))
+        hold_design(design, self.numbers.extent[0])
         with np.errstate(all="ignore"):
-            return self.solving(picked(self.numbers, np.array([design]))).motion
+            return self._solving(picked(self.numbers, np.array([design]))).motion
 
     def __repr__(self) -> str:
-        return f"PathValues({', '.join(self.found)} at {self.numbers.shape} poses)"
+        return f"PathValues({', '.join(self.found)} at {self.shape} poses)"

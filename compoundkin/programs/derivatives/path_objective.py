@@ -19,7 +19,7 @@ from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
 from compoundkin.programs.derivatives.told_designs import ASSEMBLED, EVERYWHERE, SOLVED, told_designs
 
 if TYPE_CHECKING:
-    from compoundkin.programs.compiled_path import CompiledPath
+    from compoundkin.programs.path_programs import PathPrograms
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -31,7 +31,7 @@ class PathObjective(PrintsShort):
     leaves such poses out: `np.where(at.assembled, ..., 0.0)`.
     """
 
-    path: CompiledPath
+    path: PathPrograms
     function: Callable[[ObjectivePose], Any]
     _programs: dict[Any, ObjectiveProgram] = field(default_factory=dict)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import prod
+from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
@@ -20,16 +21,23 @@ LARGE = 8192
 
 
 def results(
-    flat: FlatProgram, runner: Runner, numbers: CallNumbers, nodes: Mapping[Name, tuple[int, ...]], threads: int
+    flat: FlatProgram,
+    runner: Runner,
+    numbers: CallNumbers,
+    nodes: Mapping[Name, tuple[int, ...]],
+    threads: int,
+    given: Mapping[Name, Number] = MappingProxyType({}),
 ) -> dict[Name, Number]:
     """Run a program whose outputs are some nodes, and return them by name.
 
-    Two nodes are the parts of a planar vector.
+    Two nodes are the parts of a planar vector. Arrays that are `given`, designs x poses, are written.
     """
     rows: list[Number] = []
     narrow: list[tuple[Number, Number]] = []
     shapes = {name: [flat.shape(k, *numbers.extent) for k in parts] for name, parts in nodes.items()}
-    found = dict(zip(nodes, _empty([np.broadcast_shapes(*each) for each in shapes.values()], nodes), strict=True))
+    wanted = {name: parts for name, parts in nodes.items() if name not in given}
+    made = _empty([np.broadcast_shapes(*shapes[name]) for name in wanted], wanted)
+    found = {**dict.fromkeys(nodes), **dict(zip(wanted, made, strict=True)), **given}
     for name, whole in found.items():
         for shape, part in zip(shapes[name], (whole.real, whole.imag), strict=False):
             rows.append(part if shape == whole.shape else np.empty(shape))

@@ -28,7 +28,7 @@ from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.settled_values import settled_values
 
 if TYPE_CHECKING:
-    from compoundkin.programs.compiled_path import CompiledPath
+    from compoundkin.programs.path_programs import PathPrograms
 
 # An output and what its slope is by; the output itself is by nothing, and the least margin of no output.
 Wanted: TypeAlias = tuple[str, str]
@@ -74,7 +74,7 @@ class SensitivityProgram(PrintsShort):
 class SensitivityPrograms(PrintsShort):
     """The programs that compute outputs of a path and their slopes, made as they are asked for."""
 
-    path: CompiledPath
+    path: PathPrograms
     _programs: dict[Any, SensitivityProgram] = field(default_factory=dict)
 
     def found(self, numbers: CallNumbers, by: Sequence[str] | None, threads: int) -> PathSensitivities:

@@ -21,7 +21,7 @@ from compoundkin.programs.solved_designs import solved_parts
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.motion import Motion
-    from compoundkin.programs.compiled_path import CompiledPath
+    from compoundkin.programs.path_programs import PathPrograms
 
 # How it is known which poses an output has: at all; where the program finds it assembled; where it was solved.
 EVERYWHERE, ASSEMBLED, SOLVED = "everywhere", "assembled", "solved"
@@ -37,7 +37,7 @@ def known_poses(path: RecordedPath, names: list[str], how: str) -> tuple[Recorde
     return assembled, dict.fromkeys(names, assembled)
 
 
-def told_designs(path: CompiledPath, numbers: CallNumbers, designs: Number) -> Iterator[tuple[Number, CallNumbers]]:
+def told_designs(path: PathPrograms, numbers: CallNumbers, designs: Number) -> Iterator[tuple[Number, CallNumbers]]:
     """Solve some designs, and yield them with what a seeded program is given for them."""
     seeds = path.variant(numbers.still, is_seeded=True).seeds
     names = [output.name for output in path.outputs]

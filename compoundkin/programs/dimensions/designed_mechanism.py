@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from compoundkin.base.given_numbers import plain
 from compoundkin.base.series import Number
 from compoundkin.model.elements import Link
 from compoundkin.model.field_numbers import fields_with
@@ -27,9 +28,9 @@ def designed(stated: StatedDimensions, values: Mapping[FreeDimension, Number]) -
     for one, value in values.items():
         if one.is_of_link:
             points = links.setdefault(one.owner, dict(stated.mechanism.geometry.points[one.owner]))
-            points[one.word] = value if one.is_vector else _with_part(points[one.word], one.part, value)
+            points[one.word] = plain(value if one.is_vector else _with_part(points[one.word], one.part, value))
         else:
-            numbers.setdefault(one.owner, {})[one.number] = value
+            numbers.setdefault(one.owner, {})[one.number] = plain(value)
     items: list[Any] = [Link(name, points) for name, points in links.items()]
     for name, item in stated.items.items():
         changes = {**stated.read_off.get(name, {}), **fields_with(item, numbers.get(name, {}))}

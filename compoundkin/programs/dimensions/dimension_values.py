@@ -17,13 +17,14 @@ from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 
 
 def dimension_values(
-    stated: StatedDimensions, free: Sequence[FreeDimension], given: Mapping[str, Any]
+    stated: StatedDimensions, free: Sequence[FreeDimension], given: Mapping[str, Any] | None
 ) -> dict[FreeDimension, Number]:
     """Return the values of all free dimensions.
 
     They are those that are given, else the mechanism's own. Raises InvalidInput for dimensions that are not free, and
     for what is no finite number or point.
     """
+    given = {} if given is None else given
     if not isinstance(given, Mapping):
         raise InvalidInput(Problem("dimensions", f"{short(given)} is no table by name", 'write {"crank.B": ...}'))
     names = [one.name for one in free]

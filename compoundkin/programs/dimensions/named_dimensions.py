@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
@@ -37,3 +39,14 @@ def _unknown(stated: StatedDimensions, name: str) -> Problem:
     own = [known for known in stated.known if known.partition(".")[0] == owner]
     what = "it has no such dimension, or it is not stated" if own else "there is no such dimension"
     return Problem(f"free.{name}", what, nearest(name, own or list(stated.known)))
+
+
+def hold_one_design(stated: StatedDimensions, free: Sequence[FreeDimension]) -> None:
+    """Raise InvalidInput where a dimension has several values and is not free."""
+    freed = {given for one in free for given in one.inputs}
+    several = [
+        one.name for one in stated.known.values() if not freed.issuperset(one.inputs) and np.ndim(stated.own(one))
+    ]
+    if several:
+        remedy = f"compile(..., free={[*(one.name for one in free), several[0]]!r})"
+        raise InvalidInput(Problem(several[0], "it has several values: a program has one of what is not free", remedy))

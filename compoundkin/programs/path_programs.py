@@ -1,0 +1,160 @@
+"""The programs of a compiled path: recorded variants, flat programs for the forms of calls, and looks at limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from typing import Any
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.kinematics.lost_digits import Told
+from compoundkin.kinematics.motion import Motion
+from compoundkin.programs.backends import chosen_back_end
+from compoundkin.programs.call_numbers import CallNumbers, DriverNumbers, call_numbers
+from compoundkin.programs.call_seeds import with_seeds
+from compoundkin.programs.derivatives.result_arrays import results
+from compoundkin.programs.dimensions.designed_mechanism import designed
+from compoundkin.programs.dimensions.dimension_values import dimension_values
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.limit_look import LimitPrograms
+from compoundkin.programs.path_values import PathValues
+from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
+from compoundkin.programs.recording.recorded_march import STEPS
+from compoundkin.programs.recording.recorded_mechanism import Recording
+from compoundkin.programs.recording.recorded_outputs import ProgramOutput
+from compoundkin.programs.settled_values import settled_values
+from compoundkin.programs.solved_designs import ProgramConfiguration, solved_designs
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PathPrograms(PrintsShort):
+    """A mechanism in one configuration, and the programs made of it.
+
+    They compute outputs, of free dimensions. `reference` is its own motion, from which the configuration is taken.
+    """
+
+    reference: Motion
+    outputs: tuple[ProgramOutput, ...]
+    dimensions: tuple[FreeDimension, ...]
+    chosen_backend: str | None = None
+    _variants: dict[Any, RecordedPath] = field(default_factory=dict)
+    _programs: dict[Any, ReadyProgram] = field(default_factory=dict)
+
+    @property
+    def backend(self) -> str:
+        """What computes it: "llvm", or "numpy" where that is not installed."""
+        return chosen_back_end(self.chosen_backend)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The names of its outputs."""
+        return tuple(output.name for output in self.outputs)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The names of its free dimensions."""
+        return tuple(one.name for one in self.dimensions)
+
+    @property
+    def order(self) -> int:
+        """The highest derivative that its outputs ask for."""
+        return max(output.attribute.order for output in self.outputs)
+
+    @cached_property
+    def stated(self) -> StatedDimensions:
+        """All dimensions of its mechanism."""
+        return StatedDimensions(self.reference.mechanism, self.reference.inputs.ends)
+
+    @cached_property
+    def configuration(self) -> ProgramConfiguration:
+        """The configuration in which it stays."""
+        return ProgramConfiguration.of(self.reference)
+
+    @property
+    def signs(self) -> dict[int, int]:
+        """The modes of the groups that have signs, by their indices."""
+        return self.configuration.signs
+
+    @cached_property
+    def limits(self) -> LimitPrograms:
+        """The programs that look at designs near limits."""
+        return LimitPrograms(self._recording(), self.reference, self.configuration.shown, self.chosen_backend)
+
+    def variant(self, still: frozenset[tuple[str, int]], is_seeded: bool = False) -> RecordedPath:
+        """Return it recorded where some rates of drivers are zero.
+
+        The signs of its groups may be seeds.
+        """
+        if (still, is_seeded) not in self._variants:
+            recording = replace(self._recording(still), signs={}, steps=0) if is_seeded else self._recording(still)
+            self._variants[still, is_seeded] = RecordedPath.of(recording, self.outputs)
+        return self._variants[still, is_seeded]
+
+    def _recording(self, still: frozenset[tuple[str, int]] = frozenset()) -> Recording:
+        own = self.reference
+        steps = STEPS if own.solving_order.numbered else 0
+        return Recording(own.solving_order, self.signs, self.dimensions, self.order, still, own.inputs.ends, steps)
+
+    def program(self, numbers: CallNumbers) -> ReadyProgram:
+        """Return the program for numbers of these forms."""
+        if numbers.form not in self._programs:
+            self._programs[numbers.form] = ReadyProgram.of(self.variant(numbers.still), numbers, self.chosen_backend)
+        return self._programs[numbers.form]
+
+    def numbers(
+        self,
+        values: Any,
+        dimensions: Mapping[str, Any] | None,
+        speed: Any,
+        acceleration: Any,
+        jerk: Any,
+        time: Any = None,
+    ) -> CallNumbers:
+        """Return the numbers of a call; raises InvalidInput for what does not fit."""
+        found = dimension_values(self.stated, self.dimensions, dimensions)
+        motion = DriverNumbers(values, speed, acceleration, jerk, time, self.order)
+        numbers = call_numbers(self.reference.solving_order, motion, found)
+        return with_seeds(self.variant(numbers.still), numbers, partial(self.solved, order=0), self.chosen_backend)
+
+    def outputs_of(self, numbers: CallNumbers) -> dict[str, bool]:
+        """Return the names of its outputs, and which are vectors."""
+        nodes = self.program(numbers).nodes
+        return {name: len(parts) > 1 for name, parts in zip(self.names, nodes, strict=True)}
+
+    def computed(self, numbers: CallNumbers, threads: int, given: Mapping[str, Number]) -> PathValues:
+        """Compute all outputs. Those in arrays that are given are written there."""
+        program = self.program(numbers)
+        nodes = dict(zip((*self.names, ""), (*program.nodes, program.flat.outputs[-1:]), strict=True))
+        found = results(program.flat, program.runner, numbers, nodes, threads, given)
+        least, arrays = found.pop(""), list(found.values())
+        return self.settled(numbers, arrays, least)
+
+    def solved(self, numbers: CallNumbers, order: int | None = None) -> Told:
+        """Solve the designs of some numbers instead, in its configuration."""
+        mechanism = designed(self.stated, {one: one.value_in(numbers.given) for one in self.dimensions})
+        return solved_designs(mechanism, numbers, self.configuration, self.order if order is None else order)
+
+    def settled(self, numbers: CallNumbers, arrays: list[Number], least: Number) -> PathValues:
+        """Return outputs as they are found, made certain near limits."""
+        look = self.limits.doubtful(numbers, least)
+        failed = settled_values(numbers, self.names, arrays, look, self.solved)
+        return self.shown(numbers, arrays, failed)
+
+    def shown(
+        self,
+        numbers: CallNumbers | Callable[[], CallNumbers],
+        arrays: list[Number],
+        failed: Number | None,
+        shape: tuple[int, ...] | None = None,
+    ) -> PathValues:
+        """Return certain outputs; angles are unwrapped along the motion in place."""
+        for k in self._wrapped:
+            arrays[k][...] = self.outputs[k].continuous(arrays[k])
+        return PathValues(numbers, dict(zip(self.names, arrays, strict=True)), failed, self.solved, shape)
+
+    @cached_property
+    def _wrapped(self) -> tuple[int, ...]:
+        return tuple(k for k, output in enumerate(self.outputs) if output.is_wrapped)
