@@ -25,6 +25,7 @@ def mechanism() -> ck.Mechanism:
         ck.link("plate", D=0, A=DA, C=DC),
         ck.link("rocker", B=0, A=AB),
         ck.drive("crank"),
+        ck.mode(1, "rocker"),
     )
 
 

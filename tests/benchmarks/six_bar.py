@@ -35,6 +35,7 @@ def mechanism(rocker: Any = AB, plate: Any = DA) -> ck.Mechanism:
         ck.link("block", C=0),
         ck.slide("block", on="bar", at="C", through="F"),
         ck.drive("crank"),
+        ck.mode(1, "rocker"),
     )
 
 
