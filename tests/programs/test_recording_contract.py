@@ -12,6 +12,14 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.groups import SOLVERS
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
+from compoundkin.kinematics.quantity_owners import owner_of
+from compoundkin.model.attributes import (
+    CORIOLIS,
+    PRESSURE_ANGLE,
+    TRANSMISSION_ANGLE,
+    TRANSMISSION_INDEX,
+    VELOCITY_RATIO,
+)
 from compoundkin.model.pairs import KINDS
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.graph.flat_program import BY_BOTH, FlatProgram, flat_program
@@ -25,6 +33,7 @@ from tests.catalog import NAMES, motion
 EXACT = 1e-12
 POINTS = ("position", "velocity", "acceleration")
 LINKS = ("angle", "angular_velocity", "angular_acceleration")
+FIGURES = (TRANSMISSION_ANGLE, TRANSMISSION_INDEX, VELOCITY_RATIO, CORIOLIS, PRESSURE_ANGLE)
 
 
 def on_arc() -> ck.Mechanism:
@@ -117,6 +126,19 @@ def test_every_shipped_mechanism_and_kind_is_recorded_and_equals_solve() -> None
     kinds = {type(pair) for found in every for pair in found.solving_order.pairs.values()}
     assert not [way.__name__ for way in SOLVERS if way not in ways]
     assert not [kind.__name__ for kind in KINDS if kind not in kinds]
+
+
+@pytest.mark.parametrize("name", ["six-bar", "whitworth-quick-return", "disc-cam-roller-program", "geared-five-bar"])
+def test_figures_that_only_some_have_are_those_of_solve(name: str) -> None:
+    found = ck.solve(motion(name).mechanism, speed=1.5)
+    owners = [owner_of(found, kind, owner) for kind in ("links", "pairs") for owner in getattr(found, kind)]
+    names = [f"{one.name}.{word}" for one in owners for word in one.words if word in FIGURES]
+    assert {name.rpartition(".")[2] for name in names} >= set(FIGURES[:3])
+    path = ck.compile(found.mechanism, names)
+    values = path(speed=1.5)
+    for name in names:
+        # beside a pole a ratio is as large as it is inexact
+        np.testing.assert_allclose(values[name], quantity(found, name).values, rtol=1e-9, atol=1e-11, err_msg=name)
 
 
 def test_what_no_program_tells_is_refused_by_name() -> None:
