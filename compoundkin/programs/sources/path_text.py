@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import reduce
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import OF_POINTS, RATES, coordinate_dimension, unit_of
-from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber
@@ -40,9 +39,6 @@ class PathToWrite(Protocol):
     @property
     def stated(self) -> StatedDimensions:
         """All dimensions of its mechanism."""
-
-    def numbers(self, values: Any, dimensions: Any, speed: Any, acceleration: Any, jerk: Any) -> CallNumbers:
-        """Return the numbers of a call."""
 
     def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
         """Return it recorded where some rates of drivers are zero."""
@@ -95,7 +91,7 @@ def _of_one_configuration(motion: Motion) -> None:
 
 def _arguments(path: PathToWrite, mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> Iterator[Argument]:
     """Yield drivers with their rates, free dimensions, and states; the motion's first assembled pose is their own."""
-    names, own, motion = Identifiers(), path.numbers(None, None, None, None, None).given, path.reference
+    names, motion = Identifiers(), path.reference
     first = int(np.argmax(motion.failed[0] == 0))
     for name in mechanism.drives:
         dimension = coordinate_dimension(motion.structure.driven_angles[name])
@@ -103,14 +99,13 @@ def _arguments(path: PathToWrite, mechanism: RecordedMechanism, states: Sequence
             given = InputNumber(DRIVE, name, str(k))
             called = f"{name}.{RATES[k - 1]}" if k else name
             meaning = f"driver {name}, its {RATES[k - 1]}" if k else f"driver {name}"
-            values = own[given][0]
-            unit = unit_of(motion.mechanism.unit, dimension, k)
-            start = float(values[first if len(values) > 1 else 0])
+            values = np.broadcast_to(motion.inputs.drives[name][k], motion.failed.shape)
+            unit, start = unit_of(motion.mechanism.unit, dimension, k), float(values[0, first])
             yield Argument(given, names.take(called), meaning, unit, start if k else None, start)
     for one in path.dimensions:
-        for given in one.inputs:
-            word = f"{given.name}.{given.part}" if given.part else given.name
-            value = float(own[given].flat[0])
+        whole = path.stated.own(one)
+        for given, number in zip(one.inputs, (np.real(whole), np.imag(whole)), strict=False):
+            word, value = f"{given.name}.{given.part}" if given.part else given.name, float(number)
             yield Argument(given, names.take(word), f"dimension {word}", path.stated.unit(one), value, value)
     seeds = seed_values([state.given for state in states if state.given.part != SIDE], motion)
     for state in states:
