@@ -51,6 +51,12 @@ def test_it_is_solved_and_verified(mechanism: ck.Mechanism) -> None:
     assert np.isfinite(ck.quantity(motion, mechanism.outputs[0]).values).all()
 
 
+def test_it_is_compiled(mechanism: ck.Mechanism) -> None:
+    output = mechanism.outputs[0]
+    found, solved = ck.compile(mechanism, output)(), ck.quantity(ck.solve(mechanism), output).values
+    assert np.max(np.abs(found[output] - solved)) <= 1e-12 * np.max(np.abs(solved))
+
+
 def test_its_configurations_and_circuits_are_found(mechanism: ck.Mechanism) -> None:
     # nothing says which way round a link is meant: both count
     assert len(ck.configurations(mechanism, {"crank": 0.3})) == 2
