@@ -166,6 +166,7 @@ class CompiledPath(WritesSources, PathPrograms):
         speed: Any = None,
         acceleration: Any = None,
         jerk: Any = None,
+        time: Any = None,
         by: Sequence[str] | None = None,
         threads: int = 1,
     ) -> PathSensitivities:
@@ -180,7 +181,7 @@ class CompiledPath(WritesSources, PathPrograms):
         >>> found["B", "crank.B.x"].real.tolist(), found["B", "crank"].imag.tolist()
         ([1.0], [2.0])
         """
-        numbers = self.numbers(values, dimensions, speed, acceleration, jerk)
+        numbers = self.numbers(values, dimensions, speed, acceleration, jerk, time)
         return self.sensitivities.found(numbers, by, threads)
 
     @cached_property

@@ -89,8 +89,10 @@ class PathPrograms(PrintsShort):
         The signs of its groups may be seeds.
         """
         if (still, is_seeded) not in self._variants:
-            recording = replace(self._recording(still), signs={}, steps=0) if is_seeded else self._recording(still)
-            self._variants[still, is_seeded] = RecordedPath.of(recording, self.outputs)
+            own = self._recording(still)
+            # one step before that whose matrix all rates share: they then have the slopes of where it leads
+            recording = replace(own, signs={}, steps=1) if is_seeded else own
+            self._variants[still, is_seeded] = RecordedPath.of(recording, self.outputs, marches=not is_seeded)
         return self._variants[still, is_seeded]
 
     def _recording(self, still: frozenset[tuple[str, int]] = frozenset()) -> Recording:

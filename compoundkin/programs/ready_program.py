@@ -29,10 +29,10 @@ class RecordedPath:
     march: RecordedMarch | None = None
 
     @classmethod
-    def of(cls, recording: Recording, outputs: Sequence[ProgramOutput]) -> RecordedPath:
+    def of(cls, recording: Recording, outputs: Sequence[ProgramOutput], marches: bool = True) -> RecordedPath:
         """Record a mechanism and outputs of it."""
         mechanism = recorded(recording)
-        march = RecordedMarch.of(mechanism) if recording.steps else None
+        march = RecordedMarch.of(mechanism) if marches and recording.steps else None
         return cls(mechanism, recorded_outputs(mechanism, outputs), march)
 
     @cached_property

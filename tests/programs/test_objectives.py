@@ -163,3 +163,82 @@ def test_sensitivities_are_those_of_changed_mechanisms():
     assert found.by == ("plate.C.x", "plate.C.y", "crank.D.x", "crank.D.y", "crank")
     with pytest.raises(ck.errors.UnknownName, match=r"did you mean 'plate.C.[xy]'"):
         found["G.acceleration", "plate.C.z"]
+
+
+# Between them all kinds of pairs and groups, with all their dimensions: points, angles, offsets, turns, radii, phases.
+EVERY_KIND = {
+    "whitworth-quick-return": 8,  # blocks in slots
+    "rack-driven-double-slider": 12,  # racks
+    "geared-five-bar": 8,  # gears with phases
+    "belt-coupled-cranks": 8,  # belts
+    "rolling-wheel": 8,
+    "geneva-wheel": 8,  # pins in slots
+    "oldham-coupling": 8,  # cross slides
+    "hydraulic-crane": 8,  # cylinders
+    "cam-return-spring": 8,  # discs
+    "flat-faced-follower": 8,  # profiles, whose contact is found outside
+    "sun-and-planet": 4,  # counted turns
+    "class-iii-six-bar": 4,  # groups without a closed form
+}
+# What changes how wheels fit together.
+FITTED = ("teeth", "radii", "module", "pressure_angle", "radius")
+
+
+@pytest.mark.parametrize("name", EVERY_KIND)
+def test_slopes_by_every_kind_of_dimension(name):
+    """Each at three poses against `solve` of mechanisms that differ in one dimension, all solved at once."""
+    mechanism = loaded(name)
+    whole = ck.compile(mechanism, next(iter(mechanism.carriers)))
+    known = [one for one in whole.stated.known.values() if one.word not in FITTED and one.part not in ("x", "y")]
+    free = [one for one in known if not one.is_of_link] + [one for one in known if one.is_of_link]
+    free = free[: EVERY_KIND[name]]
+    out = [f"{point}.{word}" for point in mechanism.carriers for word in ("position", "velocity")]
+    path = ck.compile(mechanism, out, free=[one.name for one in free], backend="numpy")
+    driven = path.reference.inputs.drives
+    values = {each: (np.ravel(v[0])[3] + np.array([0.013, 0.2, 0.31])) for each, v in driven.items()}
+    speed = dict.fromkeys(values, 1.3)
+    found = path.derivatives(values, speed=speed, by=None)
+    by = [each for each in found.by if each not in values]
+    step = {each: STEP * (1.0 if each.endswith(("angle", "turn")) else mechanism.geometry.size) for each in by}
+    places = {}
+    for one in free:
+        place = np.full((2 * len(by), 1), path.stated.own(one), dtype=complex if one.is_vector else float)
+        for k, each in enumerate(by):
+            if each.removesuffix(".x").removesuffix(".y") == one.name:
+                change = step[each] * (1j if one.is_vector and each.endswith(".y") else 1.0)
+                place[2 * k : 2 * k + 2] += change * np.array([[1.0], [-1.0]])
+        places[one.name] = place
+    modes = {path.reference.structure.groups[k].links[0]: sign for k, sign in path.signs.items()}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        motion = ck.solve(path.mechanism(places), values, speed=speed, modes=modes)
+    for each in out:
+        ends = quantity(motion, each).values
+        size = max(abs(ends).max(), mechanism.geometry.size)
+        for k, word in enumerate(by):
+            slope = (ends[2 * k] - ends[2 * k + 1]) / (2.0 * step[word])
+            size_of = size if word.endswith(("angle", "turn")) else size / mechanism.geometry.size
+            np.testing.assert_allclose(found[each, word], slope, atol=1e-7 * max(size_of, abs(slope).max()))
+
+
+def test_a_gradient_is_the_sum_of_slopes_at_every_pose():
+    """Reverse equals forward to 1e-12: points, numbers, and groups that march along the motion."""
+    for name, free in (("whitworth-quick-return", ["slot.angle"]), ("class-iii-six-bar", [])):
+        mechanism = loaded(name)
+        link = next(iter(mechanism.rigid_links.values()))
+        point = f"{link.name}.{next(iter(link.points))}"
+        output = f"{next(reversed(mechanism.carriers))}.velocity"
+        path = ck.compile(mechanism, output, free=[*free, point])
+        values = {each: np.ravel(v[0])[:25] for each, v in path.reference.inputs.drives.items()}
+        speed = dict.fromkeys(values, 1.3)
+        _, slope = path.objective(lambda at, o=output: abs(at[o] - at["target"]) ** 2).gradient(
+            values, speed=speed, target=1.0 + 2.0j
+        )
+        found = path.derivatives(values, speed=speed)
+        for each in (*free, f"{point}.x", f"{point}.y"):
+            chained = np.sum(2.0 * ((found[output] - (1.0 + 2.0j)).conj() * found[output, each]).real)
+            part = (
+                slope[point].real if each.endswith(".x") else slope[point].imag if each.endswith(".y") else slope[each]
+            )
+            scale = np.sum(abs(found[output] - (1.0 + 2.0j)) * abs(found[output, each]))
+            assert abs(part - chained) <= 1e-12 * max(scale, 1e-300)

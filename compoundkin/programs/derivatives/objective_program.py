@@ -96,7 +96,7 @@ class ObjectiveProgram(PrintsShort):
 
     @classmethod
     def of(
-        cls, path: RecordedPath, names: list[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
+        cls, path: RecordedPath, names: Sequence[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
     ) -> ObjectiveProgram:
         """Make the program of an objective for numbers of some form."""
         graph, certain = path.mechanism.graph, RecordedLimits(path.mechanism).certain

@@ -44,6 +44,7 @@ class PathObjective(PrintsShort):
         speed: Any = None,
         acceleration: Any = None,
         jerk: Any = None,
+        time: Any = None,
         threads: int = 1,
         **given: Any,
     ) -> Any:
@@ -58,7 +59,7 @@ class PathObjective(PrintsShort):
         >>> float(cost([0.0, 0.0], {"crank.B": 3.0}, target=1.0))
         8.0
         """
-        numbers = self.path.numbers(values, dimensions, speed, acceleration, jerk)
+        numbers = self.path.numbers(values, dimensions, speed, acceleration, jerk, time)
         return self._found(numbers, given, False, threads)[0]
 
     @checked
@@ -70,6 +71,7 @@ class PathObjective(PrintsShort):
         speed: Any = None,
         acceleration: Any = None,
         jerk: Any = None,
+        time: Any = None,
         threads: int = 1,
         **given: Any,
     ) -> tuple[Any, dict[str, Any]]:
@@ -86,7 +88,7 @@ class PathObjective(PrintsShort):
         >>> float(value), complex(slope["crank.B"])
         (2.0, (4+0j))
         """
-        return self._found(self.path.numbers(values, dimensions, speed, acceleration, jerk), given, True, threads)
+        return self._found(self.path.numbers(values, dimensions, speed, acceleration, jerk, time), given, True, threads)
 
     def _found(
         self, numbers: CallNumbers, given: Mapping[str, Any], is_sloped: bool, threads: int
@@ -115,11 +117,11 @@ class PathObjective(PrintsShort):
     ) -> ObjectiveValues:
         key = numbers.form, tuple(given.items()), is_sloped, known
         if key not in self._programs:
-            path, names = self.path, [output.name for output in self.path.outputs]
+            path = self.path
             by = {one.name: one.inputs for one in path.dimensions} if is_sloped else {}
             form = ObjectiveForm(self.function, given, by, known)
             variant = path.variant(numbers.still, known == SOLVED)
-            self._programs[key] = ObjectiveProgram.of(variant, names, numbers, form, path.chosen_backend)
+            self._programs[key] = ObjectiveProgram.of(variant, path.names, numbers, form, path.chosen_backend)
         return self._programs[key].run(numbers, threads)
 
     def __repr__(self) -> str:

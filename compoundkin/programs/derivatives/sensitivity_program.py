@@ -21,7 +21,6 @@ from compoundkin.programs.derivatives.told_designs import told_designs
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.graph.operations import LEAST
-from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
@@ -84,7 +83,7 @@ class SensitivityPrograms(PrintsShort):
         if unknown:
             raise UnknownName([Problem(f"by.{name}", "it is no input", nearest(name, list(known))) for name in unknown])
         wanted = {name: known[name] for name in (known if by is None else by)}
-        path, names = self.path, [output.name for output in self.path.outputs]
+        path, names = self.path, self.path.names
         found = self._run(numbers, wanted, False, threads)
         look = path.limits.doubtful(numbers, found.pop(_MARGIN))
         outputs = [found.pop((name, "")) for name in names]
@@ -96,7 +95,7 @@ class SensitivityPrograms(PrintsShort):
                 solved = self._run(told, wanted, True, threads)
                 for key, slope in slopes.items():
                     slope[designs] = solved[key]
-        values = PathValues(numbers, dict(zip(names, outputs, strict=True)), failed, path.solved)
+        values = path.shown(numbers, outputs, failed)
         return PathSensitivities(values, {key: _masked(values.found[key[0]], slope) for key, slope in slopes.items()})
 
     def _run(
@@ -104,9 +103,8 @@ class SensitivityPrograms(PrintsShort):
     ) -> dict[Wanted, Number]:
         key = numbers.form, tuple(by), is_seeded
         if key not in self._programs:
-            names = [output.name for output in self.path.outputs]
             path, backend = self.path.variant(numbers.still, is_seeded), self.path.chosen_backend
-            self._programs[key] = SensitivityProgram.of(path, names, by, numbers, backend)
+            self._programs[key] = SensitivityProgram.of(path, self.path.names, by, numbers, backend)
         return self._programs[key].run(numbers, threads)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 EVERYWHERE, ASSEMBLED, SOLVED = "everywhere", "assembled", "solved"
 
 
-def known_poses(path: RecordedPath, names: list[str], how: str) -> tuple[RecordedNumber, dict[str, RecordedNumber]]:
+def known_poses(path: RecordedPath, names: Sequence[str], how: str) -> tuple[RecordedNumber, dict[str, RecordedNumber]]:
     """Return whether a pose is assembled, and whether each output is known there, as truths."""
     mechanism = path.mechanism
     if how == SOLVED:
@@ -40,7 +40,7 @@ def known_poses(path: RecordedPath, names: list[str], how: str) -> tuple[Recorde
 def told_designs(path: PathPrograms, numbers: CallNumbers, designs: Number) -> Iterator[tuple[Number, CallNumbers]]:
     """Solve some designs, and yield them with what a seeded program is given for them."""
     seeds = path.variant(numbers.still, is_seeded=True).seeds
-    names = [output.name for output in path.outputs]
+    names = path.names
     for part, told in solved_parts(path.solved, numbers, designs):
         own = picked(numbers, part)
         found = dict.fromkeys([*map(_mask, ["", *names]), *seeds], np.zeros(own.extent))
@@ -49,7 +49,7 @@ def told_designs(path: PathPrograms, numbers: CallNumbers, designs: Number) -> I
         yield part, replace(own, given={**own.given, **found})
 
 
-def _masks(motion: Motion, names: list[str]) -> Mapping[InputNumber, Number]:
+def _masks(motion: Motion, names: Sequence[str]) -> Mapping[InputNumber, Number]:
     shape = motion.failed.shape
     values = {name: np.isfinite(quantity(motion, name).values).reshape(shape) for name in names}
     return {_mask(name): known.astype(float) for name, known in {"": motion.failed == 0, **values}.items()}
