@@ -50,7 +50,7 @@ def home(program: FlatProgram, node: int) -> str:
 class LanePlan:
     """A program with the axis of its lanes, and where each value is kept.
 
-    `wide` programs ask the system's library for sines and cosines, whatever the angle; `is_single` ones have one design.
+    `wide` programs ask the system's library for sines and cosines. `is_single` ones have one design.
     """
 
     program: FlatProgram
