@@ -11,7 +11,6 @@ from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.call_numbers import CallNumbers
 from compoundkin.programs.graph.flat_program import Carried, FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.graph.operations import LEAST
 from compoundkin.programs.recording.input_kinds import SEED, SIDE
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_march import RecordedMarch
@@ -70,7 +69,7 @@ class ReadyProgram:
     def of(cls, path: RecordedPath, numbers: CallNumbers, backend: str | None) -> ReadyProgram:
         """Make the program of a recorded path for numbers of some form."""
         graph = path.mechanism.graph
-        least = graph.apply(LEAST, RecordedLimits(path.mechanism).certain.x)
+        least = RecordedLimits(path.mechanism).least
         carried = path.carried(numbers)
         flat = flat_program(graph, [*(n for each in path.nodes for n in each), least], numbers.strata(graph), carried)
         return cls(flat, path.nodes, runner_of(flat, backend))

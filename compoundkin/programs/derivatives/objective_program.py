@@ -20,7 +20,7 @@ from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.derivatives.told_designs import known_poses
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.graph.operations import LEAST, TOTAL
+from compoundkin.programs.graph.operations import TOTAL
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.recorded_functions import chosen
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
@@ -99,12 +99,12 @@ class ObjectiveProgram(PrintsShort):
         cls, path: RecordedPath, names: Sequence[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
     ) -> ObjectiveProgram:
         """Make the program of an objective for numbers of some form."""
-        graph, certain = path.mechanism.graph, RecordedLimits(path.mechanism).certain
+        graph, limits = path.mechanism.graph, RecordedLimits(path.mechanism)
         assembled, known = known_poses(path, names, form.known)
         outputs = {name: _masked(each, known[name]) for name, each in zip(names, path.outputs, strict=True)}
         cost = recorded_cost(form.function, graph, outputs, form.given, assembled)
         carried = path.carried(numbers)
-        root, least, strata = graph.apply(TOTAL, cost), graph.apply(LEAST, certain.x), numbers.strata(graph)
+        root, least, strata = graph.apply(TOTAL, cost), limits.least, numbers.strata(graph)
         kept = reduce(RecordedNumber.__and__, _read(graph, cost, known), assembled)
         by = {name: tuple(map(graph.input, parts)) for name, parts in form.by.items()}
         every = [k for nodes in by.values() for k in nodes]

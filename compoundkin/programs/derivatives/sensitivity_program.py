@@ -20,7 +20,6 @@ from compoundkin.programs.derivatives.tangents import forward
 from compoundkin.programs.derivatives.told_designs import told_designs
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.graph.operations import LEAST
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
@@ -59,7 +58,7 @@ class SensitivityProgram(PrintsShort):
         for word, given in by.items():
             found = dict(zip(wanted, forward(graph, wanted, {graph.input(given): 1.0}), strict=True))
             nodes |= {(name, word): tuple(found[k] for k in parts) for name, parts in outputs.items()}
-        nodes[_MARGIN] = (graph.apply(LEAST, RecordedLimits(path.mechanism).certain.x),)
+        nodes[_MARGIN] = (RecordedLimits(path.mechanism).least,)
         every, carried = [k for parts in nodes.values() for k in parts], path.carried(numbers)
         flat = flat_program(graph, every, numbers.strata(graph), carried)
         return cls(flat, runner_of(flat, backend), nodes)

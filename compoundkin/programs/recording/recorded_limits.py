@@ -17,6 +17,7 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number, Series, as_series
 from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.lost_digits import FAST
+from compoundkin.programs.graph.least_value import least_value
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
@@ -60,6 +61,11 @@ class RecordedLimits(PrintsShort):
         truth = self._all([self.clear, *others])
         graph = self.mechanism.graph
         return RecordedNumber(graph, graph.apply("min", self.margin.x, self._chosen(truth, 1.0, -1.0).x))
+
+    @cached_property
+    def least(self) -> int:
+        """The node of the least of `certain` over the poses of a design."""
+        return least_value(self.mechanism.graph, self.certain.x)
 
     @cached_property
     def margin(self) -> RecordedNumber:
