@@ -180,6 +180,29 @@ def test_free_dimensions_are_arguments_whose_own_numbers_stand_in_for_them(tmp_p
     assert found[3] == pytest.approx(wanted["bar.angular_velocity"], rel=1e-12)
 
 
+def test_numbers_of_pairs_are_arguments_too(tmp_path: Path) -> None:
+    path = compile(
+        mechanism("rack-driven-double-slider"), "B.position", free=["rack.radius", "block.offset", "slider.angle"]
+    )
+    program = path.written()
+    told = [(one.name, one.unit) for one in program.arguments if one.given.kind == "dimension"]
+    unit = mechanism("rack-driven-double-slider").unit or "length"
+    assert told == [("rack_radius", unit), ("block_offset", unit), ("slider_angle", "rad")]
+    own = [one.start for one in program.arguments]
+    changed = [*own[:-3], own[-3] * 1.1, own[-2] + 0.01, own[-1] + 0.02]
+    (found,) = run("python", [program], [np.array([own, changed]).T], tmp_path)
+    names = ("rack.radius", "block.offset", "slider.angle")
+    for column, values in ((0, own), (1, changed)):
+        wanted = path([values[0]], dict(zip(names, values[-3:], strict=True)))["B.position"].ravel()[0]
+        assert found[1, column] + 1j * found[2, column] == pytest.approx(wanted, rel=1e-12)
+
+
+def test_a_text_is_of_one_mechanism() -> None:
+    words = ck.link("frame", A=0), ck.link("crank", A=0, B=([[1.0], [2.0]], 0)), ck.drive("crank")
+    with pytest.raises(ck.errors.InvalidInput, match="one number for each"):
+        compile(ck.Mechanism("two", *words), "B", free="crank.B").source("c")
+
+
 def test_an_unknown_language_is_told() -> None:
     with pytest.raises(ck.errors.UnknownName, match="python"):
         path_of("six-bar").source("pyton")
