@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.given_numbers import plain
 from compoundkin.base.series import Number
-from compoundkin.model.elements import Link
+from compoundkin.model.elements import Drive, Link
 from compoundkin.model.field_numbers import fields_with
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
@@ -36,6 +36,10 @@ def designed(stated: StatedDimensions, values: Mapping[FreeDimension, Number]) -
         changes = {**stated.read_off.get(name, {}), **fields_with(item, numbers.get(name, {}))}
         if changes:
             items.append(replace(item, **changes))
+    if any(np.shape(value)[-1:] > (1,) for value in values.values()):
+        # a motion of its own, which is perhaps not as long as that along which dimensions vary
+        drives = (item for item in stated.mechanism.items if isinstance(item, Drive))
+        items += [replace(drive, values=None) for drive in drives if np.ndim(drive.values)]
     return stated.mechanism.replace(*items) if items else stated.mechanism
 
 

@@ -1,0 +1,188 @@
+"""Calls of compiled paths: what they take and tell, quickly or slowly, in the form that `solve` has."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.base.errors import InvalidInput, LikelySlip, UnknownName
+from tests.catalog import mechanism as loaded
+
+OUTPUTS = ["G.position", "G.acceleration", "bar.angle"]
+CRANK = np.linspace(0.3, 7.0, 200)
+COLUMN = np.array([[14.0 + 0j], [13.5 + 0.5j], [14.2 - 0.3j]])
+
+
+@pytest.fixture(scope="module")
+def path():
+    return ck.compile(loaded("six-bar"), OUTPUTS, free=["crank.D", "plate.A.y"])
+
+
+@pytest.fixture(scope="module")
+def arm():
+    upper, fore = ck.link("upper", A=0, B=2), ck.link("fore", B=0, P=1)
+    arm = ck.Mechanism("arm", ck.link("frame", A=0), upper, fore, ck.drive("upper"), ck.drive("fore", on="upper"))
+    return ck.compile(arm, ["P", "P.velocity"], free="fore.P")
+
+
+def solved(motion, name):
+    if name.startswith("bar"):
+        return motion.links["bar"].angle
+    return np.asarray(getattr(motion.points["G"], name.partition(".")[2]))
+
+
+@pytest.mark.parametrize(
+    ("dimensions", "rates"),
+    [
+        ({}, {}),
+        ({"crank.D": 14.1}, {"speed": 10.0}),
+        ({"crank.D": COLUMN}, {"speed": 10, "acceleration": 2.0}),
+        ({"crank.D": COLUMN, "plate.A.y": COLUMN.imag + 0.1}, {"speed": 0.0}),
+        ({"plate.A.y": -0.2, "crank.D": (14.0, 0.2)}, {"speed": 10 + CRANK}),
+        ({"crank.D": 14.0 + 0.01j * CRANK}, {"speed": {"crank": 2.0}}),
+    ],
+)
+def test_a_call_is_what_solve_finds_of_the_mechanism_with_its_dimensions(path, dimensions, rates):
+    motion = ck.solve(path.mechanism(dimensions), CRANK, modes=path.modes, **rates)
+    for values in (CRANK, {"crank": CRANK}, CRANK.tolist()):
+        found = path(values, dimensions, **rates)
+        assert found.shape == motion.shape
+        for name in OUTPUTS:
+            expected = solved(motion, name)
+            np.testing.assert_allclose(found[name], expected, atol=1e-11 * np.abs(expected).max(), rtol=0)
+
+
+def test_defaults_are_those_of_solve(path, arm):
+    np.testing.assert_allclose(path()["G.position"], ck.solve(loaded("six-bar")).points["G"].position, atol=1e-12)
+    values, rates = {"upper": CRANK}, {"fore": 2.0}
+    motion = ck.solve(arm.mechanism(), {**values, "fore": CRANK[:, None]}, speed=rates)
+    found = arm({**values, "fore": CRANK[:, None]}, speed=rates)
+    np.testing.assert_allclose(found["P.velocity"], motion.points["P"].velocity, atol=1e-12)
+
+
+def test_drivers_with_laws_move_in_time():
+    law = ck.laws.program(ck.laws.rise(1.0, over=2.0))
+    crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank", law=law))
+    path = ck.compile(crank, ["B", "B.acceleration"], free="crank.B")
+    for given in ({}, {"time": np.linspace(0.0, 1.5, 9)}, {"time": [0.5]}):
+        motion = ck.solve(crank, **given)
+        np.testing.assert_allclose(path(**given)["B.acceleration"], motion.points["B"].acceleration, atol=1e-12)
+    assert path([0.1, 0.2])["B"].shape == (2,)
+
+
+def test_results_are_written_into_arrays_given(path):
+    made = {"G.position": np.empty((3, 200), complex), "bar.angle": np.empty((3, 200))}
+    found, expected = path(CRANK, {"crank.D": COLUMN}, out=made), path(CRANK, {"crank.D": COLUMN})
+    for name, array in made.items():
+        assert np.shares_memory(found[name], array)
+        np.testing.assert_array_equal(array, expected[name])
+    np.testing.assert_array_equal(found["G.acceleration"], expected["G.acceleration"])
+
+
+@pytest.mark.parametrize(
+    ("out", "text"),
+    [
+        ({"G": np.empty(200, complex)}, "out.G: there is no such output; known: G.position, "),
+        ({"G.position": np.empty(200)}, "out.G.position: an array of float64 is no array of complex128"),
+        ({"bar.angle": np.empty(199)}, "out.bar.angle: its shape is (199,), that of the call (200,)"),
+        ({"bar.angle": np.empty(400)[::2]}, "it cannot be written, or is not contiguous"),
+        ({"bar.angle": [0.0] * 200}, "is no array of float64"),
+        ([], "out: [] is no table by name"),
+    ],
+)
+def test_arrays_that_cannot_hold_results_are_told(path, out, text):
+    with pytest.raises(InvalidInput) as told:
+        path(CRANK, out=out)
+    assert text in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        ({"values": {"crnk": CRANK}}, "values.crnk: there is no driver 'crnk'; did you mean 'crank'?"),
+        ({"values": np.array([0.0, np.nan])}, "crank: the value is empty or not finite"),
+        ({"values": np.array([0.0, np.inf])}, "crank: the value is empty or not finite"),
+        ({"values": []}, "crank: the value is empty or not finite"),
+        ({"values": "round"}, "a text is no number"),
+        ({"values": CRANK, "dimensions": {"crank.D": np.ones((3, 7))}}, "shape (3, 7) does not broadcast with (200,)"),
+        (
+            {"values": CRANK, "dimensions": {"crank.D": COLUMN * np.nan}},
+            "dimensions.crank.D: the value is empty or not",
+        ),
+        ({"values": CRANK, "dimensions": {"plate.A.y": 1j}}, "plate.A.y: complex numbers are no real ones"),
+        ({"values": CRANK, "dimensions": {"plate.C": 1.0}}, "this dimension is not free; compile("),
+        ({"values": CRANK, "speed": np.nan}, "crank: the value is empty or not finite"),
+        ({"values": CRANK, "speed": {"bar": 1.0}}, "there is no driver 'bar'"),
+        ({"values": CRANK, "threads": 0}, "threads: 0 is no number of threads"),
+        ({"values": CRANK, "threads": 1.5}, "threads: 1.5 is no number of threads"),
+        ({"time": [np.inf]}, "time"),
+    ],
+)
+def test_what_does_not_fit_is_told(path, given, text):
+    with pytest.raises(InvalidInput) as told:
+        path(**given)
+    assert text in str(told.value)
+
+
+def test_values_without_a_margin_that_they_could_spoil_are_held_too():
+    crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank"))
+    for value in (np.nan, np.inf):
+        with pytest.raises(InvalidInput, match="not finite"):
+            ck.compile(crank, "B")(np.array([0.0, value]))
+
+
+def test_several_drivers_go_by_name(arm):
+    with pytest.raises(InvalidInput, match="there is more than one driver"):
+        arm(CRANK)
+    with pytest.raises(InvalidInput, match="there are several drivers"):
+        arm({"upper": CRANK}, speed=2.0)
+
+
+def test_values_that_look_like_degrees_are_warned_of(path):
+    with pytest.warns(LikelySlip, match="look like degrees"):
+        path(np.arange(0.0, 361.0, 5.0))
+
+
+def test_designs_of_the_mechanism_itself_are_to_be_free():
+    crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=COLUMN), ck.drive("crank"))
+    with pytest.raises(InvalidInput, match=r"crank.B: it has several values: .*; compile\(..., free=\['crank.B'\]\)"):
+        ck.compile(crank, "B")
+    np.testing.assert_allclose(ck.compile(crank, "B", free="crank.B")([0.0, 0.0])["B"], COLUMN + np.zeros(2))
+
+
+def test_compile_tells_what_it_does_not_take():
+    bar = loaded("crank-rocker")
+    with pytest.raises(InvalidInput, match="outputs: no output is named"):
+        ck.compile(bar, [])
+    with pytest.raises(InvalidInput, match="backend: there is no back end 'fortran'"):
+        ck.compile(bar, "B", backend="fortran")
+    with pytest.raises(UnknownName):
+        ck.compile(bar, "nothing")
+
+
+def test_what_is_found_goes_by_name(path):
+    found = path(CRANK)
+    assert list(found) == OUTPUTS
+    assert [values.shape for values in found.values()] == [(200,)] * 3
+    with pytest.raises(UnknownName, match="bar.angles: there is no such output; did you mean 'bar.angle'"):
+        found["bar.angles"]
+
+
+def test_a_path_is_copied_and_pickled(path):
+    assert copy.deepcopy(path) is copy.copy(path) is path
+    other = pickle.loads(pickle.dumps(path))
+    np.testing.assert_array_equal(other(CRANK)["G.position"], path(CRANK)["G.position"])
+    assert (other.names, other.free, other.modes) == (path.names, path.free, path.modes)
+    assert (
+        repr(other)
+        == "CompiledPath('Six-bar of Example 3-4': G.position, G.acceleration, bar.angle of crank.D, plate.A.y)"
+    )
+
+
+def test_results_do_not_depend_on_threads(path):
+    one, two = (path(CRANK, {"crank.D": COLUMN}, threads=threads)["G.acceleration"] for threads in (1, 2))
+    np.testing.assert_array_equal(one, two)
