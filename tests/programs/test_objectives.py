@@ -242,3 +242,19 @@ def test_a_gradient_is_the_sum_of_slopes_at_every_pose():
             )
             scale = np.sum(abs(found[output] - (1.0 + 2.0j)) * abs(found[output, each]))
             assert abs(part - chained) <= 1e-12 * max(scale, 1e-300)
+
+
+@pytest.mark.parametrize("name", ["parallelogram", "antiparallelogram"])
+def test_slopes_go_on_beyond_change_points(name):
+    """Slopes by the driver are velocities at unit speed, as solve has them; a gradient sums the slopes of all poses."""
+    mechanism = loaded(name)
+    angles = np.deg2rad(np.arange(5.0, 720.0, 13.0))
+    path = ck.compile(mechanism, "C", free=["coupler.C", "follower.D"])
+    found = path.derivatives(angles)
+    velocity = ck.solve(mechanism, angles, speed=1.0, modes=path.modes).points["C"].velocity
+    np.testing.assert_allclose(found["C", "crank"], velocity, rtol=1e-10, atol=1e-10 * abs(velocity).max())
+    target = 20.0 + 30.0j
+    _, slope = path.objective(lambda at: abs(at["C"] - at["target"]) ** 2).gradient(angles, target=target)
+    for each, parts in slope.items():
+        summed = [np.sum(2.0 * ((found["C"] - target).conj() * found["C", f"{each}.{x}"]).real) for x in "xy"]
+        np.testing.assert_allclose(parts, complex(*summed), rtol=1e-10)

@@ -17,6 +17,7 @@ from compoundkin.programs.derivatives.objective_program import ObjectiveForm, Ob
 from compoundkin.programs.derivatives.parameters import with_parameters
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
 from compoundkin.programs.derivatives.told_designs import ASSEMBLED, EVERYWHERE, SOLVED, told_designs
+from compoundkin.programs.written_arrays import hold_threads
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms
@@ -94,6 +95,7 @@ class PathObjective(PrintsShort):
         self, numbers: CallNumbers, given: Mapping[str, Any], is_sloped: bool, threads: int
     ) -> tuple[Any, dict[str, Any]]:
         """Return value and slopes; designs that come near a limit are computed again with masks."""
+        hold_threads(threads)
         whole, complex_names = with_parameters(numbers, given)
         run, path = partial(self._run, complex_names, is_sloped, threads), self.path
         every = np.arange(whole.extent[0])

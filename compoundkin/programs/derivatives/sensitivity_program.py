@@ -24,6 +24,7 @@ from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.settled_values import settled_values
+from compoundkin.programs.written_arrays import hold_threads
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms
@@ -77,6 +78,7 @@ class SensitivityPrograms(PrintsShort):
 
     def found(self, numbers: CallNumbers, by: Sequence[str] | None, threads: int) -> PathSensitivities:
         """Compute outputs and slopes by what is named, or by all free dimensions and drivers."""
+        hold_threads(threads)
         known = _directions(numbers)
         unknown = [name for name in by or () if name not in known]
         if unknown:
