@@ -10,7 +10,9 @@ from typing import Any, Protocol
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
+from compoundkin.kinematics.approach import SPACING
 from compoundkin.kinematics.driver_values import by_name
+from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends.jax_operations import evaluated
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
@@ -22,7 +24,7 @@ from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput
 
 RATES = ("speed", "acceleration", "jerk")
-ASSEMBLED = "assembled"
+ASSEMBLED, CERTAIN = "assembled", "certain"
 
 
 class RecordedVariants(Protocol):
@@ -54,8 +56,8 @@ class JaxPath(PrintsShort):
 
     It takes the names of the path, `f({"crank": angles}, {"plate.C": places}, speed=10)`, and runs on any device. Its
     numbers have the precision that JAX gives them: seven digits, or sixteen where its user enables 64 bits (`with
-    jax.enable_x64():`). The configuration is that of the path everywhere, with fixed signs: what the path solves anew
-    next to limits is here masked or left as it is.
+    jax.enable_x64():`). The configuration is that of the path everywhere, with fixed signs. Where a group comes near a
+    limit or a change point the path looks closer and solves anew; no pure function can, and `"certain"` is False there.
     """
 
     path: RecordedVariants
@@ -69,7 +71,7 @@ class JaxPath(PrintsShort):
         acceleration: Any = None,
         jerk: Any = None,
     ) -> dict[str, Any]:
-        """Return the outputs by their names, and which poses are assembled.
+        """Return the outputs by their names, "assembled" for each pose, and "certain" for each design.
 
         Everything broadcasts, the last axis the motion. What is left out has the value of the mechanism.
         """
@@ -82,14 +84,14 @@ class JaxPath(PrintsShort):
         graph, wanted = path.mechanism.graph, _wanted(path)
         shape = jnp.broadcast_shapes(*(jnp.shape(value) for value in given.values()))
         used = {k: graph.nodes[k].given for k in graph.inputs(wanted)}
-        *found, failed = evaluated(graph, wanted, {k: given[one] for k, one in used.items() if one is not None})
+        *found, failed, margin = evaluated(graph, wanted, {k: given[one] for k, one in used.items() if one is not None})
         assembled = jnp.broadcast_to(failed == 0.0, shape)
         parts = iter(jnp.where(assembled, value, jnp.nan) for value in found)
         whole = {}
         for output, nodes in zip(self.path.outputs, path.nodes, strict=True):
             value = _joined(tuple(next(parts) for _ in nodes))
             whole[output.name] = continuous(value) if output.is_wrapped else value
-        return {**whole, ASSEMBLED: assembled}
+        return {**whole, ASSEMBLED: assembled, CERTAIN: self._certain(jnp.broadcast_to(margin, shape), drives)}
 
     def _drives(self, values: Any, rates: Mapping[str, Any]) -> dict[InputNumber, Any]:
         """Return the drivers' values and rates."""
@@ -121,6 +123,19 @@ class JaxPath(PrintsShort):
             found.update(zip(one.inputs, (jnp.real(value), jnp.imag(value)), strict=False))
         return found
 
+    def _certain(self, margin: Any, drives: Mapping[InputNumber, Any]) -> Any:
+        """Tell which designs need no closer look, as `limit_look.bound` has it."""
+        import jax.numpy as jnp
+
+        if not margin.ndim:
+            return margin >= NEAR
+        longest, order = jnp.ones(()), self.path.reference.solving_order
+        for one, value in drives.items():
+            if one.part == "0" and jnp.ndim(value) and jnp.shape(value)[-1] > 1:
+                steps = jnp.max(jnp.abs(jnp.diff(jnp.asarray(value))), axis=-1)
+                longest = jnp.maximum(longest, steps / (order.unit(one.name) * SPACING))
+        return jnp.min(margin, axis=-1) >= NEAR * longest**2
+
     def __repr__(self) -> str:
         return f"JaxPath({', '.join(output.name for output in self.path.outputs)})"
 
@@ -144,8 +159,9 @@ def jax_path(path: RecordedVariants) -> JaxPath:
 
 
 def _wanted(path: RecordedPath) -> list[int]:
-    """Return the nodes of the outputs, then that of what failed."""
-    return [*(node for nodes in path.nodes for node in nodes), RecordedLimits(path.mechanism).failed.x]
+    """Return the nodes of the outputs, then those of what failed and of what is certain."""
+    limits = RecordedLimits(path.mechanism)
+    return [*(node for nodes in path.nodes for node in nodes), limits.failed.x, limits.certain.x]
 
 
 def _joined(parts: tuple[Any, ...]) -> Any:

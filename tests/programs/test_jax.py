@@ -67,6 +67,7 @@ def test_it_equals_solve_and_the_tape_under_jit_and_vmap() -> None:
             for ours in (found[name][d], mapped[name][d], tape[name][d]):
                 np.testing.assert_allclose(ours, expected, rtol=0.0, atol=1e-12 * np.max(np.abs(expected)))
     assert found["assembled"].all()
+    assert mapped["certain"].tolist() == found["certain"].tolist() == [True, True, True]
     assert found["G.position"].dtype == complex
 
 
@@ -129,6 +130,11 @@ def test_angles_go_on_over_full_turns_and_gaps() -> None:
     np.testing.assert_allclose(found, turning(angles)["follower.angle"], atol=1e-12)
     np.testing.assert_allclose(over_gaps[0], np.where(np.isnan(rocking), np.nan, -0.7 * angles), atol=1e-12)
     np.testing.assert_allclose(over_gaps[2] - over_gaps[2, 0], 0.7 * angles + 0.0 * over_gaps[2], atol=1e-12)
+
+
+def test_where_signs_may_change_nothing_is_certain() -> None:
+    found = quick(compile(ck.catalog.load_named("parallelogram"), "coupler.angle").jax(), CRANK)
+    assert not found["certain"]
 
 
 def test_a_slip_is_told() -> None:
