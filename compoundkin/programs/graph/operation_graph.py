@@ -54,31 +54,39 @@ class OperationGraph(PrintsShort):
     def constant(self, value: float) -> int:
         """Return the node of a number."""
         # by its bits, since NaN does not equal itself and -0.0 equals 0.0
-        return self._once((CONSTANT, struct.pack("d", value)), OperationNode(CONSTANT, value=float(value)))
+        key = CONSTANT, struct.pack("d", value)
+        found = self._seen.get(key)
+        return self._new(key, OperationNode(CONSTANT, value=float(value))) if found is None else found
 
     def input(self, given: InputNumber) -> int:
         """Return the node of an input."""
-        return self._once((INPUT, given), OperationNode(INPUT, given=given))
+        found = self._seen.get(given)
+        return self._new(given, OperationNode(INPUT, given=given)) if found is None else found
 
     def apply(self, operation: str, *operands: int) -> int:
         """Return the node of an operation, or a simpler one of the same value."""
-        known = [self.nodes[k] for k in operands]
-        if operation in OPERATIONS:
-            if all(node.operation == CONSTANT for node in known):
-                with np.errstate(all="ignore"):
-                    return self.constant(float(OPERATIONS[operation].compute(*(node.value for node in known))))
-            simpler = folded(self, operation, operands)
-            if simpler is not None:
-                return simpler
-            if OPERATIONS[operation].is_commutative:
-                operands = tuple(sorted(operands))
-        return self._once((operation, operands), OperationNode(operation, operands))
-
-    def _once(self, key: object, node: OperationNode) -> int:
+        key = operation, operands
         found = self._seen.get(key)
         if found is None:
-            found = self._seen[key] = len(self.nodes)
-            self.nodes.append(node)
+            simpler = self._simpler(operation, operands) if operation in OPERATIONS else None
+            if simpler is None:
+                return self._new(key, OperationNode(operation, operands))
+            found = self._seen[key] = simpler
+        return found
+
+    def _simpler(self, operation: str, operands: tuple[int, ...]) -> int | None:
+        """Return a node that is there already, or cheaper; None where there is none."""
+        known = [self.nodes[k] for k in operands]
+        if all([node.operation == CONSTANT for node in known]):
+            with np.errstate(all="ignore"):
+                return self.constant(float(OPERATIONS[operation].compute(*(node.value for node in known))))
+        if OPERATIONS[operation].is_commutative and operands[0] > operands[1]:
+            return self.apply(operation, *operands[::-1])
+        return folded(self, operation, operands)
+
+    def _new(self, key: object, node: OperationNode) -> int:
+        found = self._seen[key] = len(self.nodes)
+        self.nodes.append(node)
         return found
 
     def is_constant(self, node: int, value: float) -> bool:

@@ -63,24 +63,28 @@ def _sub(graph: OperationGraph, a: int, b: int) -> int | None:
 
 
 def _mul(graph: OperationGraph, a: int, b: int) -> int | None:
-    for one, other in ((a, b), (b, a)):
-        if graph.is_constant(one, 0.0):
-            return one
-        if graph.is_constant(one, 1.0):
-            return other
-        if graph.is_constant(one, -1.0):
-            return graph.apply("neg", other)
-    for one, other in ((a, b), (b, a)):
-        minus = _inner(graph, one, "neg")
-        if minus is not None:
-            return graph.apply("neg", graph.apply("mul", minus, other))
-        node = graph.nodes[one]
-        if node.operation == CONSTANT and node.value < 0.0:
-            return graph.apply("neg", graph.apply("mul", graph.constant(-node.value), other))
+    x, y = graph.nodes[a], graph.nodes[b]
+    for node, one, other in ((x, a, b), (y, b, a)):
         if node.operation == CONSTANT:
-            return _scaled(graph, node.value, other)
-    root = _inner(graph, a, "sqrt")
-    return root if a == b and root is not None else None
+            return _by_number(graph, one, other)
+        if node.operation == "neg":
+            return graph.apply("neg", graph.apply("mul", node.operands[0], other))
+    return x.operands[0] if a == b and x.operation == "sqrt" else None
+
+
+def _by_number(graph: OperationGraph, one: int, other: int) -> int | None:
+    """Return a simpler product with a number."""
+    factor = graph.nodes[one].value
+    if factor == 0.0:
+        return one
+    if factor == 1.0:
+        return other
+    if factor < 0.0:
+        return graph.apply("neg", graph.apply("mul", graph.constant(-factor), other))
+    minus = _inner(graph, other, "neg")
+    if minus is not None:
+        return graph.apply("neg", graph.apply("mul", one, minus))
+    return _scaled(graph, factor, other)
 
 
 def _scaled(graph: OperationGraph, factor: float, node: int) -> int | None:
