@@ -13,7 +13,7 @@ from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.call_numbers import CallNumbers, DriverNumbers, call_numbers
-from compoundkin.programs.call_seeds import with_seeds
+from compoundkin.programs.call_seeds import CallSeeds
 from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.dimension_values import dimension_values
@@ -79,6 +79,12 @@ class PathPrograms(PrintsShort):
         return self.configuration.signs
 
     @cached_property
+    def seeds(self) -> CallSeeds:
+        """What finds the seeds of its calls."""
+        own = {one: value for free in self.dimensions for one, value in free.parts_of(self.stated.own(free))}
+        return CallSeeds(partial(self.solved, order=0), own, self.chosen_backend)
+
+    @cached_property
     def limits(self) -> LimitPrograms:
         """The programs that look at designs near limits."""
         return LimitPrograms(self._recording(), self.reference, self.configuration.shown, self.chosen_backend)
@@ -119,7 +125,7 @@ class PathPrograms(PrintsShort):
         found = dimension_values(self.stated, self.dimensions, dimensions)
         motion = DriverNumbers(values, speed, acceleration, jerk, time, self.order)
         numbers = call_numbers(self.reference.solving_order, motion, found)
-        return with_seeds(self.variant(numbers.still), numbers, partial(self.solved, order=0), self.chosen_backend)
+        return self.seeds.added(self.variant(numbers.still), numbers)
 
     def outputs_of(self, numbers: CallNumbers) -> dict[str, bool]:
         """Return the names of its outputs, and which are vectors."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,6 +51,10 @@ class FreeDimension:
         if self.is_of_link:
             return (InputNumber(DIMENSION, self.base, self.part),)
         return (InputNumber(DIMENSION, self.name),)
+
+    def parts_of(self, value: Number) -> Iterator[tuple[InputNumber, Number]]:
+        """Yield the inputs that it is with their parts of a value."""
+        yield from zip(self.inputs, (np.real(value), np.imag(value)), strict=False)
 
     def part_of(self, value: Number) -> Number:
         """Return its part of a point."""

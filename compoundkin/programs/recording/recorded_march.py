@@ -43,7 +43,7 @@ class RecordedMarch(PrintsShort):
         march = cls(mechanism)
         for solver in march.solvers:
             side = RecordedNumber.given(mechanism.graph, side_of(solver))
-            mechanism.block.fail(side * march._side(solver) >= 0.0, solver.index)
+            mechanism.block.fail(side * march.side(solver) >= 0.0, solver.index)
         return march
 
     @property
@@ -61,13 +61,18 @@ class RecordedMarch(PrintsShort):
         """The numbers carried from pose to pose."""
         return tuple(one for solver in self.solvers for one in self._of_group(solver))
 
+    def states(self, solver: GroupSolver) -> Iterator[tuple[InputNumber, RecordedNumber]]:
+        """Yield the seeds of a group's state with what they become: the state at the pose itself."""
+        for given, number in zip(state_seeds(solver), solver.state(self.mechanism.block), strict=True):
+            yield given, self.mechanism.number(number)
+
     def _of_group(self, solver: GroupSolver) -> Iterator[Carried]:
         graph = self.mechanism.graph
         for given, number in zip(state_seeds(solver), solver.state(self._ahead), strict=True):
             yield Carried(graph.input(given), graph.input(start_of(given)), self.mechanism.number(number).x)
-        yield Carried(graph.input(side_of(solver)), graph.constant(0.0), self._side(solver).x)
+        yield Carried(graph.input(side_of(solver)), graph.constant(0.0), self.side(solver).x)
 
-    def _side(self, solver: GroupSolver) -> RecordedNumber:
+    def side(self, solver: GroupSolver) -> RecordedNumber:
         """Return the determinant of a group's equations."""
         graph = self.mechanism.graph
         state = [RecordedNumber.given(graph, given) for given in state_seeds(solver)]
