@@ -30,7 +30,10 @@ FAR = 0.2
 
 @dataclass(frozen=True)
 class DesignWay(PrintsShort):
-    """A program that carries the states of groups from dimension to dimension, at one pose."""
+    """A program that carries states of groups from dimension to dimension.
+
+    The drivers rest at one pose.
+    """
 
     flat: FlatProgram
     runner: Runner
