@@ -39,6 +39,11 @@ from compoundkin.kinematics.gaps import Gap
 from compoundkin.kinematics.jacobian import Jacobian
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import Table
+from compoundkin.programs.compiled_path import CompiledPath
+from compoundkin.programs.derivatives.path_objective import PathObjective
+from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
+from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
+from compoundkin.programs.path_values import PathValues
 from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis
 from compoundkin.view.animation import Animation
@@ -53,6 +58,7 @@ __all__ = [
     "Characteristics",
     "Check",
     "Circuits",
+    "CompiledPath",
     "Configuration",
     "Configurations",
     "DriverEffort",
@@ -73,10 +79,14 @@ __all__ = [
     "LoopEquations",
     "MobilityAnalysis",
     "Motion",
+    "ObjectivePose",
     "Page",
     "PairForce",
     "PairFriction",
     "PairMotion",
+    "PathObjective",
+    "PathSensitivities",
+    "PathValues",
     "Picture",
     "PinForces",
     "Plot",

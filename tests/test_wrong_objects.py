@@ -88,6 +88,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "configurations": {"mechanism": m, "values": {"crank": 1.0}},
         "cylinder": {"link": "a", "point": "A", "to": "b", "at": "B", "stroke": None, "name": "n"},
         "damper": {"link": "a", "point": "A", "to": "frame", "at": "S", "pair": "", "rate": 4.0, "name": "n"},
+        "compile": {"mechanism": m, "outputs": ["C"], "free": ["coupler.C"], "values": None, "modes": None,
+                    "hint": None, "backend": "numpy"},
         "decompose": {"mechanism": m},
         "deg": {"angle": 3.0},
         "draw": {"what": motion, "at": None, "kind": "sketch", "pose": 0, "design": 0, "ghosts": 0, "paths": (),

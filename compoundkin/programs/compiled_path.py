@@ -167,7 +167,7 @@ class CompiledPath(WritesSources, PathPrograms):
         acceleration: Any = None,
         jerk: Any = None,
         time: Any = None,
-        by: Sequence[str] | None = None,
+        by: str | Sequence[str] | None = None,
         threads: int = 1,
     ) -> PathSensitivities:
         """Compute the outputs and their slopes at every pose.

@@ -57,7 +57,10 @@ class ObjectiveValues(PrintsShort):
 
     @classmethod
     def joined(cls, count: int, parts: Sequence[tuple[Number, ObjectiveValues]]) -> ObjectiveValues:
-        """Join the values of some designs, by index; later ones take the place of earlier ones."""
+        """Join the values of some designs, by index.
+
+        Later ones take the place of earlier ones.
+        """
 
         def put(arrays: Sequence[Number]) -> Number:
             whole = np.empty((count, arrays[0].shape[1]), arrays[0].dtype)

@@ -40,8 +40,8 @@ def with_parameters(numbers: CallNumbers, given: Mapping[str, Any]) -> tuple[Cal
 
 
 def _array(name: str, value: Any) -> Number:
-    read = planar_numbers if np.iscomplexobj(value) else real_numbers
-    array = read(name, value)
+    planar = planar_numbers(name, value)
+    array = planar if np.iscomplexobj(value) else real_numbers(name, value)
     if array.size == 0 or not np.isfinite(array).all():
         raise InvalidInput(Problem(name, "the value is empty or not finite"))
     return array

@@ -46,13 +46,13 @@ class PathSensitivities(PrintsShort):
         ([(2+0j)], [1.0], [2.0])
         """
         if not isinstance(name, tuple):
-            return self.values[name]
-        if name not in self.slopes:
-            output, by = name if len(name) == 2 else (name, "")
+            return self.values[str(name)]
+        output, by = map(str, name if len(name) == 2 else ("", name))
+        if (output, by) not in self.slopes:
             wrong, known = (output, list(self.values.found)) if by in self.by else (by, list(self.by))
             raise UnknownName(Problem(str(wrong), "there is no such slope", nearest(wrong, known)))
         numbers = self.values.numbers
-        return np.broadcast_to(self.slopes[name], numbers.extent).reshape(numbers.shape)
+        return np.broadcast_to(self.slopes[output, by], numbers.extent).reshape(numbers.shape)
 
     def __repr__(self) -> str:
         return f"PathSensitivities({', '.join(self.values.found)} by {', '.join(self.by)})"

@@ -71,7 +71,7 @@ def recorded_cost(
             cost = assembled.like(function(pose))
     except CompoundkinError:
         raise
-    except (TypeError, AttributeError, ValueError) as error:
+    except (TypeError, AttributeError, ValueError, OverflowError) as error:
         what = f"it cannot be recorded: {error}"
         remedy = "write it of one pose, in arithmetic and NumPy's functions of numbers; np.where instead of if"
         raise InvalidInput(Problem("objective", what, remedy)) from error

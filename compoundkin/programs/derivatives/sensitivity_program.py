@@ -71,19 +71,23 @@ class SensitivityProgram(PrintsShort):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SensitivityPrograms(PrintsShort):
-    """The programs that compute outputs of a path and their slopes, made as they are asked for."""
+    """The programs that compute outputs of a path and their slopes."""
 
     path: PathPrograms
     _programs: dict[Any, SensitivityProgram] = field(default_factory=dict)
 
-    def found(self, numbers: CallNumbers, by: Sequence[str] | None, threads: int) -> PathSensitivities:
-        """Compute outputs and slopes by what is named, or by all free dimensions and drivers."""
+    def found(self, numbers: CallNumbers, by: str | Sequence[str] | None, threads: int) -> PathSensitivities:
+        """Compute outputs and slopes.
+
+        They are by what is named, or by all free dimensions and drivers.
+        """
         hold_threads(threads)
         known = _directions(numbers)
-        unknown = [name for name in by or () if name not in known]
+        asked = list(known) if by is None else [by] if isinstance(by, str) else [str(name) for name in by]
+        unknown = [name for name in asked if name not in known]
         if unknown:
             raise UnknownName([Problem(f"by.{name}", "it is no input", nearest(name, list(known))) for name in unknown])
-        wanted = {name: known[name] for name in (known if by is None else by)}
+        wanted = {name: known[name] for name in asked}
         path, names = self.path, self.path.names
         found = self._run(numbers, wanted, False, threads)
         look = path.limits.doubtful(numbers, found.pop(_MARGIN))

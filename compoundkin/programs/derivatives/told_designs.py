@@ -28,7 +28,7 @@ EVERYWHERE, ASSEMBLED, SOLVED = "everywhere", "assembled", "solved"
 
 
 def known_poses(path: RecordedPath, names: Sequence[str], how: str) -> tuple[RecordedNumber, dict[str, RecordedNumber]]:
-    """Return whether a pose is assembled, and whether each output is known there, as truths."""
+    """Return whether a pose is assembled, and whether each output is known."""
     mechanism = path.mechanism
     if how == SOLVED:
         mask = [RecordedNumber.given(mechanism.graph, _mask(name)) > 0.5 for name in ("", *names)]
@@ -38,7 +38,7 @@ def known_poses(path: RecordedPath, names: Sequence[str], how: str) -> tuple[Rec
 
 
 def told_designs(path: PathPrograms, numbers: CallNumbers, designs: Number) -> Iterator[tuple[Number, CallNumbers]]:
-    """Solve some designs, and yield them with what a seeded program is given for them."""
+    """Solve some designs, and yield what a seeded program is given for them."""
     seeds = path.variant(numbers.still, is_seeded=True).seeds
     names = path.names
     for part, told in solved_parts(path.solved, numbers, designs):
