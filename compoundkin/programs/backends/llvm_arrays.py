@@ -17,8 +17,9 @@ AHEAD, CACHE_LINE = 512, 64
 class LaneArrays:
     """Loads and stores of one section. Its lanes go along an axis; without one there is one lane."""
 
-    def __init__(self, plan: LanePlan, text: LaneText, axis: int, is_masked: bool) -> None:
+    def __init__(self, plan: LanePlan, text: LaneText, axis: int, is_masked: bool, loops: bool) -> None:
         self.plan, self.text, self.axis, self.is_masked = plan, text, axis, is_masked
+        self.loops, self._stage_now = loops, ""
         self._bases: dict[int, str] = {}
         self._steps: dict[tuple[int, int], str] = {}
         self._masks: dict[int, str] = {}
@@ -137,6 +138,8 @@ class LaneArrays:
         """Write an array's lanes to it. One part of complex numbers waits for the other."""
         if not self.axis:
             self.text.do(f"store double {value}, ptr {self._address(array)}")
+        elif self.loops and array in self.plan.staged:
+            self._stage(array, value)
         elif self._kind(array) == ANY_STRIDE:
             self._scatter(array, value)
         elif self._kind(array) == COMPLEX:
@@ -171,6 +174,16 @@ class LaneArrays:
         for byte in range(AHEAD, AHEAD + 8 * lanes, CACHE_LINE):
             line = self.text.put(f"getelementptr i8, ptr {place}, i64 {byte}")
             self.text.do(f"call void @llvm.prefetch.p0(ptr {line}, i32 1, i32 3, i32 1)")
+
+    def _stage(self, array: int, value: str) -> None:
+        """Write an array's lanes to where they are kept."""
+        text, plan = self.text, self.plan
+        if not self._stage_now:
+            pose = text.put(f"mul i64 {text.put('sub i64 %p, %start')}, {text.lanes}")
+            self._stage_now = text.put(f"getelementptr double, ptr %S, i64 {pose}")
+        word = plan.at_staged + plan.staged.index(array) * plan.piece * text.lanes
+        place = text.put(f"getelementptr double, ptr {self._stage_now}, i64 {word}")
+        text.do(f"store {text.real} {value}, ptr {place}, align 8")
 
     def _scatter(self, array: int, value: str) -> None:
         text, lanes = self.text, self.text.lanes

@@ -21,6 +21,8 @@ DESIGNS_AT_ONCE, SEGMENTS = 64, 64
 ROWS_IN_CACHE, POSES_AT_MOST = 32_768, 4_096  # numbers
 # Poses: whole vectors of any machine, and fewer than make it worth while to add up once more.
 POSES_TOGETHER, SHORTEST_SEGMENT = 64, 512
+# Poses whose results are kept before they are written: some lines of cache of each design.
+POSES_STAGED = 32
 
 
 @dataclass(frozen=True)
@@ -129,11 +131,20 @@ class LanePlan:
         if name == BEFORE:
             yield from (one.start for one in self.program.carried)
 
+    @cached_property
+    def staged(self) -> tuple[int, ...]:
+        """The arrays that are written along the poses although lanes go along designs."""
+        if self.axis != BY_DESIGN:
+            return ()
+        return tuple(array for array, _ in self.sinks[LOOP] if self.layout.kinds[array] == ANY_STRIDE)
+
     # --- the places, in words of eight bytes ---
 
     @cached_property
     def piece(self) -> int:
         """The number of poses whose rows are kept at a time."""
+        if self.staged:
+            return POSES_STAGED
         rows = max(len(self.kept[ROWS]), 1)
         return max(min(ROWS_IN_CACHE // rows, POSES_AT_MOST) // POSES_TOGETHER, 1) * POSES_TOGETHER
 
@@ -173,9 +184,15 @@ class LanePlan:
         return (len(self.reductions) + len(self.program.carried)) * self.width
 
     @cached_property
+    def at_staged(self) -> int:
+        """The word where results are kept that are written along the poses."""
+        segments = SEGMENTS if self.axis == BY_POSE else 1
+        return self.at_sums + (self.of_sums * self.designs_at_once * segments + 7) // 8 * 8
+
+    @cached_property
     def size(self) -> int:
         """The number of words of all."""
-        return self.at_sums + self.of_sums * self.designs_at_once * (SEGMENTS if self.axis == BY_POSE else 1) + 8
+        return self.at_staged + len(self.staged) * self.piece * self.machine.lanes + 8
 
     @cached_property
     def width(self) -> int:

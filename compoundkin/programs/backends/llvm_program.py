@@ -25,6 +25,8 @@ from compoundkin.programs.backends.llvm_plan import (
     LanePlan,
 )
 from compoundkin.programs.backends.llvm_records import unpacking_text
+from compoundkin.programs.backends.llvm_section import PARAMETERS
+from compoundkin.programs.backends.llvm_staging import STAGED, staging_text
 from compoundkin.programs.graph.flat_program import BY_POSE
 
 # The arrays, scratch, designs and poses, which designs and segments, where their sums are, whether it is the last call
@@ -50,6 +52,9 @@ def program_text(plan: LanePlan) -> str:
             function, declares = function_text(plan, name, bool(suffix) or plan.machine.has_masks, suffix)
             parts.append(function)
             declared |= declares
+    if plan.staged:
+        parts.append(staging_text(plan, PARAMETERS))
+        declared.add("declare void @llvm.prefetch.p0(ptr, i32, i32, i32)")
     parts.append(_by_poses(plan) if plan.axis == BY_POSE else _by_designs(plan))
     width = 64 * min(plan.machine.lanes, 8)
     vectors = f'"prefer-vector-width"="{width}" "min-legal-vector-width"="{width}"'
@@ -60,6 +65,8 @@ def program_text(plan: LanePlan) -> str:
 
 def _is_used(plan: LanePlan, name: str) -> bool:
     """Tell whether a section does anything."""
+    if name == STAGED:
+        return bool(plan.staged)
     sums = plan.of_sums and (name == LOOP or (name == BEFORE and plan.width > 1))
     return bool(sums or plan.nodes[name] or plan.sinks[name])
 
@@ -187,5 +194,6 @@ def _by_designs(plan: LanePlan) -> str:
                 end = text.least(text.whole("add", p, plan.piece), "%P")
                 text.rows(p, end)
                 text.section(LOOP, G=G, A=A, d=d, end="%d1", poses=(p, end, p), suffix=suffix)
+                text.section(STAGED, d=d, end="%d1", poses=(p, end, p))
             text.section(AFTER, G=G, A=A, d=d, end="%d1", suffix=suffix)
     return text.end()

@@ -23,7 +23,7 @@ class LaneSection:
         self.loops = name in (ROWS, LOOP)
         self.axis = BY_POSE if name == ROWS else 0 if name == FIXED or plan.axis not in self._axes() else plan.axis
         self.text = LaneText(plan.machine.lanes if self.axis else 1, plan.machine.has_fma)
-        self.arrays = LaneArrays(plan, self.text, self.axis, is_masked)
+        self.arrays = LaneArrays(plan, self.text, self.axis, is_masked, self.loops)
         self._numbers: dict[int, str] = {}
         self._truths: dict[int, str] = {}
         self._turned: dict[int, tuple[str, str]] = {}
