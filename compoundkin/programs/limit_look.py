@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -21,8 +22,9 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.approach_look import approach_values
 from compoundkin.programs.backends import runner_of
+from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.call_numbers import CallNumbers, picked
-from compoundkin.programs.graph.flat_program import flat_program
+from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.recording.input_kinds import DRIVE, HOLDS
 from compoundkin.programs.recording.recorded_limits import CLOSE, NEAR, RecordedLimits
@@ -78,6 +80,7 @@ class LimitPrograms(PrintsShort):
 
     def __init__(self, recording: Recording, reference: Motion, shown: Shown, backend: str | None) -> None:
         self.recording, self.reference, self.shown, self.backend = recording, reference, shown, backend
+        self._ready: dict[Any, tuple[FlatProgram, Runner]] = {}
 
     def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
         """Return which designs need a look, and which may change mode before their motion."""
@@ -157,12 +160,20 @@ class LimitPrograms(PrintsShort):
 
     def _computed(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> list[Number]:
         """Return some nodes at all designs and poses."""
+        flat, runner = self._program(asked, numbers)
+        outputs = [np.empty(flat.shape(k, *numbers.extent)) for k in asked[1]]
+        runner(numbers.arrays(flat), outputs, numbers.extent)
+        return [np.broadcast_to(one, numbers.extent) for one in outputs]
+
+    def _program(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> tuple[FlatProgram, Runner]:
+        """Return the program of some nodes for numbers of these forms, made once."""
         limits, nodes = asked
         graph = limits.mechanism.graph
-        flat = flat_program(graph, nodes, numbers.strata(graph))
-        outputs = [np.empty(flat.shape(k, *numbers.extent)) for k in nodes]
-        runner_of(flat, self.backend)(numbers.arrays(flat), outputs, numbers.extent)
-        return [np.broadcast_to(one, numbers.extent) for one in outputs]
+        key = id(graph), tuple(nodes), tuple(numbers.given), numbers.form
+        if key not in self._ready:
+            flat = flat_program(graph, nodes, numbers.strata(graph))
+            self._ready[key] = flat, runner_of(flat, self.backend)
+        return self._ready[key]
 
 
 def _refined(value: Number, per_pose: int) -> Number:
