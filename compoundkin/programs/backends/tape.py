@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from itertools import chain, groupby
 from typing import Any
 
 import numpy as np
 
 from compoundkin.programs.backends.block_layout import PoseBlock, number_of_pieces, pose_blocks, useful_threads
+from compoundkin.programs.backends.kept_threads import done_by_threads
 from compoundkin.programs.backends.row_buffers import RowBuffers
 from compoundkin.programs.backends.tape_instructions import STORE
 from compoundkin.programs.backends.tape_phases import Sink, TapePhase, tape_phases
@@ -36,12 +36,7 @@ class PhaseRunner:
         sources = [values[k] for k in phase.sources]
         targets = [_target(sink, outputs, (designs, poses)) for sink in phase.sinks]
         shares = [runs[k * len(runs) // threads : (k + 1) * len(runs) // threads] for k in range(threads)]
-        if threads == 1:
-            self._compute(shares[0], sources, targets)
-        else:
-            with ThreadPoolExecutor(threads) as pool:
-                for done in [pool.submit(self._compute, share, sources, targets) for share in shares]:
-                    done.result()
+        done_by_threads(self._compute, ((share, sources, targets) for share in shares))
         for sink, target in zip(phase.sinks, targets, strict=True):
             if sink.output is None:
                 values[sink.node] = _finished(sink, target, shape)
