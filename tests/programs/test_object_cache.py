@@ -17,9 +17,6 @@ pytest.importorskip("llvmlite")
 SCRIPT = """
 import sys
 from tests.programs.test_object_cache import run
-if "loaded" in sys.argv:
-    from llvmlite.binding import TargetMachine
-    TargetMachine.emit_object = None
 run(int(sys.argv[1]))
 """
 
@@ -43,12 +40,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "kept"
 
 
-def test_other_processes_load_what_one_compiled(folder: Path) -> None:
-    """Two at once compile and keep the same program; a third must not compile, and a damaged file is replaced."""
+def test_other_processes_load_what_one_compiled(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two at once compile and keep the same program; this one need not compile. A damaged file is replaced."""
     both = [process("3"), process("3")]
     assert [each.wait() for each in both] == [0, 0]
     assert [path.suffix for path in folder.iterdir()] == [".o"]
-    assert process("3", "loaded").wait() == 0
+    with monkeypatch.context() as patch:
+        patch.setattr("llvmlite.binding.TargetMachine.emit_object", None)
+        run(3)
     (kept,) = folder.iterdir()
     whole = kept.read_bytes()
     for damaged in (b"", whole[:100], whole[:-9] + b"disturbed", b"\x00" * len(whole)):

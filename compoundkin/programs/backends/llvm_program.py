@@ -26,7 +26,7 @@ from compoundkin.programs.backends.llvm_plan import (
 )
 from compoundkin.programs.backends.llvm_records import unpacking_text
 from compoundkin.programs.backends.llvm_section import PARAMETERS
-from compoundkin.programs.backends.llvm_staging import STAGED, staging_text
+from compoundkin.programs.backends.llvm_stage import STAGED, staging_text
 from compoundkin.programs.graph.flat_program import BY_POSE
 
 # The arrays, scratch, designs and poses, which designs and segments, where their sums are, whether it is the last call

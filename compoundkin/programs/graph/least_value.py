@@ -7,9 +7,10 @@ from compoundkin.programs.graph.operations import CONSTANT, LEAST
 
 
 def least_value(graph: OperationGraph, node: int) -> int:
-    """Return the least of a value over the poses, no number where any part is none.
+    """Return the least of a value over the poses.
 
-    Roots, and factors and summands that are known, are taken of the least instead of at every pose.
+    It is no number where any part is none. Roots, and factors and summands that are known, are taken of the least
+    instead of at every pose.
 
     >>> from compoundkin.programs.graph.operation_graph import InputNumber
     >>> graph = OperationGraph()

@@ -12,7 +12,7 @@ STAGED = "staged"
 
 
 def staging_text(plan: LanePlan, parameters: str) -> str:
-    """Return the function that writes what is kept; the poses that follow are prepared for."""
+    """Return the function that writes what is kept."""
     text = ControlText()
     lanes = text.least(text.whole("sub", "%end", "%d"), plan.machine.lanes)
     poses = text.whole("sub", "%to", "%from")
