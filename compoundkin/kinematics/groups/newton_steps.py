@@ -13,9 +13,6 @@ from compoundkin.base.series import Number, Series
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups.group_equations import CONVERGED, GroupEquations
 
-# A last step below this (of the size, or radians) has a matrix that is exact at the pose to which it leads; rates
-# are off by some tens of times this.
-EXACT = 1e-13
 # After steps that are not known to have converged, a correction that moves farther than this may have left its branch.
 STRAY = 0.03
 
@@ -23,7 +20,7 @@ STRAY = 0.03
 class ClosedState(NamedTuple):
     """Where steps led.
 
-    The bodies' poses there, the matrix of the last step, and whether all is as it should be.
+    The bodies' poses there, the matrix there, and whether all is as it should be.
     """
 
     bodies: Mapping[int, Pose]
@@ -34,8 +31,8 @@ class ClosedState(NamedTuple):
 class NewtonSteps(NamedTuple):
     """So many of Newton's steps, and a last one.
 
-    The last shares its matrix with all rates. Steps before the last come from states that are only near, such as
-    those predicted from another pose.
+    Steps before the last come from states that are only near, such as those predicted from another pose. Rates have the
+    matrix of where the last one led: that of the step is as good in value, but does not change with dimensions as it.
     """
 
     equations: GroupEquations
@@ -46,13 +43,16 @@ class NewtonSteps(NamedTuple):
         equations, leading, found = self.equations, block.leading(), list(state)
         for _ in range(self.before + 1):
             bodies = equations.kept_poses(found)
-            matrix = Elimination([*self._rows(bodies, leading)], equations.width)
-            step = matrix.times(equations.residual(bodies, leading, 0))
+            step = self._matrix(bodies, leading).times(equations.residual(bodies, leading, 0))
             found = [value - change for value, change in zip(found, step, strict=True)]
         moved = [value - start for value, start in zip(found, state, strict=True)]
         near = self._largest(moved) <= (min(leap, STRAY) if self.before else leap)
-        exact = self._largest(step) <= (EXACT if self.before else CONVERGED)
-        return ClosedState(equations.kept_poses(found), matrix, near & exact)
+        exact = self._largest(step) <= CONVERGED
+        bodies = equations.kept_poses(found)
+        return ClosedState(bodies, self._matrix(bodies, leading), near & exact)
+
+    def _matrix(self, bodies: Mapping[int, Pose], leading: Block) -> Elimination:
+        return Elimination([*self._rows(bodies, leading)], self.equations.width)
 
     def _largest(self, change: Sequence[Number]) -> Number:
         return largest_of([one * weight for one, weight in zip(change, self.equations.weights, strict=True)])

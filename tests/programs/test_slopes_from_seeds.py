@@ -1,4 +1,4 @@
-"""Programs of followers: they are found from seeds, yet change with every dimension as `solve` does."""
+"""Groups found from seeds, followers and those without a closed form: they change with dimensions as in `solve`."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ WORDS = ("position", "velocity", "acceleration")
         ("oscillating-flat-follower", "P", ("frame.H.x",)),
         ("groove-cam-plate", "P", ("guide.angle",)),
         ("geared-coupler", "C", ("coupler.C.x",)),
+        ("stephenson-ii", "E", ("frame.F.x",)),
     ],
 )
 def test_slopes_are_those_of_solve(name: str, point: str, free: tuple[str, ...]) -> None:
