@@ -43,6 +43,7 @@ from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
+from compoundkin.programs.jax_path import JaxPath
 from compoundkin.programs.path_values import PathValues
 from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis
@@ -71,6 +72,7 @@ __all__ = [
     "GroupMode",
     "HoldingEffort",
     "Jacobian",
+    "JaxPath",
     "LiftOff",
     "LiftOffSpeed",
     "LinkForces",

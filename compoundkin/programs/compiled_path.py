@@ -124,8 +124,11 @@ class CompiledPath(WritesSources, PathPrograms):
         return QuickCalls.of(self)
 
     @property
-    def modes(self) -> str:
-        """The name of the configuration that it stays in, for `solve`."""
+    def modes(self) -> str | Configuration:
+        """The configuration that it stays in, for `solve`.
+
+        It is the name, or where a group has no signs the configuration itself.
+        """
         return program_modes(self.reference, self.configuration)
 
     @checked

@@ -26,7 +26,7 @@ from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.call_numbers import CallNumbers, picked
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import DRIVE, HOLDS
+from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE, HOLDS
 from compoundkin.programs.recording.recorded_limits import CLOSE, NEAR, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, recorded
 
@@ -75,6 +75,11 @@ def _driver_values(numbers: CallNumbers) -> dict[str, Number]:
     return {given.name: value for given, value in numbers.given.items() if (given.kind, given.part) == (DRIVE, "0")}
 
 
+def _is_rigid(numbers: CallNumbers) -> bool:
+    """Tell whether no dimension varies along the motion."""
+    return all(value.shape[1] == 1 for given, value in numbers.given.items() if given.kind == DIMENSION)
+
+
 class LimitPrograms(PrintsShort):
     """The programs that look at limits, recorded when they are first needed."""
 
@@ -92,6 +97,9 @@ class LimitPrograms(PrintsShort):
             return np.zeros_like(near), near
         near = ~(least.min(axis=1) >= bound(order, numbers))
         way = approach_values(self.reference, self.shown, _driver_values(numbers)) if self._squares else None
+        if not _is_rigid(numbers):
+            # solving tells all of designs whose dimensions vary along the motion
+            return np.zeros_like(near), near | (way is not None)
         if way is None:
             return near, np.zeros_like(near)
         early = self._computed(self._poses, _driven(numbers, way, {name: np.zeros((1, 1)) for name in way}))[1]
@@ -134,7 +142,9 @@ class LimitPrograms(PrintsShort):
 
     def _touches(self, squares: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers, per_pose: int) -> Number:
         """Tell which designs may pass a change point between two samples."""
-        values = {name: _refined(value, per_pose) for name, value in _driver_values(numbers).items()}
+        poses = numbers.extent[1]
+        whole = {name: np.broadcast_to(v, (len(v), poses)) for name, v in _driver_values(numbers).items()}
+        values = {name: _refined(value, per_pose) for name, value in whole.items()}
         ahead = {name: value[:, 1:] - value[:, :-1] for name, value in values.items()}
         ends = [{name: value[:, part] for name, value in values.items()} for part in (slice(-1), slice(1, None))]
         one, two = (self._computed(squares, _driven(numbers, end, ahead)) for end in ends)

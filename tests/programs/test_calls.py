@@ -11,6 +11,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, LikelySlip, UnknownName
 from tests.catalog import mechanism as loaded
+from tests.test_wrong_objects import WRONG
 
 OUTPUTS = ["G.position", "G.acceleration", "bar.angle"]
 CRANK = np.linspace(0.3, 7.0, 200)
@@ -54,6 +55,28 @@ def test_a_call_is_what_solve_finds_of_the_mechanism_with_its_dimensions(path, d
         for name in OUTPUTS:
             expected = solved(motion, name)
             np.testing.assert_allclose(found[name], expected, atol=1e-11 * np.abs(expected).max(), rtol=0)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_one_driver_stands_while_another_comes_to_a_limit():
+    path = ck.compile(loaded("five-bar"), [f"{point}.velocity" for point in loaded("five-bar").carriers], free=[])
+    one, two = (drive.name for drive in loaded("five-bar").drives)
+    values = {one: np.linspace(0.0, 6.0, 40), two: np.linspace(0.0, 5.0, 7)[:, None]}
+    found, motion = path(values), ck.solve(loaded("five-bar"), values, modes=path.modes)
+    np.testing.assert_array_equal(found.assembled, motion.assembled)
+    assert 0 < np.count_nonzero(found.assembled) < found.assembled.size
+    for name in path.names:
+        solved = np.asarray(motion.points[name.partition(".")[0]].velocity)
+        np.testing.assert_allclose(found[name], solved, rtol=1e-9, atol=1e-9)
+
+
+def test_a_configuration_without_a_name_is_given_itself():
+    mechanism = loaded("class-iii-six-bar")
+    path = ck.compile(mechanism, [f"{point}.position" for point in mechanism.carriers])
+    values = np.ravel(path.reference.inputs.drives[mechanism.drives[0].name][0])[5:20]
+    found, motion = path(values), ck.solve(path.mechanism(), values, modes=path.modes)
+    for name in path.names:
+        np.testing.assert_allclose(found[name], motion.points[name.partition(".")[0]].position, atol=1e-11)
 
 
 def test_defaults_are_those_of_solve(path, arm):
@@ -168,7 +191,7 @@ def test_what_is_found_goes_by_name(path):
     found = path(CRANK)
     assert list(found) == OUTPUTS
     assert [values.shape for values in found.values()] == [(200,)] * 3
-    with pytest.raises(UnknownName, match="bar.angles: there is no such output; did you mean 'bar.angle'"):
+    with pytest.raises(UnknownName, match=r"bar\.angles: there is no such output; did you mean 'bar.angle'"):
         found["bar.angles"]
 
 
@@ -186,3 +209,22 @@ def test_a_path_is_copied_and_pickled(path):
 def test_results_do_not_depend_on_threads(path):
     one, two = (path(CRANK, {"crank.D": COLUMN}, threads=threads)["G.acceleration"] for threads in (1, 2))
     np.testing.assert_array_equal(one, two)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_wrong_objects_in_a_call_are_refused_by_errors_of_the_package():
+    path = ck.compile(loaded("crank-rocker"), ["C", "rocker.angle"], free=["crank.B", "rocker.C.x"])
+    given = {"values": 1.0, "dimensions": {}, "speed": 1.0, "acceleration": 0.0, "jerk": 0.0, "time": None, "out": {}}
+    tried = [(key, wrong, {**given, key: wrong}) for key in (*given, "threads") for wrong in WRONG]
+    for wrong in WRONG:
+        tried += [(key, wrong, {**given, "dimensions": {key: wrong}}) for key in ("crank.B", "rocker.C.x")]
+        tried += [(key, wrong, {**given, "out": {key: wrong}}) for key in ("C", "rocker.angle")]
+    offenders = []
+    for key, wrong, arguments in tried:
+        try:
+            path(**arguments)
+        except ck.errors.CompoundkinError:
+            pass
+        except Exception as error:
+            offenders.append(f"{key}={wrong!r:.40}: {type(error).__name__}: {str(error)[:80]}")
+    assert not offenders, "\n".join(offenders)

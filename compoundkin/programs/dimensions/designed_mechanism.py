@@ -39,7 +39,7 @@ def designed(stated: StatedDimensions, values: Mapping[FreeDimension, Number]) -
     if any(np.shape(value)[-1:] > (1,) for value in values.values()):
         # a motion of its own, which is perhaps not as long as that along which dimensions vary
         drives = (item for item in stated.mechanism.items if isinstance(item, Drive))
-        items += [replace(drive, values=None) for drive in drives if np.ndim(drive.values)]
+        items += [replace(drive, values=None) for drive in drives if isinstance(drive.values, np.ndarray)]
     return stated.mechanism.replace(*items) if items else stated.mechanism
 
 
