@@ -1,12 +1,14 @@
-"""The pages on pictures, on circuits and on a press drive are true: read from the top, their Python runs."""
+"""The pages on pictures, on circuits, on a press drive and others are true: read from the top, their Python runs."""
 
 from __future__ import annotations
 
 import inspect
 import re
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import compoundkin as ck
@@ -37,6 +39,25 @@ def test_the_page_on_machines_prints_what_it_shows() -> None:
     names: dict[str, Any] = {}
     exec("\n".join(lines[: lines.index("print(balance.text())")]), names)
     assert names["balance"].text() in page
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of JAX's own
+def test_the_page_on_compiled_programs_is_true(tmp_path: Path) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", (DOCS / "compiled.md").read_text("utf-8"), re.DOTALL)
+    names: dict[str, Any] = {}
+    for block in blocks:
+        if "import jax" not in block or find_spec("jax"):
+            exec(block, names)
+    # the task was led to what it was made of, and the slopes are those of solving
+    assert np.allclose(names["best"].x, names["wanted"], rtol=1e-6)
+    turn, at = names["turn"], names["worst"]
+    motion = ck.solve(names["six_bar"], turn, speed=10, modes=names["path"].modes)
+    assert np.allclose(names["places"], motion.points["G"].position, rtol=1e-12, atol=0)
+    for name, slope in zip(names["found"].by, names["slopes"], strict=True):
+        own = float(names["path"].stated.own(names["path"].stated.known[name]))
+        near = [ck.compile(names["six_bar"], "bar.angle", free=name).mechanism({name: own + h}) for h in (1e-4, -1e-4)]
+        angles = [ck.solve(one, turn[at], modes=names["path"].modes).links["bar"].angle for one in near]
+        assert float(angles[0] - angles[1]) / 2e-4 == pytest.approx(float(slope[at]), rel=1e-7)
 
 
 def test_the_words_for_profiles_are_named_with_their_module() -> None:
