@@ -47,7 +47,8 @@ class ProgramConfiguration(PrintsShort):
 def solved_parts(by: Solving, numbers: CallNumbers, designs: Number) -> Iterator[tuple[Number, Told | None]]:
     """Solve some designs, and yield them in parts.
 
-    It is None where nothing can be built or assembled. One design of which there is nothing must not take the others with it.
+    It is None where nothing can be built or assembled. One design of which there is nothing must not take the others
+    with it.
     """
     if not len(designs):
         return
