@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from compoundkin.programs.graph.operation_graph import OperationGraph
+from compoundkin.programs.graph.operations import CONSTANT
 
 
 class ScaledNode(NamedTuple):
@@ -15,8 +16,9 @@ class ScaledNode(NamedTuple):
     factor: float = 1.0
 
     def times(self, graph: OperationGraph, node: int, factor: float = 1.0) -> ScaledNode:
-        """Return it times a node and a number."""
-        return ScaledNode(graph.apply("mul", self.node, node), self.factor * factor)
+        """Return it times a node and a number. The numbers of both come to stand in front."""
+        own, other = _scaled(graph, self.node), _scaled(graph, node)
+        return ScaledNode(graph.apply("mul", own.node, other.node), self.factor * factor * own.factor * other.factor)
 
     def where(self, graph: OperationGraph, truth: int, kept: bool = True) -> ScaledNode:
         """Return it where a truth is, or where it is not, and zero elsewhere.
@@ -51,5 +53,28 @@ def scaled_sum(graph: OperationGraph, terms: Sequence[ScaledNode]) -> ScaledNode
     for term in left[1:]:
         ratio = term.factor / factor
         size = graph.apply("mul", graph.constant(abs(ratio)), term.node)
-        total = graph.apply("add" if ratio > 0.0 else "sub", total, size)
+        total = graph.apply("add", total, size) if ratio > 0.0 else _difference(graph, total, size)
     return ScaledNode(total, factor)
+
+
+def _scaled(graph: OperationGraph, node: int) -> ScaledNode:
+    """Return a node as a number times another."""
+    known = graph.nodes[node]
+    if known.operation == "neg":
+        inner = _scaled(graph, known.operands[0])
+        return ScaledNode(inner.node, -inner.factor)
+    if known.operation == CONSTANT:
+        return ScaledNode(graph.constant(1.0), known.value)
+    if known.operation == "mul":
+        for one, other in (known.operands, known.operands[::-1]):
+            if graph.nodes[one].operation == CONSTANT:
+                return ScaledNode(other, graph.nodes[one].value)
+    return ScaledNode(node)
+
+
+def _difference(graph: OperationGraph, one: int, other: int) -> int:
+    """Return a difference; one less than something else, taken from it, is that."""
+    known = graph.nodes[other]
+    if known.operation == "sub" and known.operands[0] == one:
+        return known.operands[1]
+    return graph.apply("sub", one, other)

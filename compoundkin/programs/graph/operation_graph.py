@@ -74,6 +74,10 @@ class OperationGraph(PrintsShort):
             found = self._seen[key] = simpler
         return found
 
+    def there(self, operation: str, *operands: int) -> int | None:
+        """Return the node of an operation that was made before; None where there is none."""
+        return self._seen.get((operation, operands))
+
     def _simpler(self, operation: str, operands: tuple[int, ...]) -> int | None:
         """Return a node that is there already, or cheaper; None where there is none."""
         known = [self.nodes[k] for k in operands]

@@ -69,6 +69,10 @@ def _mul(graph: OperationGraph, a: int, b: int) -> int | None:
             return _by_number(graph, one, other)
         if node.operation == "neg":
             return graph.apply("neg", graph.apply("mul", node.operands[0], other))
+        opposite = graph.there("sub", *node.operands[::-1]) if node.operation == "sub" else None
+        if opposite is not None and opposite < one:
+            # a difference that was taken the other way round before
+            return graph.apply("neg", graph.apply("mul", opposite, other))
     return x.operands[0] if a == b and x.operation == "sqrt" else None
 
 
