@@ -258,3 +258,11 @@ def test_slopes_go_on_beyond_change_points(name):
     for each, parts in slope.items():
         summed = [np.sum(2.0 * ((found["C"] - target).conj() * found["C", f"{each}.{x}"]).real) for x in "xy"]
         np.testing.assert_allclose(parts, complex(*summed), rtol=1e-10)
+
+
+def test_a_distance_that_is_zero_has_the_slope_zero():
+    """Where the least of a distance is reached its slope is no number; none is given for it, as for any least."""
+    path = ck.compile(loaded("crank-rocker"), ["C", "C.x"], free="coupler.C")
+    target = path(ANGLES)["C"]
+    value, slope = path.objective(lambda at: abs(at["C"] - at["target"])).gradient(ANGLES, target=target)
+    assert (float(value), complex(slope["coupler.C"])) == (0.0, 0j)

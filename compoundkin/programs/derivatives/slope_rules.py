@@ -55,7 +55,19 @@ def _inv(graph: OperationGraph, k: int) -> list[tuple[int, Slope]]:
 
 
 def _sqrt(graph: OperationGraph, k: int) -> list[tuple[int, Slope]]:
-    return [(_operands(graph, k)[0], _factor(graph, graph.apply("inv", k), 0.5))]
+    (a,) = _operands(graph, k)
+    slope = graph.apply("inv", k)
+    if _is_square(graph, a):
+        # the length of a vector that is zero has no slope: as good as any is none
+        zero = graph.constant(0.0)
+        slope = graph.apply("select", graph.apply("gt", k, zero), slope, zero)
+    return [(a, _factor(graph, slope, 0.5))]
+
+
+def _is_square(graph: OperationGraph, node: int) -> bool:
+    """Tell whether a node is the square of a vector's length."""
+    parts = [graph.nodes[n] for n in _operands(graph, node)] if graph.nodes[node].operation == "add" else []
+    return bool(parts) and all(each.operation == "mul" and each.operands[0] == each.operands[1] for each in parts)
 
 
 def _abs(graph: OperationGraph, k: int) -> list[tuple[int, Slope]]:
