@@ -58,7 +58,8 @@ class DesignWay(PrintsShort):
 
     def ends(self, numbers: CallNumbers) -> tuple[dict[InputNumber, Number], Number]:
         """Return the states (designs, 1) at the ends of the way, and which designs are not far."""
-        found = results(self.flat, self.runner, numbers, self.nodes, 1)
+        narrow = results(self.flat, self.runner, numbers, self.nodes, 1)
+        found = {one: np.broadcast_to(value, numbers.extent) for one, value in narrow.items()}
         # on the way states need not be exact, but must not stray
         near = (found.pop(_CERTAIN)[:, -1] >= NEAR) & (found.pop(_MARGIN).min(axis=1) >= NEAR)
         for one, weight in self.weights.items():
