@@ -58,6 +58,31 @@ def test_all_dimensions_at_once_move_a_program_as_they_move_the_mechanism(name):
         np.testing.assert_allclose(assembled, solved, atol=1e-12 * scale, rtol=0)
 
 
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(
+    ("name", "free"),
+    [
+        ("belt-coupled-cranks", ("crank/wheel.radii.0", 0.001)),
+        ("rolling-wheel", ("contact.radius", 0.02)),
+        ("rack-and-pinion-steering", ("bar/pinion.radius", 0.001)),
+        ("geared-five-bar", ("crank/wheel.teeth.1", 1.0)),
+        ("hydraulic-digger", ("boom-cylinder.stroke.0", 0.05)),
+    ],
+)
+def test_sizes_of_wheels_and_ends_of_guides_are_free(name, free):
+    mechanism, (free, change) = loaded(name), free
+    path = ck.compile(mechanism, [f"{link}.angle" for link in mechanism.rigid_links], free=free)
+    own = float(path.stated.own(path.dimensions[0]))
+    dimensions = {free: np.array([[own], [own + change]])}
+    driven = path.reference.inputs.drives
+    values = {driver: np.ravel(numbers[0])[:30] for driver, numbers in driven.items()}
+    found, motion = path(values, dimensions), ck.solve(path.mechanism(dimensions), values, modes=path.modes)
+    np.testing.assert_array_equal(found.assembled, motion.assembled)
+    for link in mechanism.rigid_links:
+        solved = np.broadcast_to(motion.links[link].angle, found.shape)
+        np.testing.assert_allclose(found[f"{link}.angle"], solved, atol=1e-11)
+
+
 def crank(**points):
     """A crank with a block on it."""
     slide = ck.slide("block", on="crank", through="A", angle=0.1, offset=0.5, name="way")
