@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -83,8 +84,8 @@ class ObjectiveValues(PrintsShort):
 
         def formed(array: Number) -> Any:
             over = shape if array.shape[1] > 1 else shape[:-1]
-            designs = int(np.prod(shape[:-1], dtype=int))
-            return np.broadcast_to(array, (designs, array.shape[1])).reshape(over)
+            whole = array if array.size == prod(over) else np.broadcast_to(array, (prod(shape[:-1]), array.shape[1]))
+            return whole.reshape(over)
 
         return formed(self.value), {name: formed(slope) for name, slope in self.slopes.items()}
 
