@@ -118,8 +118,14 @@ def call_numbers(order: SolvingOrder, motion: DriverNumbers, dimensions: Mapping
             given[given_as] = np.asarray(part, float)
     for name, numbers in driven.drives.items():
         for k, value in enumerate(numbers):
-            given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.asarray(fitted(value), float))
+            whole = fitted(_unfolded(value, driven.shape))
+            given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.asarray(whole, float))
     return CallNumbers(given, shape, still)
+
+
+def _unfolded(value: Number, shape: tuple[int, ...]) -> Number:
+    """Return a driver's numbers (1 or designs, 1 or poses) in the shape that was given."""
+    return value.reshape(*shape[:-1], value.shape[1]) if np.ndim(value) > 1 and value.shape[0] > 1 else value
 
 
 def _broadcast(shape: tuple[int, ...], other: tuple[int, ...], where: str) -> tuple[int, ...]:

@@ -52,7 +52,7 @@ class PathValues(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         """Return an output by its name; raises UnknownName."""
-        found = self.found.get(name)
+        found = self.found.get(name) if isinstance(name, str) else None
         if found is None:
             raise UnknownName(Problem(str(name), "there is no such output", nearest(str(name), list(self.found))))
         if found.size != prod(self.shape):

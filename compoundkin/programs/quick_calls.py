@@ -6,7 +6,6 @@ that are not finite are not looked for where they would spoil the margin of a gr
 
 from __future__ import annotations
 
-from cmath import isfinite
 from collections.abc import Mapping
 from functools import partial
 from math import ceil, pi, sqrt
@@ -32,6 +31,8 @@ if TYPE_CHECKING:
 FLOAT, COMPLEX = np.dtype(float), np.dtype(complex)
 # So many plain numbers are kept as arrays.
 KEPT = 256
+# The greatest finite number: whole numbers above it are no floats, and nothing is above or below what is none.
+HUGE = float(np.finfo(float).max)
 
 
 class QuickCalls(PrintsShort):
@@ -90,7 +91,7 @@ class QuickCalls(PrintsShort):
         given = self.own.copy()
         given[self.at] = values[None]
         still = self._with_rates(given, rates)
-        placed = self._with_dimensions(given, dimensions) if dimensions else (1, 0)
+        placed = self._with_dimensions(given, dimensions) if dimensions is not None else (1, 0)
         if still is None or placed is None or type(threads) is not int or threads < 1:
             return None
         designs, columns = placed
@@ -118,7 +119,7 @@ class QuickCalls(PrintsShort):
         for k, rate in enumerate(rates):
             if rate is None:
                 rate = self.rates[k]
-            elif type(rate) in (float, int) and isfinite(rate):
+            elif type(rate) in (float, int) and -HUGE <= rate <= HUGE:
                 given[self.at + 1 + k] = self._array(rate)
             else:
                 return None
@@ -145,7 +146,7 @@ class QuickCalls(PrintsShort):
                 if is_vector:
                     given[k + 1] = value.imag
             elif type(value) in (float, int) or (is_vector and type(value) is complex):
-                if not isfinite(value):
+                if not (-HUGE <= value.real <= HUGE and -HUGE <= value.imag <= HUGE):
                     return None
                 given[k] = self._array(value.real)
                 if is_vector:

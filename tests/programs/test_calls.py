@@ -87,6 +87,16 @@ def test_defaults_are_those_of_solve(path, arm):
     np.testing.assert_allclose(found["P.velocity"], motion.points["P"].velocity, atol=1e-12)
 
 
+def test_driver_values_along_several_axes_of_designs(path):
+    values = np.linspace(0.1, 1.0, 4) + np.array([0.0, 0.3])[:, None, None]
+    column = 14.0 + np.array([[0.0], [0.5]]) + 0j
+    motion = ck.solve(path.mechanism({"crank.D": column}), values, modes=path.modes)
+    np.testing.assert_allclose(
+        path(values, {"crank.D": column})["G.position"], solved(motion, "G.position"), atol=1e-11
+    )
+    assert path(np.ones((2, 3, 4)))["bar.angle"].shape == (2, 3, 4)
+
+
 def test_drivers_with_laws_move_in_time():
     law = ck.laws.program(ck.laws.rise(1.0, over=2.0))
     crank = ck.Mechanism("m", ck.link("frame", A=0), ck.link("crank", A=0, B=2), ck.drive("crank", law=law))
@@ -142,6 +152,9 @@ def test_arrays_that_cannot_hold_results_are_told(path, out, text):
         ({"values": CRANK, "speed": {"bar": 1.0}}, "there is no driver 'bar'"),
         ({"values": CRANK, "threads": 0}, "threads: 0 is no number of threads"),
         ({"values": CRANK, "threads": 1.5}, "threads: 1.5 is no number of threads"),
+        ({"values": CRANK, "speed": 10**400}, "crank: int(...) is not a number or an array of numbers"),
+        ({"values": CRANK, "dimensions": {"plate.A.y": 10**400}}, "plate.A.y: int(...) is not a number or an array"),
+        ({"values": CRANK, "dimensions": CRANK}, "is no table by name"),
         ({"time": [np.inf]}, "time"),
     ],
 )
