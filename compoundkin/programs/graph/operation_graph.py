@@ -75,7 +75,7 @@ class OperationGraph(PrintsShort):
         return found
 
     def there(self, operation: str, *operands: int) -> int | None:
-        """Return the node of an operation that was made before; None where there is none."""
+        """Return the node of an operation that was made before, if any."""
         return self._seen.get((operation, operands))
 
     def _simpler(self, operation: str, operands: tuple[int, ...]) -> int | None:
