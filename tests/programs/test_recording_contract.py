@@ -141,6 +141,15 @@ def test_figures_that_only_some_have_are_those_of_solve(name: str) -> None:
         np.testing.assert_allclose(values[name], quantity(found, name).values, rtol=1e-9, atol=1e-11, err_msg=name)
 
 
+@pytest.mark.parametrize("name", ["conjugate-cams", "groove-cam-plate", "geared-coupler", "class-iii-six-bar"])
+def test_positions_alone_need_no_rates(name: str) -> None:
+    mechanism = ck.catalog.load_named(name)
+    outputs = [f"{link}.angle" for link in mechanism.links if link != "frame"]
+    found, motion = ck.compile(mechanism, outputs, backend="numpy")(), ck.solve(mechanism, order=0)
+    for output in outputs:
+        assert np.allclose(found[output], ck.quantity(motion, output).values, rtol=0, atol=1e-12)
+
+
 def test_what_no_program_tells_is_refused_by_name() -> None:
     four_bar = motion("four-bar-norton")
     for name, told in (("B.x.stroke", "figure of a whole motion"), ("coupler.angle.x", "no vector"),

@@ -22,6 +22,8 @@ from compoundkin.programs.recording.recorded_number import RecordedNumber
 # A profile is expanded by so many orders more than the motion: one for its tangent, one for what changes with
 # dimensions.
 MORE_ORDERS = 2
+# The step of Newton to a contact takes the slope of its gap, of positions alone too.
+LEAST_ORDER = 1
 
 
 class LocalCurve(Curve):
@@ -99,7 +101,7 @@ def with_local_profile(pair: Pair, graph: OperationGraph, order: int) -> Pair:
     parameter = RecordedNumber.given(graph, InputNumber(SEED, pair.name, "parameter"))
     coefficients = [
         RecordedNumber.given(graph, *(InputNumber(SEED, pair.name, f"{part}{k}") for part in "xy"))
-        for k in range(order + MORE_ORDERS + 1)
+        for k in range(max(order, LEAST_ORDER) + MORE_ORDERS + 1)
     ]
     curve = LocalCurve(profiled.curve, parameter, coefficients)
     changed: dict[str, Any] = {"profile": LocalProfile(profiled.profile, curve)}
