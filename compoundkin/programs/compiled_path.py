@@ -21,6 +21,7 @@ from compoundkin.programs.derivatives.sensitivity_program import SensitivityProg
 from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.dimension_values import dimension_values
 from compoundkin.programs.dimensions.named_dimensions import free_dimensions, hold_one_design
+from compoundkin.programs.dimensions.redundant_dimensions import hold_consistent
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.jax_path import JaxPath, jax_path
 from compoundkin.programs.path_programs import PathPrograms
@@ -71,6 +72,7 @@ def compile(
     stated = StatedDimensions(motion.mechanism, motion.inputs.ends)
     dimensions = free_dimensions(stated, freed)
     hold_one_design(stated, dimensions)
+    hold_consistent(motion, stated, dimensions)
     request = {"mechanism": mechanism, "outputs": names, "free": freed, "values": values, "modes": modes, "hint": hint}
     return CompiledPath(motion, found, dimensions, backend, request={**request, "backend": backend})
 

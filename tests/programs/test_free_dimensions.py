@@ -135,3 +135,12 @@ def test_wrong_dimensions_of_a_call_are_told(dimensions, text):
     with pytest.raises(InvalidInput) as told:
         path(None, dimensions)
     assert text in str(told.value)
+
+
+def test_a_dimension_that_opens_redundant_pairs_is_refused() -> None:
+    lift = ck.catalog.load_named("double-parallelogram-lift")
+    with pytest.raises(ck.errors.InvalidInput, match=r"overconstrained.*would open"):
+        ck.compile(lift, "lower.angle", free="lower.D")
+    wedge = ck.catalog.load_named("wedge-press")
+    # where a slide begins opens nothing
+    assert ck.compile(wedge, "ram.angle", free="wedge.S").free

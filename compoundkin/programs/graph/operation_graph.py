@@ -81,7 +81,7 @@ class OperationGraph(PrintsShort):
     def _simpler(self, operation: str, operands: tuple[int, ...]) -> int | None:
         """Return a node that is there already, or cheaper; None where there is none."""
         known = [self.nodes[k] for k in operands]
-        if all([node.operation == CONSTANT for node in known]):
+        if all(node.operation == CONSTANT for node in known):
             with np.errstate(all="ignore"):
                 return self.constant(float(OPERATIONS[operation].compute(*(node.value for node in known))))
         if OPERATIONS[operation].is_commutative and operands[0] > operands[1]:
