@@ -14,6 +14,8 @@ from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.backends import chosen_back_end
+from compoundkin.programs.calls.quick_calls import QuickCalls
+from compoundkin.programs.calls.written_arrays import held_arrays, hold_threads
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
@@ -27,10 +29,8 @@ from compoundkin.programs.jax_path import JaxPath, jax_path
 from compoundkin.programs.path_programs import PathPrograms
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.program_modes import program_modes
-from compoundkin.programs.quick_calls import QuickCalls
 from compoundkin.programs.recording.recorded_outputs import output_of
 from compoundkin.programs.sources.source_writer import WritesSources
-from compoundkin.programs.written_arrays import held_arrays, hold_threads
 from compoundkin.structure.kinematic_structure import Structure
 
 

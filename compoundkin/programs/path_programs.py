@@ -12,21 +12,21 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
-from compoundkin.programs.call_numbers import CallNumbers, DriverNumbers, call_numbers
-from compoundkin.programs.call_seeds import CallSeeds
+from compoundkin.programs.calls.call_numbers import CallNumbers, DriverNumbers, call_numbers
+from compoundkin.programs.calls.call_seeds import CallSeeds
 from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.dimension_values import dimension_values
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
-from compoundkin.programs.limit_look import LimitPrograms
+from compoundkin.programs.limits.limit_look import LimitPrograms
+from compoundkin.programs.limits.settled_values import settled_values
+from compoundkin.programs.limits.solved_designs import ProgramConfiguration, solved_designs
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
 from compoundkin.programs.recording.recorded_march import STEPS
 from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput
-from compoundkin.programs.settled_values import settled_values
-from compoundkin.programs.solved_designs import ProgramConfiguration, solved_designs
 
 
 @dataclass(frozen=True, eq=False, repr=False)

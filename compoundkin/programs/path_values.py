@@ -14,7 +14,7 @@ from compoundkin.base.given_numbers import hold_design
 from compoundkin.base.series import Number
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
-from compoundkin.programs.call_numbers import CallNumbers, picked
+from compoundkin.programs.calls.call_numbers import CallNumbers, picked
 
 
 class PathValues(Mapping[str, Any]):

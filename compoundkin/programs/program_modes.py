@@ -5,7 +5,7 @@ from __future__ import annotations
 from compoundkin.kinematics.configuration import SIGNS, Configuration, named
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration
-from compoundkin.programs.solved_designs import ProgramConfiguration
+from compoundkin.programs.limits.solved_designs import ProgramConfiguration
 
 
 def program_modes(reference: Motion, configuration: ProgramConfiguration) -> str | Configuration:

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.graph.flat_program import Carried, FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.recording.input_kinds import SEED, SIDE

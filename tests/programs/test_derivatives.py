@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compoundkin.programs.backends.tape import Tape
+from compoundkin.programs.backends.tape.tape_backend import Tape
 from compoundkin.programs.derivatives.adjoints import reverse
 from compoundkin.programs.derivatives.slope_rules import SLOPE_RULES, slopes
 from compoundkin.programs.derivatives.tangents import forward

@@ -10,8 +10,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.kinematics.motion import Motion
-from compoundkin.programs import limit_look
 from compoundkin.programs.compiled_path import CompiledPath
+from compoundkin.programs.limits import limit_look
 
 DESIGNS = 60
 # Linkages that stop short, pass change points, slide to ends; trains, rollers and cylinders.

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from compoundkin.programs.backends import object_cache, runner_of
+from compoundkin.programs.backends import runner_of
+from compoundkin.programs.backends.llvm import object_cache
 from compoundkin.programs.graph.flat_program import BY_POSE, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 

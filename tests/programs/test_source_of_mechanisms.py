@@ -11,9 +11,9 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.series import Number
+from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.compiled_path import CompiledPath, compile
 from compoundkin.programs.recording.recorded_outputs import output_of
-from compoundkin.programs.seed_values import seed_values
 from compoundkin.programs.sources import LANGUAGES
 from compoundkin.programs.sources.contract import WrittenProgram
 from tests.catalog import mechanism, motion

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compoundkin.base.series import Number
-from compoundkin.programs.backends.tape import TapeRunner
+from compoundkin.programs.backends.tape.tape_backend import TapeRunner
 from compoundkin.programs.graph.flat_program import BY_POSE, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import OPERATIONS

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from compoundkin.programs.backends import block_layout
-from compoundkin.programs.backends.tape import Tape
+from compoundkin.programs.backends.tape import block_layout
+from compoundkin.programs.backends.tape.tape_backend import Tape
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FIXED_NUMBER, Carried, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS, REDUCTIONS

@@ -14,7 +14,7 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.derivatives.adjoints import reverse
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose, recorded_cost
 from compoundkin.programs.derivatives.result_arrays import results

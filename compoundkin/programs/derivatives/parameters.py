@@ -12,7 +12,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.given_numbers import planar_numbers, real_numbers
 from compoundkin.base.series import Number
 from compoundkin.kinematics.inputs import fit
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.derivatives.recorded_objective import parts
 
 

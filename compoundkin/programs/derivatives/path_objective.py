@@ -12,12 +12,12 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import UnassembledPoses, warn
-from compoundkin.programs.call_numbers import CallNumbers, picked
+from compoundkin.programs.calls.call_numbers import CallNumbers, picked
+from compoundkin.programs.calls.written_arrays import hold_threads
 from compoundkin.programs.derivatives.objective_program import ObjectiveForm, ObjectiveProgram, ObjectiveValues
 from compoundkin.programs.derivatives.parameters import with_parameters
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
 from compoundkin.programs.derivatives.told_designs import ASSEMBLED, EVERYWHERE, SOLVED, told_designs
-from compoundkin.programs.written_arrays import hold_threads
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms

@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.buffers import arrays_of_one_buffer, keep_freed_memory
 from compoundkin.base.series import Number
 from compoundkin.programs.backends.contract import Runner
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.graph.flat_program import FlatProgram
 
 Name = TypeVar("Name")

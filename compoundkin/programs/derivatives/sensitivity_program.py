@@ -13,18 +13,18 @@ from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.calls.call_numbers import CallNumbers
+from compoundkin.programs.calls.written_arrays import hold_threads
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.derivatives.tangents import forward
 from compoundkin.programs.derivatives.told_designs import told_designs
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.limits.settled_values import settled_values
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
-from compoundkin.programs.settled_values import settled_values
-from compoundkin.programs.written_arrays import hold_threads
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms

@@ -10,14 +10,14 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.programs.call_numbers import CallNumbers, picked
+from compoundkin.programs.calls.call_numbers import CallNumbers, picked
+from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.limits.solved_designs import solved_parts
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import PARAMETER
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_number import RecordedNumber
-from compoundkin.programs.seed_values import seed_values
-from compoundkin.programs.solved_designs import solved_parts
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.motion import Motion

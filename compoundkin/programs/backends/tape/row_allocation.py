@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
-from compoundkin.programs.backends.tape_instructions import Instruction
+from compoundkin.programs.backends.tape.tape_instructions import Instruction
 
 
 @dataclass

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.programs.backends.llvm_plan import ANY_STRIDE, COMPLEX, SIDE_BY_SIDE, ArrayLayout, home
-from compoundkin.programs.backends.llvm_records import (
+from compoundkin.programs.backends.llvm.llvm_plan import ANY_STRIDE, COMPLEX, SIDE_BY_SIDE, ArrayLayout, home
+from compoundkin.programs.backends.llvm.llvm_records import (
     DATA,
     DIMENSIONS,
     FLAGS,

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.programs.backends.block_layout import PoseBlock
-from compoundkin.programs.backends.row_moves import RowLoad, RowReduction, RowStore
-from compoundkin.programs.backends.tape_instructions import (
+from compoundkin.programs.backends.tape.block_layout import PoseBlock
+from compoundkin.programs.backends.tape.row_moves import RowLoad, RowReduction, RowStore
+from compoundkin.programs.backends.tape.tape_instructions import (
     BEGIN,
     KERNELS,
     LOAD,
@@ -20,7 +20,7 @@ from compoundkin.programs.backends.tape_instructions import (
     Instruction,
     Operand,
 )
-from compoundkin.programs.backends.tape_phases import Stage, TapePhase
+from compoundkin.programs.backends.tape.tape_phases import Stage, TapePhase
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE
 from compoundkin.programs.graph.operations import REDUCTIONS
 

@@ -10,9 +10,9 @@ import numpy as np
 from compoundkin.base.errors import FewDigits, UnassembledPoses, warn
 from compoundkin.base.series import Number
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.programs.call_numbers import CallNumbers
-from compoundkin.programs.limit_look import LimitLook
-from compoundkin.programs.solved_designs import Solving, solved_parts
+from compoundkin.programs.calls.call_numbers import CallNumbers
+from compoundkin.programs.limits.limit_look import LimitLook
+from compoundkin.programs.limits.solved_designs import Solving, solved_parts
 
 if TYPE_CHECKING:
     from compoundkin.kinematics.motion import Motion

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from compoundkin.programs.backends.llvm_functions import arctangent, exponential, logarithm
-from compoundkin.programs.backends.llvm_text import LaneText
+from compoundkin.programs.backends.llvm.llvm_functions import arctangent, exponential, logarithm
+from compoundkin.programs.backends.llvm.llvm_text import LaneText
 
 
 def lesser(text: LaneText, a: str, b: str) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from compoundkin.programs.backends.llvm_plan import ANY_STRIDE, COMPLEX, HEADER, LanePlan
-from compoundkin.programs.backends.llvm_text import LaneText
+from compoundkin.programs.backends.llvm.llvm_plan import ANY_STRIDE, COMPLEX, HEADER, LanePlan
+from compoundkin.programs.backends.llvm.llvm_text import LaneText
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE
 
 # Inputs stay as they are while a program runs, and no output overlaps them.

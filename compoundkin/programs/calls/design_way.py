@@ -12,7 +12,7 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.groups.newton_steps import STRAY
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber

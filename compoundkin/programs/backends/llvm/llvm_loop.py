@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from compoundkin.programs.backends.llvm_operations import lesser
-from compoundkin.programs.backends.llvm_plan import BEFORE, LOOP, TOO_LARGE, LanePlan
-from compoundkin.programs.backends.llvm_section import PARAMETERS, LaneSection
-from compoundkin.programs.backends.llvm_text import LaneText, bits_of
+from compoundkin.programs.backends.llvm.llvm_operations import lesser
+from compoundkin.programs.backends.llvm.llvm_plan import BEFORE, LOOP, TOO_LARGE, LanePlan
+from compoundkin.programs.backends.llvm.llvm_section import PARAMETERS, LaneSection
+from compoundkin.programs.backends.llvm.llvm_text import LaneText, bits_of
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE
 from compoundkin.programs.graph.operations import TOTAL
 

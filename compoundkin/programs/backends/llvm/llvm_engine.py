@@ -11,8 +11,8 @@ from typing import Any
 
 import llvmlite.binding as llvm
 
-from compoundkin.programs.backends.llvm_plan import Machine
-from compoundkin.programs.backends.object_cache import cached_object, keep_object
+from compoundkin.programs.backends.llvm.llvm_plan import Machine
+from compoundkin.programs.backends.llvm.object_cache import cached_object, keep_object
 
 # What code may call of the system's library: large angles, and rounding on processors without an instruction for it.
 LIBRARY = ("sin", "cos", "floor", "ceil", "rint", "fma")

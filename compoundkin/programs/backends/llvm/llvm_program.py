@@ -7,9 +7,9 @@ block of designs side by side through all poses.
 
 from __future__ import annotations
 
-from compoundkin.programs.backends.llvm_control import ControlText
-from compoundkin.programs.backends.llvm_loop import function_text, reset_text
-from compoundkin.programs.backends.llvm_plan import (
+from compoundkin.programs.backends.llvm.llvm_control import ControlText
+from compoundkin.programs.backends.llvm.llvm_loop import function_text, reset_text
+from compoundkin.programs.backends.llvm.llvm_plan import (
     AFTER,
     BEFORE,
     DESIGNS_AT_ONCE,
@@ -24,9 +24,9 @@ from compoundkin.programs.backends.llvm_plan import (
     TOO_LARGE,
     LanePlan,
 )
-from compoundkin.programs.backends.llvm_records import unpacking_text
-from compoundkin.programs.backends.llvm_section import PARAMETERS
-from compoundkin.programs.backends.llvm_stage import STAGED, staging_text
+from compoundkin.programs.backends.llvm.llvm_records import unpacking_text
+from compoundkin.programs.backends.llvm.llvm_section import PARAMETERS
+from compoundkin.programs.backends.llvm.llvm_stage import STAGED, staging_text
 from compoundkin.programs.graph.flat_program import BY_POSE
 
 # The arrays, scratch, designs and poses, which designs and segments, where their sums are, whether it is the last call

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from compoundkin.programs.backends.llvm_arrays import STEADY, LaneArrays
-from compoundkin.programs.backends.llvm_functions import beyond_reduction, quarter_turns, sine_and_cosine
-from compoundkin.programs.backends.llvm_operations import INSTRUCTIONS, ON_TRUTHS
-from compoundkin.programs.backends.llvm_plan import BEFORE, FIXED, LOOP, ROWS, LanePlan
-from compoundkin.programs.backends.llvm_text import LaneText
+from compoundkin.programs.backends.llvm.llvm_arrays import STEADY, LaneArrays
+from compoundkin.programs.backends.llvm.llvm_functions import beyond_reduction, quarter_turns, sine_and_cosine
+from compoundkin.programs.backends.llvm.llvm_operations import INSTRUCTIONS, ON_TRUTHS
+from compoundkin.programs.backends.llvm.llvm_plan import BEFORE, FIXED, LOOP, ROWS, LanePlan
+from compoundkin.programs.backends.llvm.llvm_text import LaneText
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE
 from compoundkin.programs.graph.operations import CONSTANT, INPUT, OPERATIONS
 

@@ -17,7 +17,7 @@ from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration, solved, solving_order_of
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.programs.call_numbers import CallNumbers, picked
+from compoundkin.programs.calls.call_numbers import CallNumbers, picked
 from compoundkin.programs.recording.input_kinds import DRIVE
 
 # Solves the designs of some numbers.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import count
 from typing import NamedTuple
 
-from compoundkin.programs.backends.row_allocation import RowAllocation, allocated
-from compoundkin.programs.backends.tape_instructions import (
+from compoundkin.programs.backends.tape.row_allocation import RowAllocation, allocated
+from compoundkin.programs.backends.tape.tape_instructions import (
     BEGIN,
     LOAD,
     NUMBER,

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.programs.backends.block_layout import PoseBlock, number_of_pieces, pose_blocks, useful_threads
 from compoundkin.programs.backends.kept_threads import done_by_threads
-from compoundkin.programs.backends.row_buffers import RowBuffers
-from compoundkin.programs.backends.tape_instructions import STORE
-from compoundkin.programs.backends.tape_phases import Sink, TapePhase, tape_phases
+from compoundkin.programs.backends.tape.block_layout import PoseBlock, number_of_pieces, pose_blocks, useful_threads
+from compoundkin.programs.backends.tape.row_buffers import RowBuffers
+from compoundkin.programs.backends.tape.tape_instructions import STORE
+from compoundkin.programs.backends.tape.tape_phases import Sink, TapePhase, tape_phases
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FlatProgram
 from compoundkin.programs.graph.operations import CONSTANT, INPUT, REDUCTIONS, TOTAL
 

@@ -10,7 +10,7 @@ import numpy as np
 from compoundkin.base.buffers import arrays_of_one_buffer, keep_freed_memory
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.ready_program import ReadyProgram

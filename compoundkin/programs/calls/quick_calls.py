@@ -17,10 +17,10 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import SPACING
 from compoundkin.kinematics.likely_slips import COUNTED
-from compoundkin.programs.approach_look import drawn_driver
-from compoundkin.programs.call_numbers import CallNumbers
+from compoundkin.programs.calls.call_numbers import CallNumbers
+from compoundkin.programs.calls.quick_plan import QuickPlan
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.quick_plan import QuickPlan
+from compoundkin.programs.limits.approach_look import drawn_driver
 from compoundkin.programs.recording.input_kinds import DRIVE
 from compoundkin.programs.recording.recorded_limits import NEAR
 

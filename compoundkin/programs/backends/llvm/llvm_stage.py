@@ -5,8 +5,8 @@ Written lane by lane at once, each number would go to another place in memory.
 
 from __future__ import annotations
 
-from compoundkin.programs.backends.llvm_control import ControlText
-from compoundkin.programs.backends.llvm_plan import HEADER, LanePlan
+from compoundkin.programs.backends.llvm.llvm_control import ControlText
+from compoundkin.programs.backends.llvm.llvm_plan import HEADER, LanePlan
 
 STAGED = "staged"
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from compoundkin.programs.backends.kept_threads import done_by_threads
-from compoundkin.programs.backends.llvm_engine import compiled, target
-from compoundkin.programs.backends.llvm_layout import FIRST, RECORDS_ARE_KNOWN, layout_of, recorded_arrays
-from compoundkin.programs.backends.llvm_plan import ARRAY_KIND, DESIGNS_AT_ONCE, HEADER, NUMBER_KIND, LanePlan
-from compoundkin.programs.backends.llvm_program import ANGLE_TOO_LARGE, FITS_NOT, program_text, segment_length
+from compoundkin.programs.backends.llvm.llvm_engine import compiled, target
+from compoundkin.programs.backends.llvm.llvm_layout import FIRST, RECORDS_ARE_KNOWN, layout_of, recorded_arrays
+from compoundkin.programs.backends.llvm.llvm_plan import ARRAY_KIND, DESIGNS_AT_ONCE, HEADER, NUMBER_KIND, LanePlan
+from compoundkin.programs.backends.llvm.llvm_program import ANGLE_TOO_LARGE, FITS_NOT, program_text, segment_length
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
 
 # Poses that are worth a thread: fewer take less time than to wake one.

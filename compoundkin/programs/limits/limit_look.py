@@ -20,12 +20,12 @@ from compoundkin.kinematics.approach import SPACING
 from compoundkin.kinematics.chosen_modes import Shown
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.programs.approach_look import approach_values
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
-from compoundkin.programs.call_numbers import CallNumbers, picked
+from compoundkin.programs.calls.call_numbers import CallNumbers, picked
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.limits.approach_look import approach_values
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE, HOLDS
 from compoundkin.programs.recording.recorded_limits import CLOSE, NEAR, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, recorded

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from compoundkin.programs.backends.llvm_text import LaneText
+from compoundkin.programs.backends.llvm.llvm_text import LaneText
 
 # Adding it rounds to a whole number, which then stands in the lowest bits.
 MAGIC = 1.5 * 2.0**52

@@ -6,8 +6,8 @@ hundred poses.
 
 from __future__ import annotations
 
-from compoundkin.programs.backends.llvm_control import ControlText
-from compoundkin.programs.backends.llvm_plan import (
+from compoundkin.programs.backends.llvm.llvm_control import ControlText
+from compoundkin.programs.backends.llvm.llvm_plan import (
     ANY_STRIDE,
     ARRAY_KIND,
     COMPLEX,

@@ -11,14 +11,14 @@ import numpy as np
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
-from compoundkin.programs.call_numbers import CallNumbers, picked
-from compoundkin.programs.design_way import DesignWay, ramp
+from compoundkin.programs.calls.call_numbers import CallNumbers, picked
+from compoundkin.programs.calls.design_way import DesignWay, ramp
+from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.limits.solved_designs import Solving, solved_parts
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import DRIVE, HOLDS, STEP, start_of
 from compoundkin.programs.recording.recorded_march import side_of
-from compoundkin.programs.seed_values import seed_values
-from compoundkin.programs.solved_designs import Solving, solved_parts
 
 # Without compiled code a march of fewer designs than these takes longer than solving them.
 FEW = 32

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.programs.backends.block_layout import PIECE, PoseBlock
+from compoundkin.programs.backends.tape.block_layout import PIECE, PoseBlock
 from compoundkin.programs.graph.operations import REDUCTIONS
 
 

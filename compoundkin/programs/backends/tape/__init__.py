@@ -1,0 +1,1 @@
+"""The NumPy tape: a flat program computed operation by operation, in rows that stay in cache."""

@@ -1,0 +1,1 @@
+"""Calls: the numbers that a program is given, and the arrays that it writes."""
