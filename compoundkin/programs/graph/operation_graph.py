@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import threading
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -50,6 +51,8 @@ class OperationGraph(PrintsShort):
 
     nodes: list[OperationNode] = field(default_factory=list)
     _seen: dict[object, int] = field(default_factory=dict)
+    # a path that several threads call at first grows in all of them
+    _grows: threading.Lock = field(default_factory=threading.Lock, repr=False, compare=False)
 
     def constant(self, value: float) -> int:
         """Return the node of a number."""
@@ -89,8 +92,12 @@ class OperationGraph(PrintsShort):
         return folded(self, operation, operands)
 
     def _new(self, key: object, node: OperationNode) -> int:
-        found = self._seen[key] = len(self.nodes)
-        self.nodes.append(node)
+        with self._grows:
+            found = self._seen.get(key)
+            if found is None:
+                found = len(self.nodes)
+                self.nodes.append(node)
+                self._seen[key] = found
         return found
 
     def is_constant(self, node: int, value: float) -> bool:
