@@ -65,7 +65,7 @@ def _cramer(m: list[list[Number]]) -> tuple[list[list[Number]], Number]:
     """Return the inverse and the determinant of 3 x 3 matrices of arrays."""
     (a, b, c), (d, e, f), (g, h, i) = m
     ei, di, dh = e * i - f * h, d * i - f * g, d * h - e * g
-    determinant = np.asarray(a * ei - b * di + c * dh)
+    determinant = a * ei - b * di + c * dh
     with np.errstate(divide="ignore", invalid="ignore"):
         r = np.where(determinant == 0.0, np.nan, 1.0) / determinant
     rows = [

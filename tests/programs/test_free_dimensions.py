@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -144,3 +145,16 @@ def test_a_dimension_that_opens_redundant_pairs_is_refused() -> None:
     wedge = ck.catalog.load_named("wedge-press")
     # where a slide begins opens nothing
     assert ck.compile(wedge, "ram.angle", free="wedge.S").free
+
+
+def test_teeth_of_a_train_of_three_bodies_may_be_free():
+    own = ck.catalog.load_named("differential")
+    gears = [item for item in own.items if getattr(item, "teeth", None)]
+    free = own.replace(*(replace(gear, module=None) for gear in gears))
+    other = free.replace(replace(gears[0], module=None, teeth=(33.0, gears[0].teeth[1])))
+    values = {drive.name: k * np.linspace(0, 1, 7) for k, drive in enumerate(own.drives)}
+    path = compile(free, "planet-1.angle", free="left/planet-1.teeth.0", backend="numpy")
+    angle = path(values, {"left/planet-1.teeth.0": 33.0})["planet-1.angle"]
+    solved = ck.solve(other, values, order=0).links["planet-1"].angle
+    assert np.allclose(angle, solved, rtol=0, atol=1e-14)
+    assert np.ptp(angle - path(values)["planet-1.angle"]) > 0.01
