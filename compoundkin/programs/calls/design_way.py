@@ -57,7 +57,10 @@ class DesignWay(PrintsShort):
         return cls(flat, runner_of(flat, backend), nodes, weights)
 
     def ends(self, numbers: CallNumbers) -> tuple[dict[InputNumber, Number], Number]:
-        """Return the states (designs, 1) at the ends of the way, and which designs are not far."""
+        """Return the states at the ends of the way, and which designs are near.
+
+        They are (designs, 1).
+        """
         narrow = results(self.flat, self.runner, numbers, self.nodes, 1)
         found = {one: np.broadcast_to(value, numbers.extent) for one, value in narrow.items()}
         # on the way states need not be exact, but must not stray
@@ -75,7 +78,10 @@ _MARGIN, _CERTAIN = InputNumber("least", "margin"), InputNumber("least", "certai
 
 
 def ramp(numbers: CallNumbers, own: Mapping[InputNumber, Number], states: Mapping[InputNumber, Number]) -> CallNumbers:
-    """Return the numbers of the way: one pose, the path's own dimensions and states first."""
+    """Return the numbers of the way.
+
+    It is one pose, with the path's own dimensions and states first.
+    """
     designs, part = numbers.extent[0], np.minimum(np.arange(PLACES + 2.0) / PLACES, 1.0)
     given = {one: value[:, :1] for one, value in numbers.given.items()}
     for one, first in own.items():

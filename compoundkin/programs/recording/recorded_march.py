@@ -62,7 +62,7 @@ class RecordedMarch(PrintsShort):
         return tuple(one for solver in self.solvers for one in self._of_group(solver))
 
     def states(self, solver: GroupSolver) -> Iterator[tuple[InputNumber, RecordedNumber]]:
-        """Yield the seeds of a group's state with what they become: the state at the pose itself."""
+        """Yield the seeds of a group's state, and the state that they become."""
         for given, number in zip(state_seeds(solver), solver.state(self.mechanism.block), strict=True):
             yield given, self.mechanism.number(number)
 
