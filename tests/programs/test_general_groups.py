@@ -64,3 +64,18 @@ def test_every_point_equals_solve(name, backend, designs, poses):
         found = path(values, dimensions, **rates)
         motion = ck.solve(path.mechanism(dimensions), values, **rates)
     agree(found, motion, letters)
+
+
+def test_slopes_of_a_march_are_differences_of_solve():
+    mechanism = ck.catalog.load_named("class-iii-six-bar")
+    dimensions, step = designs_of(mechanism, 33, 0.01), 1e-5
+    path = ck.compile(mechanism, [f"B3.{word}" for word in WORDS], free=[*dimensions])
+    values, rates = course_of(mechanism, 73)
+    name = [*dimensions][-1]
+    found = path.derivatives(values, dimensions, by=[f"{name}.y"], **rates)
+    ends = [ck.solve(path.mechanism({**dimensions, name: dimensions[name] + k * step * 1j}), values, **rates)
+            for k in (1, -1)]  # fmt: skip
+    for word in WORDS:
+        one, other = (getattr(motion.points["B3"], word) for motion in ends)
+        slope = (one - other) / (2.0 * step)
+        np.testing.assert_allclose(found[f"B3.{word}", f"{name}.y"], slope, rtol=0.0, atol=1e-7 * np.abs(slope).max())

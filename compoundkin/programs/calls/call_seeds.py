@@ -80,7 +80,10 @@ class CallSeeds:
             if told is not None:
                 states = {one: value[:, :1] for one, value in seed_values(path.seeds, told.motion).items()}
                 holds = _in_configuration(told.motion, path.mechanism.recording.signs, slice(0, 1))
-                return Begun(states, bool(holds[0]), told.motion.tracker.at == 0.0)
+                tracker = told.motion.tracker
+                # a design that cannot be assembled where it is drawn is not solved, whatever it could do at its motion
+                is_drawn = tracker.approach_path.poses == 1
+                return Begun(states, bool(holds[0]) and is_drawn, tracker.at == 0.0)
         return Begun({}, False, False)
 
     def _way(self, path: RecordedPath, numbers: CallNumbers) -> tuple[dict[InputNumber, Number], Number]:
