@@ -125,6 +125,7 @@ def test_results_are_written_into_arrays_given(path):
         ({"bar.angle": np.empty(400)[::2]}, "it cannot be written, or is not contiguous"),
         ({"bar.angle": [0.0] * 200}, "is no array of float64"),
         ([], "out: [] is no table by name"),
+        (dict.fromkeys(["G.position", "G.acceleration"], np.empty(200, complex)), "it is in the memory of out.G.pos"),
     ],
 )
 def test_arrays_that_cannot_hold_results_are_told(path, out, text):
@@ -169,6 +170,15 @@ def test_values_without_a_margin_that_they_could_spoil_are_held_too():
     for value in (np.nan, np.inf):
         with pytest.raises(InvalidInput, match="not finite"):
             ck.compile(crank, "B")(np.array([0.0, value]))
+
+
+@pytest.mark.parametrize("speed", [3.0, np.array(3.0)])  # a quick call, and one that is not
+def test_what_is_found_does_not_change_with_the_arrays_that_were_given(path, speed):
+    values, column = CRANK.copy(), COLUMN.copy()
+    found = path(values, {"crank.D": column}, speed=speed)
+    values += 1.0
+    column *= 0.9
+    np.testing.assert_allclose(found.motion(1).points["G"].position[0], found["G.position"][1], atol=1e-10)
 
 
 def test_several_drivers_go_by_name(arm):

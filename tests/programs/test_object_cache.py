@@ -75,3 +75,5 @@ def test_where_compiled_code_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     for platform, part in (("linux", "/caches/compoundkin"), ("darwin", "Caches"), ("win32", "Local")):
         monkeypatch.setattr(sys, "platform", platform)
         assert part in object_cache.cache_folder().as_posix()
+    monkeypatch.setenv("COMPOUNDKIN_CACHE", "~/kept")
+    assert object_cache.cache_folder() == Path.home() / "kept"

@@ -115,11 +115,11 @@ def call_numbers(order: SolvingOrder, motion: DriverNumbers, dimensions: Mapping
     for one, place in dimensions.items():
         whole = np.atleast_2d(fitted(place))
         for given_as, part in zip(one.inputs, (whole.real, whole.imag), strict=False):
-            given[given_as] = np.asarray(part, float)
+            given[given_as] = np.array(part, float)
     for name, numbers in driven.drives.items():
         for k, value in enumerate(numbers):
             whole = fitted(_unfolded(value, driven.shape))
-            given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.asarray(whole, float))
+            given[InputNumber(DRIVE, name, str(k))] = np.atleast_2d(np.array(whole, float))
     return CallNumbers(given, shape, still)
 
 

@@ -89,7 +89,7 @@ class QuickCalls(PrintsShort):
         if self.is_angle and first.is_integer() and last.is_integer() and max(first, last, -first, -last) > COUNTED:
             return None
         given = self.own.copy()
-        given[self.at] = values[None]
+        given[self.at] = values[None].copy()  # what is found is asked for its numbers later
         still = self._with_rates(given, rates)
         placed = self._with_dimensions(given, dimensions) if dimensions is not None else (1, 0)
         if still is None or placed is None or type(threads) is not int or threads < 1:
@@ -142,9 +142,9 @@ class QuickCalls(PrintsShort):
                 if len(value) < 2 or designs not in (1, len(value)) or not np.isfinite(value).all():
                     return None
                 designs, columns = len(value), columns | 1 << k
-                given[k] = value.real if is_vector else value
+                given[k] = value.real.copy()
                 if is_vector:
-                    given[k + 1] = value.imag
+                    given[k + 1] = value.imag.copy()
             elif type(value) in (float, int) or (is_vector and type(value) is complex):
                 if not (-HUGE <= value.real <= HUGE and -HUGE <= value.imag <= HUGE):
                     return None

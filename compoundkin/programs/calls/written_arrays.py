@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from itertools import combinations
 from math import prod
 from typing import Any
 
@@ -29,9 +30,17 @@ def held_arrays(out: Any, outputs: Mapping[str, bool], shape: tuple[int, ...]) -
     if not isinstance(out, Mapping):
         raise InvalidInput(Problem("out", f"{short(out)} is no table by name", 'write {"G.position": array}'))
     problems = [problem for name, array in out.items() if (problem := _problem(name, array, outputs, shape))]
+    problems = problems or list(_shared(out))
     if problems:
         raise InvalidInput(problems)
     return {name: array.reshape(prod(shape[:-1]), *(shape[-1:] or (1,))) for name, array in out.items()}
+
+
+def _shared(out: Mapping[str, Number]) -> Iterator[Problem]:
+    """Yield arrays that would be written twice."""
+    for (name, array), (other, known) in combinations(out.items(), 2):
+        if np.may_share_memory(array, known):
+            yield Problem(f"out.{other}", f"it is in the memory of out.{name}", "give an array to each output")
 
 
 def _problem(name: Any, array: Any, outputs: Mapping[str, bool], shape: tuple[int, ...]) -> Problem | None:

@@ -18,16 +18,21 @@ def cache_folder() -> Path:
     """Return the folder of compiled code: the one named, or the platform's own."""
     named = os.environ.get(FOLDER)
     if named:
-        return Path(named)
+        return _expanded(Path(named))
     if sys.platform == "win32":
         base = Path(os.environ.get("LOCALAPPDATA") or "~/AppData/Local")
     elif sys.platform == "darwin":
         base = Path("~/Library/Caches")
     else:
         base = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
-    with suppress(RuntimeError):  # of a user without a home
-        base = base.expanduser()
-    return base / "compoundkin"
+    return _expanded(base) / "compoundkin"
+
+
+def _expanded(folder: Path) -> Path:
+    """Return a folder with "~" as the user's home."""
+    with suppress(RuntimeError):  # of a user without one
+        return folder.expanduser()
+    return folder
 
 
 def cached_object(key: str) -> bytes | None:
