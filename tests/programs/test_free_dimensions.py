@@ -84,6 +84,17 @@ def test_sizes_of_wheels_and_ends_of_guides_are_free(name, free):
         np.testing.assert_allclose(found[f"{link}.angle"], solved, atol=1e-11)
 
 
+def test_teeth_are_free_where_three_wheels_are_placed_together():
+    name = "left/planet-1.teeth.0"
+    path = ck.compile(loaded("differential"), ["left.angle", "planet-2.angle"], free=name)
+    own, found = float(path.stated.own(path.dimensions[0])), path.derivatives(by=name)
+    less, more = (path(dimensions={name: own + away}) for away in (-1e-4, 1e-4))
+    for out in path.names:
+        assert np.allclose(found[out], ck.quantity(ck.solve(loaded("differential")), out).values, atol=1e-12)
+        assert np.allclose(found[out, name], (more[out] - less[out]) / 2e-4, atol=1e-8)
+    assert np.abs(found["planet-2.angle", name]).max() > 1e-3
+
+
 def crank(**points):
     """A crank with a block on it."""
     slide = ck.slide("block", on="crank", through="A", angle=0.1, offset=0.5, name="way")

@@ -90,7 +90,7 @@ def test_poses_that_are_not_assembled_are_left_out_where_masked():
     value, slope = masked.gradient({"crank": whole}, places, target=5.0 + 4.0j)
     with pytest.warns(ck.errors.UnassembledPoses, match="1 of 2 designs"):
         told, other = plain.gradient({"crank": whole}, places, target=5.0 + 4.0j)
-    assert np.isnan([told[1], other["coupler.C"][1]]).all()
+    assert np.isnan([told[1], other["coupler.C"][1].real, other["coupler.C"][1].imag]).all()
     assert np.isfinite(value).all()
     assert (told[0], other["coupler.C"][0]) == (value[0], slope["coupler.C"][0])
 
@@ -107,6 +107,26 @@ def test_poses_that_are_not_assembled_are_left_out_where_masked():
         np.testing.assert_allclose(slope[each][1], differences(mechanism, at, each, summed), rtol=1e-6)
 
 
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda x: x**-3 + x**2.5 + x**-1.5 + x**40 + x**0,
+        lambda x: np.tanh(20.0 * (x - 1.1)) + np.log10(x) + np.reciprocal(x) + np.fabs(1.0 - x),
+        lambda x: np.clip(x, 1.0, 1.2) + np.clip(x, None, 1.1) + np.degrees(x) + np.radians(x),
+    ],
+)
+def test_functions_of_numbers_are_those_of_numpy(function):
+    """Values and slopes of an objective, by NumPy itself and its differences."""
+    path = ck.compile(loaded("crank-rocker"), "rocker.angle", free="coupler.C.x")
+    own = float(path.stated.own(path.dimensions[0]))
+    value, slope = path.objective(lambda at: function(at["rocker.angle"])).gradient(ANGLES)
+    less, here, more = (
+        function(path(ANGLES, {"coupler.C.x": own + away})["rocker.angle"]).sum() for away in (-STEP, 0.0, STEP)
+    )
+    np.testing.assert_allclose(value, here, rtol=1e-12)
+    np.testing.assert_allclose(slope["coupler.C.x"], (more - less) / (2.0 * STEP), rtol=1e-6)
+
+
 def test_slips_in_objectives_are_told():
     """Each with its place and remedy, by the errors of the package."""
     path = ck.compile(loaded("crank-rocker"), ["C", "rocker.angle"], free="coupler.C")
@@ -121,12 +141,17 @@ def test_slips_in_objectives_are_told():
         cost([0.1], target="x")
     with pytest.raises(ck.errors.InvalidInput, match=r"target: .*not finite"):
         cost([0.1], target=np.nan)
+    for name in ("rocker.angle", "assembled"):
+        with pytest.raises(ck.errors.InvalidInput, match=f"{name}: the pose has this by itself"):
+            path.objective(lambda at, name=name: at[name])([0.1], **{name: 1.0})
     for wrong, told in (
         (lambda at: at["C"], "complex"),
         (lambda at: 1.0 if at["rocker.angle"] > 0 else 0.0, "truth value"),
         (lambda at: np.any(at["rocker.angle"] > 0), "all poses"),
         (lambda at: np.sin(at["C"]), "sin"),
-        (lambda at: at["rocker.angle"] ** 0.3, "whole exponents"),
+        (lambda at: at["rocker.angle"] ** 0.3, "whole powers"),
+        (lambda at: abs(at["C"] ** 0.5), "roots of real numbers"),
+        (lambda at: at["C"] > 0.0, "vectors have no order"),
         (lambda at: np.fft.fft(at["C"]), "cannot be recorded"),
         (lambda at: at["C"].mean(), "cannot be recorded"),
         (lambda at: "x", "cannot be recorded"),

@@ -73,7 +73,8 @@ class ObjectiveValues(PrintsShort):
         slopes = {name: put([each.slopes[name] for each in values]) for name in values[0].slopes}
         value = put([each.value for each in values])
         for slope in slopes.values():
-            slope[np.isnan(value[:, 0])] = np.nan  # a sum that is none has no slopes
+            # a sum that is none has no slopes
+            slope[np.isnan(value[:, 0])] = complex(np.nan, np.nan) if np.iscomplexobj(slope) else np.nan
         return cls(value, put([each.least for each in values]), slopes)
 
     def shaped(self, shape: tuple[int, ...]) -> tuple[Any, dict[str, Any]]:

@@ -65,6 +65,9 @@ def recorded_cost(
     `given` tells of each name given with the call whether it is complex. Raises InvalidInput for what cannot be
     recorded, UnknownName for what is not read or not there.
     """
+    taken = [Problem(name, "the pose has this by itself", "give it another name") for name in _own(outputs, given)]
+    if taken:
+        raise InvalidInput(taken)
     pose = ObjectivePose({**outputs, **{name: parameter(graph, name, c) for name, c in given.items()}}, assembled)
     try:
         with one_pose():
@@ -84,3 +87,8 @@ def recorded_cost(
     if graph.is_truth(cost.x):
         return graph.apply("select", cost.x, graph.constant(1.0), graph.constant(0.0))
     return cost.x
+
+
+def _own(outputs: Mapping[str, RecordedNumber], given: Mapping[str, bool]) -> list[str]:
+    """Return what is given under a name that means something already."""
+    return [name for name in given if name in outputs or name == ASSEMBLED]

@@ -46,17 +46,22 @@ class NumpyAnswers(ABC):
     def part(self, index: int) -> int:
         """Return the node of the real (0) or imaginary (1) part."""
 
+    def _ordered(self, operation: str, one: Any, other: Any) -> Any:
+        if one.y is not None or other.y is not None:
+            raise TypeError("vectors have no order: compare lengths or coordinates")
+        return self.of(operation, one.x, other.x)
+
     def __ge__(self, other: Any) -> Any:
-        return self.of("ge", self.x, self.like(other).x)
+        return self._ordered("ge", self, self.like(other))
 
     def __gt__(self, other: Any) -> Any:
-        return self.of("gt", self.x, self.like(other).x)
+        return self._ordered("gt", self, self.like(other))
 
     def __le__(self, other: Any) -> Any:
-        return self.of("ge", self.like(other).x, self.x)
+        return self._ordered("ge", self.like(other), self)
 
     def __lt__(self, other: Any) -> Any:
-        return self.of("gt", self.like(other).x, self.x)
+        return self._ordered("gt", self.like(other), self)
 
     def __eq__(self, other: Any) -> Any:
         b = self.like(other)

@@ -34,6 +34,12 @@ def _exp(x: RecordedNumber) -> Any:
     return size if x.y is None else size * (_named("cos")(x.imag) + 1j * _named("sin")(x.imag))
 
 
+def _tanh(x: RecordedNumber) -> Any:
+    """Of the exponential of what is below zero: it stays finite."""
+    small = _exp(-2.0 * abs(x))
+    return _sign(x) * ((1.0 - small) / (1.0 + small))
+
+
 def _sign(x: RecordedNumber) -> RecordedNumber:
     return chosen(x > 0.0, 1.0, chosen(x < 0.0, -1.0, x))
 
@@ -59,7 +65,9 @@ UFUNCS: dict[Any, Callable[..., Any]] = {
     np.positive: operator.pos,
     np.absolute: abs,
     np.conjugate: RecordedNumber.conjugate,
+    np.fabs: _named("abs"),
     np.square: _square,
+    np.reciprocal: RecordedNumber.reciprocal,
     np.sqrt: _named("sqrt"),
     np.hypot: lambda x, y: _named("sqrt")(x * x + y * y),
     np.sin: _named("sin"),
@@ -71,8 +79,12 @@ UFUNCS: dict[Any, Callable[..., Any]] = {
     np.arccos: lambda x: _named("atan2")(_named("sqrt")(1.0 - x * x), x),
     np.deg2rad: lambda x: x * (np.pi / 180.0),
     np.rad2deg: lambda x: x * (180.0 / np.pi),
+    np.radians: lambda x: x * (np.pi / 180.0),
+    np.degrees: lambda x: x * (180.0 / np.pi),
     np.exp: _exp,
     np.log: _named("log"),
+    np.log10: lambda x: _named("log")(x) * (1.0 / np.log(10.0)),
+    np.tanh: _tanh,
     np.sign: _sign,
     np.maximum: _named("max"),
     np.minimum: _named("min"),
@@ -104,7 +116,7 @@ def _number(value: RecordedNumber) -> float:
     """Return the number that a recorded one is known to be."""
     node = value.graph.nodes[value.x]
     if node.operation != CONSTANT or value.y is not None:
-        raise TypeError("only powers with whole exponents, and square roots, can be recorded")
+        raise TypeError("only whole powers, and square roots of real numbers, can be recorded")
     return node.value
 
 
@@ -138,6 +150,11 @@ def _round(like: RecordedNumber, value: RecordedNumber, decimals: int = 0) -> An
     return _named("rint")(value)
 
 
+def _clipped(like: RecordedNumber, value: Any, low: Any = None, high: Any = None) -> Any:
+    above = value if low is None else np.maximum(like.like(value), low)
+    return above if high is None else np.minimum(above, high)
+
+
 FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.where: lambda like, truth, one, other: chosen(like.like(truth), one, other),
     np.any: lambda like, *args, **options: answer_for_all(),
@@ -152,5 +169,6 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.imag: lambda like, value: value.imag,
     np.angle: _angle,
     np.round: _round,
+    np.clip: _clipped,
     np.iscomplexobj: lambda like, value: value.y is not None,
 }

@@ -131,14 +131,15 @@ class RecordedNumber(NumpyAnswers):
 
     def __pow__(self, exponent: Any) -> RecordedNumber:
         whole = int(exponent)
-        if exponent == 0.5:
-            return self.of("sqrt", self.x)
-        if whole != exponent or whole < 0:
-            raise TypeError("only powers with whole exponents, and square roots, can be recorded")
-        found = self.like(1.0)
-        for _ in range(whole):
-            found = found * self
-        return found
+        root = exponent - whole
+        if abs(root) not in (0.0, 0.5) or (root and self.y is not None):
+            raise TypeError("only whole powers, and square roots of real numbers, can be recorded")
+        found = self.of("sqrt", self.x) if root else self.like(1.0)
+        square, left = self, abs(whole)
+        while left:
+            found = found * square if left % 2 else found
+            square, left = square * square, left // 2
+        return found.reciprocal() if exponent < 0 else found
 
     # --- parts ---
 
