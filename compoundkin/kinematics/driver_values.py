@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 from typing import Any
@@ -37,22 +37,20 @@ def inputs(
     jerk: Any,
     times: Number | None = None,
     order: int = RATES - 1,
+    drives: Sequence[Drive] | None = None,
 ) -> Inputs:
-    """Return the inputs of a solution, in time where `times` are given (see `timing`).
+    """Return the inputs of a solution, in time where `times` are given.
 
-    Raises InvalidInput for unknown drivers or shapes that do not fit.
+    `drives` may replace the mechanism's own. Raises InvalidInput for unknown drivers or shapes that do not fit.
     """
     mechanism = solving_order.structure.mechanism
     asked = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk}
     _only_known(mechanism, asked)
-    given = {drive.name: _driver(solving_order, drive, asked, times, order) for drive in mechanism.drives}
+    given = {one.name: _driver(solving_order, one, asked, times, order) for one in drives or mechanism.drives}
     shape = _shape(solving_order, given)
     fitted = fit(shape)
-    return Inputs(
-        shape,
-        _fitted_ends(solving_order, fitted),
-        {k: tuple(fitted(v) for v in vs) for k, vs in given.items()},
-    )
+    driven = {k: tuple(fitted(v) for v in vs) for k, vs in given.items()}
+    return Inputs(shape, _fitted_ends(solving_order, fitted), driven)
 
 
 def _fitted_ends(solving_order: SolvingOrder, fitted: Callable[[Number], Number]) -> Mapping[str, Ends]:
@@ -145,11 +143,13 @@ def _shape(solving_order: SolvingOrder, drives: Mapping[str, tuple[Number, ...]]
     return found
 
 
-def times_of(mechanism: Mechanism, values: Mapping[str, Any] | None, time: Any) -> Number | None:
+def times_of(
+    mechanism: Mechanism, values: Mapping[str, Any] | None, time: Any, drives: Sequence[Drive] | None = None
+) -> Number | None:
     """Return the times of a motion; None where the drivers' values are given instead.
 
-    They are `time`, else those that the mechanism states, else 73 over the range on which all laws agree. Raises
-    InvalidInput for times that are not numbers, and where laws need times that nothing tells.
+    They are `time`, else those that the mechanism states, else 73 over the range on which all laws agree; `drives` may
+    replace its own. Raises InvalidInput for times that are not numbers, and where laws need times that nothing tells.
 
     >>> from compoundkin.model.laws import program, rise
     >>> from compoundkin.model.elements import drive, link
@@ -160,7 +160,7 @@ def times_of(mechanism: Mechanism, values: Mapping[str, Any] | None, time: Any) 
     """
     if time is not None:
         return _checked(time)
-    laws = {d.name: d.law for d in mechanism.drives if d.law is not None}
+    laws = {d.name: d.law for d in drives or mechanism.drives if d.law is not None}
     known = values or {}
     if known and all(name in known for name in laws):
         return None
@@ -202,7 +202,7 @@ def timed(
             raise InvalidInput(Problem(f"{what}.{drive.name}", "the driver moves by its law in time", remedy))
         return _by_law(drive, times, order)
     for what, value in zip(asked, given, strict=True):
-        if np.ndim(value) and np.shape(value)[-1] > 1:
+        if np.shape(value)[-1:] > (1,):
             text = f"its {what} {'vary' if what == 'values' else 'varies'} along the motion, which the times do already"
             remedy = "give a single number, where it is at time 0, or a law" if what == "values" else "give one number"
             raise InvalidInput(Problem(f"drives.{drive.name}.{what}", text, remedy))

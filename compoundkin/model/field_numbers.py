@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 # Kinds of keys that are one real number, or two; arrays of them for several designs.
-_ONE, _TWO = ("length", "angle", "number", "turn", "coordinate"), ("two", "reach", "sweep")
+_ONE, _TWO = ("length", "angle", "number", "turn", "coordinate", "rate", "span"), ("two", "reach", "sweep")
 
 
 def numbers_of(item: Any) -> dict[str, Any]:

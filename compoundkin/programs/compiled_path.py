@@ -186,7 +186,7 @@ class CompiledPath(WritesSources, PathPrograms):
         >>> found["B", "crank.B.x"].real.tolist(), found["B", "crank"].imag.tolist()
         ([1.0], [2.0])
         """
-        numbers = self.numbers(values, dimensions, speed, acceleration, jerk, time)
+        numbers = self.sloped_numbers(values, dimensions, speed, acceleration, jerk, time)
         return self.sensitivities.found(numbers, by, threads)
 
     @cached_property

@@ -115,7 +115,7 @@ class JaxPath(PrintsShort):
         """Return the free dimensions, their own values where none are given."""
         import jax.numpy as jnp
 
-        free = self.path.dimensions
+        free = [one for one in self.path.dimensions if not one.is_of_law]
         _only_known("dimensions", dimensions, [one.name for one in free])
         found: dict[InputNumber, Any] = {}
         for one in free:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
 
+import numpy as np
+
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.lost_digits import Told
@@ -14,9 +16,10 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.calls.call_numbers import CallNumbers, DriverNumbers, call_numbers
 from compoundkin.programs.calls.call_seeds import CallSeeds
+from compoundkin.programs.derivatives.law_chain import with_law_slopes
 from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.dimensions.designed_mechanism import designed
-from compoundkin.programs.dimensions.dimension_values import dimension_values
+from compoundkin.programs.dimensions.dimension_values import dimension_values, hold_laws
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.limits.limit_look import LimitPrograms
@@ -57,6 +60,11 @@ class PathPrograms(PrintsShort):
     def free(self) -> tuple[str, ...]:
         """The names of its free dimensions."""
         return tuple(one.name for one in self.dimensions)
+
+    @cached_property
+    def law_numbers(self) -> tuple[FreeDimension, ...]:
+        """Its free dimensions that are numbers of laws."""
+        return tuple(one for one in self.dimensions if one.is_of_law)
 
     @property
     def order(self) -> int:
@@ -104,7 +112,8 @@ class PathPrograms(PrintsShort):
     def _recording(self, still: frozenset[tuple[str, int]] = frozenset()) -> Recording:
         own = self.reference
         steps = STEPS if own.solving_order.numbered else 0
-        return Recording(own.solving_order, self.signs, self.dimensions, self.order, still, own.inputs.ends, steps)
+        read = tuple(one for one in self.dimensions if not one.is_of_law)
+        return Recording(own.solving_order, self.signs, read, self.order, still, own.inputs.ends, steps)
 
     def program(self, numbers: CallNumbers) -> ReadyProgram:
         """Return the program for numbers of these forms."""
@@ -124,8 +133,28 @@ class PathPrograms(PrintsShort):
         """Return the numbers of a call; raises InvalidInput for what does not fit."""
         found = dimension_values(self.stated, self.dimensions, dimensions)
         motion = DriverNumbers(values, speed, acceleration, jerk, time, self.order)
-        numbers = call_numbers(self.reference.solving_order, motion, found)
+        order = self.reference.solving_order
+        if self.law_numbers:
+            hold_laws(self.law_numbers, dimensions, motion.times(order))
+        numbers = call_numbers(order, motion, found)
         return self.seeds.added(self.variant(numbers.still), numbers)
+
+    def sloped_numbers(
+        self,
+        values: Any,
+        dimensions: Mapping[str, Any] | None,
+        speed: Any,
+        acceleration: Any,
+        jerk: Any,
+        time: Any = None,
+    ) -> CallNumbers:
+        """Return the numbers of a call with the slopes of laws."""
+        numbers = self.numbers(values, dimensions, speed, acceleration, jerk, time)
+        if not self.law_numbers:
+            return numbers
+        found = dimension_values(self.stated, self.dimensions, dimensions)
+        motion = DriverNumbers(values, speed, acceleration, jerk, time, self.order)
+        return with_law_slopes(numbers, self.reference.solving_order, motion, found)
 
     def outputs_of(self, numbers: CallNumbers) -> dict[str, bool]:
         """Return the names of its outputs, and which are vectors."""
@@ -142,7 +171,10 @@ class PathPrograms(PrintsShort):
 
     def solved(self, numbers: CallNumbers, order: int | None = None) -> Told:
         """Solve the designs of some numbers instead, in its configuration."""
-        mechanism = designed(self.stated, {one: one.value_in(numbers.given) for one in self.dimensions})
+        values = {one: one.value_in(numbers.given) for one in self.dimensions}
+        # what moves the drivers is told; a program of motion has no designs
+        one_law = {one: value for one, value in values.items() if not (one.is_of_law and np.ndim(value))}
+        mechanism = designed(self.stated, one_law)
         return solved_designs(mechanism, numbers, self.configuration, self.order if order is None else order)
 
     def settled(self, numbers: CallNumbers, arrays: list[Number], least: Number) -> PathValues:

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import comb, cos, factorial, pi, sin
+from typing import NamedTuple
 
 import numpy as np
 
@@ -156,6 +157,14 @@ def jumps(
     return tuple(sorted(found, key=lambda one: (one.place, one.order)))
 
 
+class Spots(NamedTuple):
+    """Where places are in a program: their pieces by index, and which are outside."""
+
+    index: Number
+    before: Number
+    after: Number
+
+
 class PieceTable:
     """The pieces of a program as arrays, to look them up by index."""
 
@@ -169,18 +178,22 @@ class PieceTable:
         ).T.copy()
         self.waves = np.array([piece.wave for piece in pieces]).T.copy()
 
-    def taylor(self, x: Number, order: int, stops: bool) -> list[Number]:
+    def spots(self, x: Number) -> Spots:
+        """Return where places x are."""
+        index = np.clip(np.searchsorted(self.starts, x, side="right") - 1, 0, len(self.starts) - 1)
+        return Spots(index, x < 0.0, x > self.end)
+
+    def taylor(self, x: Number, spots: Spots, order: int, stops: bool) -> list[Number]:
         """Return the Taylor coefficients at places x; outside it stands still, if it `stops`."""
-        place = np.clip(x, 0.0, self.end) if stops else x
-        index = np.clip(np.searchsorted(self.starts, place, side="right") - 1, 0, len(self.starts) - 1)
+        index, before, after = spots
+        place = np.where(before, 0.0, np.where(after, self.end, x)) if stops else x
         u = place - self.starts[index]
         out = self._smooth(index, u, order)
         if self.waves[0].any():
             out = [a + b for a, b in zip(out, self._waves(index, u, order), strict=True)]
         if stops and order:
             # not a number stays what it is
-            outside = (x < 0.0) | (x > self.end)
-            out[1:] = [np.where(outside, 0.0, c) for c in out[1:]]
+            out[1:] = [np.where(before | after, 0.0, c) for c in out[1:]]
         return [out[0], *(np.where(np.abs(c) <= self._rounding(k)[index], 0.0, c) for k, c in enumerate(out[1:], 1))]
 
     def _rounding(self, k: int) -> Number:

@@ -11,6 +11,7 @@ import numpy as np
 from compoundkin.base.copies import HoldsFunction
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number, Series
+from compoundkin.model.fields import Key
 from compoundkin.model.laws.constant_laws import Compared, as_number, from_derivatives
 from compoundkin.model.laws.jets import Jet
 
@@ -45,6 +46,7 @@ class FunctionLaw(HoldsFunction, Compared):
 
     held: ClassVar[str] = "f"
     kind: ClassVar[str] = "function"
+    keys: ClassVar[tuple[Key, ...]] = ()
     span: ClassVar[None] = None
 
     def __eq__(self, other: object) -> bool:

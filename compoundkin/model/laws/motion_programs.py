@@ -101,12 +101,12 @@ class Program:
         """How far a period brings it."""
         return float(self.values[-1] - self.values[0])
 
-    def at(self, x: Series, repeat: bool | None = None) -> Series:
+    def at(self, x: Series, repeat: bool | None = None, like: Program | None = None) -> Series:
         """Return its value and all derivatives along a coordinate. A real series of any shape.
 
-        Before its beginning and after its end it stands still, or goes on periodically if `repeat`
-        (None: if it `repeats`); a period that does not end where it began goes on from there. At a jump
-        the derivatives are those behind it, at the very end those before it.
+        Before its beginning and after its end it stands still, or goes on periodically if `repeat` (None: if it
+        `repeats`); a period that does not end where it began goes on from there. At a jump the derivatives are those
+        behind it, at the very end those before it. `like`, a program of as many pieces, tells each place's piece.
 
         >>> from compoundkin.model.laws.program_segments import rise
         >>> program(rise(1.0, 2.0, "harmonic")).at(Series((np.array([-1.0, 1.0, 3.0]),))).c[0].round(9).tolist()
@@ -114,15 +114,17 @@ class Program:
         """
         goes_on = self.repeats if repeat is None else repeat
         value = x.c[0] if isinstance(x.c[0], np.ndarray) else float(x.c[0])
-        turns = np.floor(value / self.period) if goes_on else 0.0
-        outer = self._table.taylor(value - turns * self.period if goes_on else value, x.order, not goes_on)
+        shown = like or self
+        turns = np.floor(value / shown.period) if goes_on else 0.0
+        spots = shown._table.spots(value - turns * shown.period)
+        outer = self._table.taylor(value - turns * self.period, spots, x.order, not goes_on)
         if goes_on and abs(self._advance) > JUMP * self.lift:
             outer[0] = outer[0] + turns * self._advance
         return composed(outer if isinstance(value, np.ndarray) else [float(c) for c in outer], x)
 
-    def coordinate(self, t: Number, order: int) -> Series:
+    def coordinate(self, t: Number, order: int, like: Program | None = None) -> Series:
         """Evaluate it as a law at times t (seconds). It goes on after its end if `repeat`."""
-        return self.at(Series((t, 1.0, *[0.0] * (order - 1))[: order + 1]), self.repeat)
+        return self.at(Series((t, 1.0, *[0.0] * (order - 1))[: order + 1]), self.repeat, like)
 
     @cached_property
     def pieces(self) -> tuple[PositionPiece, ...]:

@@ -122,6 +122,11 @@ class ProgramSegment:
         """Whether it takes the least time, so that the span need not be written."""
         return self.law == LEAST_TIME and self.rise != 0.0 and self.over == self._fastest.duration
 
+    @property
+    def followed(self) -> str:
+        """The number that follows from others: the least span, a dwell's rise."""
+        return "over" if self.is_fastest else "rise" if self.law == "dwell" else ""
+
     @cached_property
     def _fastest(self) -> LeastTime:
         limits = (self.speed, self.acceleration, self.jerk)

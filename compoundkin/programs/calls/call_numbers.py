@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import prod
 from typing import Any, NamedTuple
@@ -15,7 +15,9 @@ from compoundkin.kinematics.driver_values import RATES, by_name, inputs, times_o
 from compoundkin.kinematics.inputs import Inputs, fit
 from compoundkin.kinematics.likely_slips import warn_of_degrees
 from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.elements import Drive
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.moved_drives import moved_by_call
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import INPUT
@@ -91,13 +93,20 @@ class DriverNumbers(NamedTuple):
     time: Any = None
     order: int = RATES - 1
 
-    def inputs(self, order: SolvingOrder) -> Inputs:
-        """Return them as `solve` does; raises InvalidInput for what does not fit."""
+    def times(self, order: SolvingOrder, drives: Sequence[Drive] | None = None) -> Number | None:
+        """Return the times of the motion; None where values are given."""
         mechanism = order.structure.mechanism
-        values = by_name(mechanism, self.values)
-        times = times_of(mechanism, values, self.time)
+        return times_of(mechanism, by_name(mechanism, self.values), self.time, drives)
+
+    def inputs(self, order: SolvingOrder, drives: Sequence[Drive] | None = None) -> Inputs:
+        """Return them as `solve` does; raises InvalidInput for what does not fit.
+
+        `drives` are others in the place of the mechanism's own.
+        """
+        values = by_name(order.structure.mechanism, self.values)
+        times = self.times(order, drives)
         # laws that jump tell their corners at rates that are asked for only
-        found = inputs(order, values, self.speed, self.acceleration, self.jerk, times, self.order)
+        found = inputs(order, values, self.speed, self.acceleration, self.jerk, times, self.order, drives)
         if times is None:
             warn_of_degrees(order.structure, found)
         return found
@@ -105,11 +114,14 @@ class DriverNumbers(NamedTuple):
 
 def call_numbers(order: SolvingOrder, motion: DriverNumbers, dimensions: Mapping[FreeDimension, Number]) -> CallNumbers:
     """Return the numbers of a call; raises InvalidInput for what does not fit."""
-    driven = motion.inputs(order)
+    moving = {one.owner for one in dimensions if one.is_of_law}
+    driven = motion.inputs(order, moved_by_call(order.structure.mechanism.drives, dimensions) if moving else None)
     shape = driven.shape
     for one, value in dimensions.items():
         shape = _broadcast(shape, np.shape(value), f"dimensions.{one.name}")
-    still = frozenset((name, k) for name, vs in driven.drives.items() for k, v in enumerate(vs) if k and np.all(v == 0))
+    # a rate that a law's number may change is none that is zero
+    steady = {name: vs for name, vs in driven.drives.items() if name not in moving}
+    still = frozenset((name, k) for name, vs in steady.items() for k, v in enumerate(vs) if k and np.all(v == 0))
     fitted = fit(shape)
     given: dict[InputNumber, Number] = {}
     for one, place in dimensions.items():

@@ -53,7 +53,8 @@ class QuickCalls(PrintsShort):
         self.places: dict[str, tuple[int, bool]] = {}
         for one in path.dimensions:
             value = complex(path.stated.own(one))
-            self.places[one.name] = len(self.own), one.is_vector
+            if not one.is_of_law:
+                self.places[one.name] = len(self.own), one.is_vector
             self.names += one.inputs
             self.own += [np.full((1, 1), part) for part in (value.real, value.imag)[: len(one.inputs)]]
         self.at = len(self.own)

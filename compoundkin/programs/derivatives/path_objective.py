@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import UnassembledPoses, warn
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
 from compoundkin.programs.calls.written_arrays import hold_threads
+from compoundkin.programs.derivatives.law_chain import slope_inputs, summed_slopes
 from compoundkin.programs.derivatives.objective_program import ObjectiveForm, ObjectiveProgram, ObjectiveValues
 from compoundkin.programs.derivatives.parameters import with_parameters
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
@@ -89,7 +90,8 @@ class PathObjective(PrintsShort):
         >>> float(value), complex(slope["crank.B"])
         (2.0, (4+0j))
         """
-        return self._found(self.path.numbers(values, dimensions, speed, acceleration, jerk, time), given, True, threads)
+        numbers = self.path.sloped_numbers(values, dimensions, speed, acceleration, jerk, time)
+        return self._found(numbers, given, True, threads)
 
     def _found(
         self, numbers: CallNumbers, given: Mapping[str, Any], is_sloped: bool, threads: int
@@ -120,11 +122,14 @@ class PathObjective(PrintsShort):
         key = numbers.form, tuple(given.items()), is_sloped, known
         if key not in self._programs:
             path = self.path
-            by = {one.name: one.inputs for one in path.dimensions} if is_sloped else {}
+            by = slope_inputs(path.dimensions, path.order) if is_sloped else {}
             form = ObjectiveForm(self.function, given, by, known)
             variant = path.variant(numbers.still, known == SOLVED)
             self._programs[key] = ObjectiveProgram.of(variant, path.names, numbers, form, path.chosen_backend)
-        return self._programs[key].run(numbers, threads)
+        found = self._programs[key].run(numbers, threads)
+        if not (is_sloped and self.path.law_numbers):
+            return found
+        return replace(found, slopes=summed_slopes(self.path.dimensions, numbers, found.slopes, self.path.order))
 
     def __repr__(self) -> str:
         return f"PathObjective(of {self.path!r})"

@@ -15,10 +15,12 @@ from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.calls.written_arrays import hold_threads
+from compoundkin.programs.derivatives.law_chain import chained, slope_inputs
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.derivatives.tangents import forward
 from compoundkin.programs.derivatives.told_designs import told_designs
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.settled_values import settled_values
@@ -87,8 +89,10 @@ class SensitivityPrograms(PrintsShort):
         unknown = [name for name in asked if name not in known]
         if unknown:
             raise UnknownName([Problem(f"by.{name}", "it is no input", nearest(name, list(known))) for name in unknown])
-        wanted = {name: known[name] for name in asked}
         path, names = self.path, self.path.names
+        laws = [one for one in path.law_numbers if one.name in asked]
+        read = {name: known[name] for name in asked if name not in {one.name for one in laws}}
+        wanted = read | {label: drive for label, (drive,) in slope_inputs(laws, path.order).items()}
         found = self._run(numbers, wanted, False, threads)
         look = path.limits.doubtful(numbers, found.pop(_MARGIN))
         outputs = [found.pop((name, "")) for name in names]
@@ -100,6 +104,7 @@ class SensitivityPrograms(PrintsShort):
                 solved = self._run(told, wanted, True, threads)
                 for key, slope in slopes.items():
                     slope[designs] = solved[key]
+        slopes = _chained(laws, numbers, slopes, names, path.order)
         values = path.shown(numbers, outputs, failed)
         return PathSensitivities(values, {key: _masked(values.found[key[0]], slope) for key, slope in slopes.items()})
 
@@ -121,6 +126,22 @@ def _directions(numbers: CallNumbers) -> dict[str, InputNumber]:
             found[f"{given.name}.{given.part}" if given.part else given.name] = given
         elif (given.kind, given.part) == (DRIVE, "0"):
             found[given.name] = given
+    return found
+
+
+def _chained(
+    laws: Sequence[FreeDimension],
+    numbers: CallNumbers,
+    slopes: Mapping[Wanted, Number],
+    names: Sequence[str],
+    order: int,
+) -> dict[Wanted, Number]:
+    """Return slopes with those by numbers of laws in the place of those by what the laws move."""
+    found = dict(slopes)
+    for one in laws:
+        for name in names:
+            own = {label: found.pop((name, label)) for label in slope_inputs([one], order)}
+            found[name, one.name] = sum(chained(one, numbers, own, order))
     return found
 
 

@@ -34,6 +34,14 @@ def dimension_values(
     return {one: _value(one, given[one.name]) if one.name in given else stated.own(one) for one in free}
 
 
+def hold_laws(free: Sequence[FreeDimension], given: Mapping[str, Any] | None, times: Number | None) -> None:
+    """Raise InvalidInput where numbers of laws are given and no law moves."""
+    asked = [one.name for one in free if one.is_of_law and one.name in (given or {})]
+    if asked and times is None:
+        what, remedy = "the drivers' values are given, and no law moves them", "leave the values out, and give time=..."
+        raise InvalidInput([Problem(f"dimensions.{name}", what, remedy) for name in asked])
+
+
 def _not_free(stated: StatedDimensions, name: object, names: Sequence[str]) -> tuple[str, str]:
     if name in stated.known:
         return "this dimension is not free", f"compile(..., free={[*names, name]!r})"
@@ -48,4 +56,7 @@ def _value(one: FreeDimension, value: Any) -> Number:
         raise InvalidInput(error.problems) from None
     if not np.size(found) or not np.isfinite(found).all():
         raise InvalidInput(Problem(where, "the value is empty or not finite"))
+    if one.is_of_law and np.shape(found)[-1:] > (1,):
+        what = f"it holds {np.shape(found)[-1]} numbers along the motion, in which a law cannot change"
+        raise InvalidInput(Problem(where, what, "give one number, or one for each design: [[1.0], [2.0]]"))
     return found

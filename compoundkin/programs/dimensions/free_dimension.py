@@ -1,4 +1,4 @@
-"""A free dimension: a point of a link, a coordinate of one, or a number of a pair; found by its name."""
+"""A free dimension: a point of a link, a coordinate of one, or a number of a pair or law; found by its name."""
 
 from __future__ import annotations
 
@@ -12,14 +12,17 @@ from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.recording.input_kinds import DIMENSION
 
 AXES = ("x", "y")
+# The word of a law's numbers.
+LAW = "law"
 
 
 @dataclass(frozen=True)
 class FreeDimension:
     """A dimension by its name.
 
-    It is of a link (`word` is the letter of a point, `part` empty for both coordinates) or of a pair or cylinder
-    (`word` is a field, `part` which of two numbers).
+    It is of a link (`word` is the letter of a point, `part` empty for both coordinates), of a pair or cylinder
+    (`word` is a field, `part` which of two numbers), or of the law of a driver (`part` is the number), whose values
+    and rates programs then have as inputs, and not the number itself.
     """
 
     name: str
@@ -27,6 +30,7 @@ class FreeDimension:
     word: str
     part: str = ""
     is_of_link: bool = False
+    is_of_law: bool = False
 
     @property
     def is_vector(self) -> bool:

@@ -45,7 +45,9 @@ def hold_one_design(stated: StatedDimensions, free: Sequence[FreeDimension]) -> 
     """Raise InvalidInput where a dimension has several values and is not free."""
     freed = {given for one in free for given in one.inputs}
     several = [
-        one.name for one in stated.known.values() if not freed.issuperset(one.inputs) and np.ndim(stated.own(one))
+        one.name
+        for one in stated.known.values()
+        if not (one.is_of_law or freed.issuperset(one.inputs)) and np.ndim(stated.own(one))
     ]
     if several:
         remedy = f"compile(..., free={[*(one.name for one in free), several[0]]!r})"

@@ -26,7 +26,7 @@ def hold_consistent(motion: Motion, stated: StatedDimensions, free: Sequence[Fre
     Nothing is asked of a mechanism that is not overconstrained.
     """
     redundant = motion.structure.redundant
-    for one in free if redundant else ():
+    for one in (each for each in free if redundant and not each.is_of_law):
         value = stated.own(one)
         step = CHANGE * (motion.size * ASIDE if one.is_vector else motion.size if one.is_of_link else _scale(value))
         try:

@@ -11,11 +11,12 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.model.attributes import Dimension, unit_of
 from compoundkin.model.field_numbers import numbers_of
+from compoundkin.model.laws.law_numbers import law_numbers
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import pairs_among
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.drawn_numbers import read_off
-from compoundkin.programs.dimensions.free_dimension import AXES, FreeDimension
+from compoundkin.programs.dimensions.free_dimension import AXES, LAW, FreeDimension
 
 # Of the kinds of keys that are numbers.
 _DIMENSIONS: Mapping[str, Dimension] = {
@@ -48,12 +49,14 @@ class StatedDimensions(PrintsShort):
     @cached_property
     def known(self) -> dict[str, FreeDimension]:
         """All dimensions by name."""
-        return {one.name: one for one in (*self._numbers(), *self._points())}
+        return {one.name: one for one in (*self._numbers(), *self._law_numbers(), *self._points())}
 
     def own(self, one: FreeDimension) -> Number:
         """Return the mechanism's own value of a dimension."""
         if one.is_of_link:
             return one.part_of(self.mechanism.geometry.points[one.owner][one.word])
+        if one.is_of_law:
+            return self._laws[one.owner][one.part]
         return self._stated(one.owner)[one.number]
 
     def unit(self, one: FreeDimension) -> str:
@@ -67,6 +70,15 @@ class StatedDimensions(PrintsShort):
         for owner in self.items:
             for number in self._stated(owner):
                 yield FreeDimension(f"{owner}.{number}", owner, *number.partition(".")[::2])
+
+    @cached_property
+    def _laws(self) -> dict[str, Mapping[str, Number]]:
+        return {drive.name: law_numbers(drive.law) for drive in self.mechanism.drives if drive.law is not None}
+
+    def _law_numbers(self) -> Iterator[FreeDimension]:
+        for owner, numbers in self._laws.items():
+            for number in numbers:
+                yield FreeDimension(f"{owner}.{LAW}.{number}", owner, LAW, number, is_of_law=True)
 
     def _points(self) -> Iterator[FreeDimension]:
         for owner, link in self.mechanism.rigid_links.items():

@@ -6,6 +6,8 @@ from compoundkin.programs.graph.operation_graph import InputNumber
 
 # a dimension of a link or pair, a driver's value or rate, what is found outside the program, a number of an objective
 DIMENSION, DRIVE, SEED, PARAMETER = "dimension", "drive", "seed", "parameter"
+# The slope of a driver's value or rate by a number of its law: no program reads it.
+LAW_SLOPE = "law slope"
 
 # Parts of seeds: the sign of a group's mode, the angle of a link with full turns.
 SIGN, TURNS = "sign", "turns"

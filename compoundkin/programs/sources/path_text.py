@@ -102,7 +102,7 @@ def _arguments(path: PathToWrite, mechanism: RecordedMechanism, states: Sequence
             values = np.broadcast_to(motion.inputs.drives[name][k], motion.failed.shape)
             unit, start = unit_of(motion.mechanism.unit, dimension, k), float(values[0, first])
             yield Argument(given, names.take(called), meaning, unit, start if k else None, start)
-    for one in path.dimensions:
+    for one in (each for each in path.dimensions if not each.is_of_law):
         whole = path.stated.own(one)
         for given, number in zip(one.inputs, (np.real(whole), np.imag(whole)), strict=False):
             word, value = f"{given.name}.{given.part}" if given.part else given.name, float(number)
