@@ -18,6 +18,7 @@ from compoundkin.programs.backends.jax_operations import evaluated
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber
+from compoundkin.programs.jax_numbers import common_shape, held
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import DRIVE, SEED
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
@@ -64,7 +65,7 @@ class JaxPath(PrintsShort):
 
     def __call__(
         self,
-        values: Any,
+        values: Any = None,
         dimensions: Mapping[str, Any] | None = None,
         *,
         speed: Any = None,
@@ -82,7 +83,7 @@ class JaxPath(PrintsShort):
         still = frozenset((one.name, int(one.part)) for one, value in drives.items() if one.part > "0" and _zero(value))
         path = self.path.variant(still)
         graph, wanted = path.mechanism.graph, _wanted(path)
-        shape = jnp.broadcast_shapes(*(jnp.shape(value) for value in given.values()))
+        shape = common_shape(given)
         used = {k: graph.nodes[k].given for k in graph.inputs(wanted)}
         *found, failed, margin = evaluated(graph, wanted, {k: given[one] for k, one in used.items() if one is not None})
         assembled = jnp.broadcast_to(failed == 0.0, shape)
@@ -104,7 +105,7 @@ class JaxPath(PrintsShort):
             value = values.get(name, drive.values)
             if value is None:
                 raise InvalidInput(Problem(f"values.{name}", "the driver is given no values", f"{{{name!r}: angles}}"))
-            found[InputNumber(DRIVE, name, "0")] = value
+            found[InputNumber(DRIVE, name, "0")] = held(f"values.{name}", value)
             for k, word in enumerate(RATES, 1):
                 given = {} if rates[word] is None else by_name(mechanism, rates[word]) or {}
                 _only_known(word, given, drives)
@@ -119,7 +120,9 @@ class JaxPath(PrintsShort):
         _only_known("dimensions", dimensions, [one.name for one in free])
         found: dict[InputNumber, Any] = {}
         for one in free:
-            value = dimensions.get(one.name, self.path.stated.own(one))
+            own = one.name not in dimensions
+            value = self.path.stated.own(one) if own else dimensions[one.name]
+            value = value if own else held(f"dimensions.{one.name}", value, one.is_vector)
             found.update(zip(one.inputs, (jnp.real(value), jnp.imag(value)), strict=False))
         return found
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.base.errors import InvalidInput, UnknownName
+from compoundkin.base.errors import CompoundkinError, InvalidInput, UnknownName
 from compoundkin.programs.compiled_path import compile
 from compoundkin.programs.graph.operation_graph import OperationGraph
 from tests.benchmarks import six_bar
@@ -142,6 +142,21 @@ def test_a_slip_is_told() -> None:
     for call in ({"values": {"cranck": 0.0}}, {"values": 0.0, "dimensions": {"plate.D": 1.0}}):
         with pytest.raises(UnknownName):
             function(**call)
+    for call, told in (
+        (lambda: function(CRANK, {"plate.C": PLACES[:, 0]}), r"crank \(40,\), plate.C \(3,\) do not broadcast"),
+        (lambda: function(jax.numpy.array([1j])), "values.crank: complex"),
+        (lambda: function([1j]), "values.crank: complex"),
+        (lambda: function("a"), "values.crank: a text"),
+        (lambda: function(CRANK[:0]), "no poses"),
+        (function, "given no values"),
+        (lambda: function(CRANK, {"plate.C": "a"}), "plate.C"),
+    ):
+        with pytest.raises(CompoundkinError, match=told):
+            call()
+    with jax.enable_x64():
+        assert function(jax.numpy.float32(0.5), {"crank.D": 13.0})["bar.angle"].dtype == np.float32
+    places = (12.0, 9.0), (jax.numpy.array(12.0), 9.0), 12.0 + 9.0j
+    assert len({float(function(0.5, {"plate.C": place})["bar.angle"]) for place in places}) == 1
     with pytest.raises(InvalidInput, match="found by search"):
         compile(ck.catalog.load_named("geared-coupler"), "coupler.angle").jax()
 

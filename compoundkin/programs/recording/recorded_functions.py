@@ -151,8 +151,8 @@ def _round(like: RecordedNumber, value: RecordedNumber, decimals: int = 0) -> An
 
 
 def _clipped(like: RecordedNumber, value: Any, low: Any = None, high: Any = None) -> Any:
-    above = value if low is None else np.maximum(like.like(value), low)
-    return above if high is None else np.minimum(above, high)
+    above = like.like(value) if low is None else _named("max")(like.like(value), like.like(low))
+    return above if high is None else _named("min")(above, like.like(high))
 
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {
