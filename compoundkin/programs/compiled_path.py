@@ -177,8 +177,8 @@ class CompiledPath(WritesSources, PathPrograms):
     ) -> PathSensitivities:
         """Compute the outputs and their slopes at every pose.
 
-        They are by all free dimensions and the drivers' values, or by those of the names `by`: "crank.B.x", "crank".
-        Raises UnknownName for others, and what a call does.
+        They are by all free dimensions and the drivers' values, or by those of the names `by`: "crank.B.x", "crank";
+        "crank.B" is both coordinates. Raises UnknownName for others, and what a call does.
 
         >>> from compoundkin.model.elements import drive, link
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))

@@ -127,6 +127,18 @@ def test_functions_of_numbers_are_those_of_numpy(function):
     np.testing.assert_allclose(slope["coupler.C.x"], (more - less) / (2.0 * STEP), rtol=1e-6)
 
 
+def test_what_is_chosen_where_its_root_is_real_has_slopes_once_it_is_clipped():
+    """As the page on compiled programs advises: a root that is none elsewhere would leave no slope."""
+    path = ck.compile(loaded("crank-rocker"), "rocker.angle", free="coupler.C.x")
+    least = float(np.median(path(ANGLES)["rocker.angle"])) + 1e-3
+    cost = path.objective(
+        lambda at: np.where(at["rocker.angle"] > least, np.sqrt(np.maximum(at["rocker.angle"] - least, 0.0)), 0.0)
+    )
+    own = float(path.stated.own(path.dimensions[0]))
+    less, more = (float(cost(ANGLES, {"coupler.C.x": own + away})) for away in (-STEP, STEP))
+    np.testing.assert_allclose(cost.gradient(ANGLES)[1]["coupler.C.x"], (more - less) / (2.0 * STEP), rtol=1e-6)
+
+
 def test_slips_in_objectives_are_told():
     """Each with its place and remedy, by the errors of the package."""
     path = ck.compile(loaded("crank-rocker"), ["C", "rocker.angle"], free="coupler.C")
@@ -186,6 +198,9 @@ def test_sensitivities_are_those_of_changed_mechanisms():
         np.testing.assert_allclose(found[each, "crank"], slope, atol=1e-7 * abs(slope).max())
         np.testing.assert_allclose(found[each], solved(mechanism)[each], rtol=1e-11)
     assert found.by == ("plate.C.x", "plate.C.y", "crank.D.x", "crank.D.y", "crank")
+    some = ck.compile(mechanism, out, free=list(base)).derivatives({"crank": ANGLES}, by=["plate.C", "crank"], **rates)
+    assert some.by == ("plate.C.x", "plate.C.y", "crank")
+    np.testing.assert_array_equal(some[out[0], "plate.C.y"], found[out[0], "plate.C.y"])
     with pytest.raises(ck.errors.UnknownName, match=r"did you mean 'plate.C.[xy]'"):
         found["G.acceleration", "plate.C.z"]
 

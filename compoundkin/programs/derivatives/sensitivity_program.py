@@ -85,7 +85,8 @@ class SensitivityPrograms(PrintsShort):
         """
         hold_threads(threads)
         known = _directions(numbers)
-        asked = list(known) if by is None else [by] if isinstance(by, str) else [str(name) for name in by]
+        named = list(known) if by is None else [by] if isinstance(by, str) else [str(name) for name in by]
+        asked = [each for name in named for each in ([name] if name in known else _coordinates(name, known))]
         unknown = [name for name in asked if name not in known]
         if unknown:
             raise UnknownName([Problem(f"by.{name}", "it is no input", nearest(name, list(known))) for name in unknown])
@@ -143,6 +144,11 @@ def _chained(
             own = {label: found.pop((name, label)) for label in slope_inputs([one], order)}
             found[name, one.name] = sum(chained(one, numbers, own, order))
     return found
+
+
+def _coordinates(name: str, known: Mapping[str, InputNumber]) -> list[str]:
+    """Return the coordinates of a free point, or the name itself."""
+    return [each for each in (f"{name}.x", f"{name}.y") if each in known] or [name]
 
 
 def _masked(value: Number, slope: Number) -> Number:
