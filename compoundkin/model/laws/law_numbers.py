@@ -85,11 +85,11 @@ def law_slopes(law: Any, name: str, times: Number, order: int) -> list[Number]:
         # linear in its numbers
         moved = law_with(law, {**dict.fromkeys(law_numbers(law), 0.0), name: 1.0}).coordinate(times, order)
         return [moved.derivative(k) for k in range(order + 1)]
-    step = _smooth_step(law, name, times)
-    if step is None:
+    step, levels = _smooth_step(law, name, times)
+    if not levels:
         return [np.full(np.shape(times), np.nan)] * (order + 1)
-    rows = [_differences(law, name, step / 2**level, times, order) for level in range(LEVELS)]
-    for power in range(1, LEVELS):
+    rows = [_differences(law, name, step / 2**level, times, order) for level in range(levels)]
+    for power in range(1, levels):
         rows = [
             [(4**power * b - a) / (4**power - 1) for a, b in zip(wide, narrow, strict=True)]
             for wide, narrow in pairwise(rows)
@@ -105,8 +105,8 @@ def _differences(law: Program, name: str, step: float, times: Number, order: int
     return [(ahead.derivative(k) - behind.derivative(k)) / (2.0 * step) for k in range(order + 1)]
 
 
-def _smooth_step(law: Program, name: str, times: Number) -> float | None:
-    """Return the step of differences, None where the law is not smooth."""
+def _smooth_step(law: Program, name: str, times: Number) -> tuple[float, int]:
+    """Return the step of differences and its levels, none where the law is not smooth."""
     number = float(law_numbers(law)[name])
     step = STEP * (abs(number) or 1.0)
     periods = 1.0 + float(np.max(np.abs(times))) / law.period if law.repeat else 1.0
@@ -119,11 +119,11 @@ def _smooth_step(law: Program, name: str, times: Number) -> float | None:
         if ends and all(len(end) == len(own) for end in ends):
             farthest = periods * max(float(np.max(np.abs(end - own))) for end in ends)
             nearest = STEP * float(np.min(np.diff(own)))
-            if farthest <= nearest:
-                return step
-            return step * nearest / farthest
+            if farthest == 0.0:
+                return step, 1  # where pieces stay, the law is linear in the number
+            return step * min(1.0, nearest / farthest), LEVELS
         step /= 10.0
-    return None
+    return step, 0
 
 
 def _places(law: Program) -> Number:
