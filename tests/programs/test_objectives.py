@@ -200,6 +200,9 @@ def test_sensitivities_are_those_of_changed_mechanisms():
     assert found.by == ("plate.C.x", "plate.C.y", "crank.D.x", "crank.D.y", "crank")
     some = ck.compile(mechanism, out, free=list(base)).derivatives({"crank": ANGLES}, by=["plate.C", "crank"], **rates)
     assert some.by == ("plate.C.x", "plate.C.y", "crank")
+    assert set(some) == {*out, *((each, by) for each in out for by in some.by)}
+    assert (out[0], "crank") in some
+    assert (out[0], "crank.D.x") not in some
     np.testing.assert_array_equal(some[out[0], "plate.C.y"], found[out[0], "plate.C.y"])
     with pytest.raises(ck.errors.UnknownName, match=r"did you mean 'plate.C.[xy]'"):
         found["G.acceleration", "plate.C.z"]

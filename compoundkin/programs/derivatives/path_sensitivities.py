@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,6 +53,10 @@ class PathSensitivities(PrintsShort):
             raise UnknownName(Problem(str(wrong), "there is no such slope", nearest(wrong, known)))
         numbers = self.values.numbers
         return np.broadcast_to(self.slopes[output, by], numbers.extent).reshape(numbers.shape)
+
+    def __iter__(self) -> Iterator[str | tuple[str, str]]:
+        """Return the names of the outputs, then those of the slopes."""
+        return iter((*self.values, *self.slopes))
 
     def __repr__(self) -> str:
         return f"PathSensitivities({', '.join(self.values.found)} by {', '.join(self.by)})"
