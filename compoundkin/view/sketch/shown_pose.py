@@ -114,10 +114,7 @@ def solved_over(what: Mechanism | Structure) -> Motion | None:
 
 
 def scene_in(motion: Motion, at: Any, pose: int | None, design: int) -> Scene:
-    """Return the scene of a motion at one pose.
-
-    It is the one at driver values, at an index, or near the drawing.
-    """
+    """Return the scene at driver values, at an index, or near the drawing."""
     hold_design(design, motion.inputs.designs)
     failed = np.broadcast_to(motion.failed, (motion.inputs.designs, motion.inputs.poses))[design]
     if pose is not None:
