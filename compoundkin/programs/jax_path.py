@@ -6,49 +6,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
 from math import pi
-from typing import Any, Protocol
+from typing import Any
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.kinematics.approach import SPACING
 from compoundkin.kinematics.driver_values import by_name
 from compoundkin.kinematics.driver_ways import NEAR
-from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import RATES
 from compoundkin.programs.backends.jax_operations import evaluated
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.jax_numbers import common_shape, held
-from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.ready_program import PathVariants, RecordedPath
 from compoundkin.programs.recording.input_kinds import DRIVE, SEED
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
-from compoundkin.programs.recording.recorded_outputs import ProgramOutput
 
-RATES = ("speed", "acceleration", "jerk")
 ASSEMBLED, CERTAIN = "assembled", "certain"
-
-
-class RecordedVariants(Protocol):
-    """What is asked of a compiled path."""
-
-    @property
-    def reference(self) -> Motion:
-        """Its motion."""
-
-    @property
-    def outputs(self) -> tuple[ProgramOutput, ...]:
-        """What it computes."""
-
-    @property
-    def dimensions(self) -> tuple[FreeDimension, ...]:
-        """What is free."""
-
-    @property
-    def stated(self) -> StatedDimensions:
-        """All dimensions of its mechanism."""
-
-    def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
-        """Return it recorded where some rates of drivers are zero."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -61,7 +34,7 @@ class JaxPath(PrintsShort):
     limit or a change point the path looks closer and solves anew; no pure function can, and `"certain"` is False there.
     """
 
-    path: RecordedVariants
+    path: PathVariants
 
     def __call__(
         self,
@@ -143,7 +116,7 @@ class JaxPath(PrintsShort):
         return f"JaxPath({', '.join(output.name for output in self.path.outputs)})"
 
 
-def jax_path(path: RecordedVariants) -> JaxPath:
+def jax_path(path: PathVariants) -> JaxPath:
     """Return a path as a function of JAX.
 
     Raises InvalidInput where JAX is not installed, and for what is found by search: states of general groups, contacts

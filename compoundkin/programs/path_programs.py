@@ -22,6 +22,7 @@ from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.dimension_values import dimension_values, hold_laws
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.limits.approach_look import DrawnApproach
 from compoundkin.programs.limits.limit_look import LimitPrograms
 from compoundkin.programs.limits.settled_values import settled_values
 from compoundkin.programs.limits.solved_designs import ProgramConfiguration, solved_designs
@@ -93,9 +94,14 @@ class PathPrograms(PrintsShort):
         return CallSeeds(partial(self.solved, order=0), own, self.chosen_backend)
 
     @cached_property
+    def approach(self) -> DrawnApproach:
+        """The way from the drawing to the motions of its calls."""
+        return DrawnApproach(self.reference, self.configuration.shown)
+
+    @cached_property
     def limits(self) -> LimitPrograms:
         """The programs that look at designs near limits."""
-        return LimitPrograms(self._recording(), self.reference, self.configuration.shown, self.chosen_backend)
+        return LimitPrograms(self._recording(), self.approach, self.chosen_backend)
 
     def variant(self, still: frozenset[tuple[str, int]], is_seeded: bool = False) -> RecordedPath:
         """Return it recorded where some rates of drivers are zero.

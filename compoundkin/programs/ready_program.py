@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
+from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.calls.call_numbers import CallNumbers
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.flat_program import Carried, FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.recording.input_kinds import SEED, SIDE
@@ -55,6 +59,29 @@ class RecordedPath:
     def carried(self, numbers: CallNumbers) -> tuple[Carried, ...]:
         """Return the numbers that are carried along the motion."""
         return self.march.carried if self.march and numbers.marches else ()
+
+
+class PathVariants(Protocol):
+    """What is asked of a compiled path by what is made of its recorded variants: sources, functions of JAX."""
+
+    @property
+    def reference(self) -> Motion:
+        """Its motion."""
+
+    @property
+    def outputs(self) -> tuple[ProgramOutput, ...]:
+        """What it computes."""
+
+    @property
+    def dimensions(self) -> tuple[FreeDimension, ...]:
+        """What is free."""
+
+    @property
+    def stated(self) -> StatedDimensions:
+        """All dimensions of its mechanism."""
+
+    def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
+        """Return it recorded where some rates of drivers are zero."""
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.series import Number
+from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.groups import SOLVERS
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
@@ -25,7 +26,7 @@ from compoundkin.programs.backends import runner_of
 from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.graph.flat_program import BY_BOTH, FlatProgram, flat_program
 from compoundkin.programs.recording.input_kinds import DRIVE, SEED
-from compoundkin.programs.recording.recorded_limits import NEAR, RecordedLimits
+from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
 from compoundkin.programs.recording.recorded_outputs import output_of, recorded_outputs
 from tests.catalog import NAMES, motion

@@ -55,6 +55,11 @@ class CallNumbers:
         """Whether something of it was found by solving."""
         return any(one.kind == SEED for one in self.given)
 
+    @property
+    def driver_values(self) -> dict[str, Number]:
+        """The drivers' values, without rates, by name."""
+        return {one.name: value for one, value in self.given.items() if (one.kind, one.part) == (DRIVE, "0")}
+
     def strata(self, graph: OperationGraph) -> dict[InputNumber, int]:
         """Return how each input varies; what is found outside varies by both."""
         known = {given: _stratum(array) for given, array in self.given.items()}
@@ -125,9 +130,7 @@ def call_numbers(order: SolvingOrder, motion: DriverNumbers, dimensions: Mapping
     fitted = fit(shape)
     given: dict[InputNumber, Number] = {}
     for one, place in dimensions.items():
-        whole = np.atleast_2d(fitted(place))
-        for given_as, part in zip(one.inputs, (whole.real, whole.imag), strict=False):
-            given[given_as] = np.array(part, float)
+        given.update((each, np.array(part, float)) for each, part in one.parts_of(np.atleast_2d(fitted(place))))
     for name, numbers in driven.drives.items():
         for k, value in enumerate(numbers):
             whole = fitted(_unfolded(value, driven.shape))

@@ -22,6 +22,8 @@ from compoundkin.programs.recording.recorded_march import side_of
 
 # Without compiled code a march of fewer designs than these takes longer than solving them.
 FEW = 32
+# So many motions are remembered by how they begin.
+KEPT = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +58,12 @@ class CallSeeds:
         drives = {one: value for one, value in numbers.given.items() if one.kind == DRIVE}
         if any(value.shape[0] > 1 for value in drives.values()) or any(map(np.ndim, self.own.values())):
             return _found(path.seeds, first, self.by, signs)
-        key = path.seeds, *(value.tobytes() for one, value in drives.items() if one.part == "0")
-        if key not in self._begun:
-            self._begun[key] = self._begin(path, numbers)
-        begun = self._begun[key]
+        key = path.seeds, *(value.tobytes() for value in numbers.driver_values.values())
+        begun = self._begun.get(key)
+        if begun is None:
+            if len(self._begun) >= KEPT:
+                self._begun.clear()
+            begun = self._begun[key] = self._begin(path, numbers)
         found = {one: np.full(first.extent, np.nan) for one in path.seeds} | {HOLDS: np.zeros((first.extent[0], 1))}
         far = np.ones(first.extent[0], dtype=bool)
         if begun.holds:
@@ -87,10 +91,10 @@ class CallSeeds:
         return Begun({}, False, False)
 
     def _way(self, path: RecordedPath, numbers: CallNumbers) -> tuple[dict[InputNumber, Number], Number]:
-        key = id(path), numbers.form
-        if key not in self._ways:
-            self._ways[key] = DesignWay.of(path, numbers, self.backend)
-        return self._ways[key].ends(numbers)
+        # one path is recorded for the rates that are zero, which the form tells
+        if numbers.form not in self._ways:
+            self._ways[numbers.form] = DesignWay.of(path, numbers, self.backend)
+        return self._ways[numbers.form].ends(numbers)
 
 
 class Begun(NamedTuple):
@@ -136,7 +140,5 @@ def _first_poses(numbers: CallNumbers) -> CallNumbers:
 
 def _steps(numbers: CallNumbers) -> dict[InputNumber, Number]:
     """Return how far drivers go from each pose to the next."""
-    values = {one.name: value for one, value in numbers.given.items() if (one.kind, one.part) == (DRIVE, "0")}
-    return {
-        InputNumber(DRIVE, name, STEP): np.diff(value, axis=1, append=value[:, -1:]) for name, value in values.items()
-    }
+    values = numbers.driver_values.items()
+    return {InputNumber(DRIVE, name, STEP): np.diff(value, axis=1, append=value[:, -1:]) for name, value in values}

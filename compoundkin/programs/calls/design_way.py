@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
+from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.groups.newton_steps import STRAY
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
@@ -18,7 +19,7 @@ from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.ready_program import RecordedPath
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE, STEP, start_of
-from compoundkin.programs.recording.recorded_limits import NEAR, RecordedLimits
+from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_march import side_of
 
 # So many steps lead from a path's own dimensions to a design's.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from math import ceil, pi, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,19 +16,18 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import SPACING
+from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.likely_slips import COUNTED
 from compoundkin.programs.calls.call_numbers import CallNumbers
-from compoundkin.programs.calls.quick_plan import QuickPlan
+from compoundkin.programs.calls.quick_plan import COMPLEX, FLOAT, QuickPlan
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.limits.approach_look import drawn_driver
+from compoundkin.programs.limits.approach_look import comes_by
 from compoundkin.programs.recording.input_kinds import DRIVE
-from compoundkin.programs.recording.recorded_limits import NEAR
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms
     from compoundkin.programs.path_values import PathValues
 
-FLOAT, COMPLEX = np.dtype(float), np.dtype(complex)
 # So many plain numbers are kept as arrays.
 KEPT = 256
 # The greatest finite number: whole numbers above it are no floats, and nothing is above or below what is none.
@@ -46,7 +45,7 @@ class QuickCalls(PrintsShort):
         order = path.reference.solving_order
         self.is_angle = order.structure.driven_angles[driver]
         self.longest = order.unit(driver) * SPACING
-        drawn = drawn_driver(path.reference, path.configuration.shown, driver)
+        drawn = path.approach.drawn(driver)
         self.drawn = None if drawn is None else float(np.ravel(drawn)[0])
         self.names: list[InputNumber] = []
         self.own: list[Number] = []
@@ -172,16 +171,8 @@ class QuickCalls(PrintsShort):
     def _is_certain(self, least: Number, values: Number, first: float, last: float) -> bool:
         """Tell whether no design needs a look, as `LimitPrograms.needed` does."""
         margin = least.item() if least.size == 1 else float(least.min())
-        if not margin >= NEAR or not self._comes_by_drawing(first, last):
+        if not margin >= NEAR or not (self.drawn is None or comes_by(self.drawn, first, last, self.is_angle)):
             return False
         steps = values[1:] - values[:-1]
         longest = self.longest * sqrt(margin / NEAR)
         return bool(steps[steps.argmax()] <= longest and steps[steps.argmin()] >= -longest)
-
-    def _comes_by_drawing(self, first: float, last: float) -> bool:
-        """Tell whether the driver comes by its drawn value between its first value and its last."""
-        if self.drawn is None:
-            return True
-        low, high = (first, last) if first <= last else (last, first)
-        after = self.drawn + 2.0 * pi * ceil((low - self.drawn) / (2.0 * pi)) if self.is_angle else self.drawn
-        return low <= after <= high

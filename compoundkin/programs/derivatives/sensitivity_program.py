@@ -124,7 +124,7 @@ def _directions(numbers: CallNumbers) -> dict[str, InputNumber]:
     found = {}
     for given in numbers.given:
         if given.kind == DIMENSION:
-            found[f"{given.name}.{given.part}" if given.part else given.name] = given
+            found[given.full_name] = given
         elif (given.kind, given.part) == (DRIVE, "0"):
             found[given.name] = given
     return found

@@ -28,6 +28,11 @@ class InputNumber:
     name: str
     part: str = ""
 
+    @property
+    def full_name(self) -> str:
+        """Its name, with its part if it has one."""
+        return f"{self.name}.{self.part}" if self.part else self.name
+
 
 @dataclass(frozen=True)
 class OperationNode:

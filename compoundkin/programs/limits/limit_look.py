@@ -17,17 +17,16 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import SPACING
-from compoundkin.kinematics.chosen_modes import Shown
-from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
 from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.limits.approach_look import approach_values
+from compoundkin.programs.limits.approach_look import DrawnApproach
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE, HOLDS
-from compoundkin.programs.recording.recorded_limits import CLOSE, NEAR, RecordedLimits
+from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, recorded
 
 # Between two poses a discriminant may touch zero where the cubic through both falls below this part of the lesser.
@@ -64,15 +63,11 @@ def bound(order: SolvingOrder, numbers: CallNumbers) -> float:
 def _longest_step(order: SolvingOrder, numbers: CallNumbers) -> float:
     """Return the longest step of a driver, in spacings at which `solve` looks for change points."""
     found = 0.0
-    for name, value in _driver_values(numbers).items():
+    for name, value in numbers.driver_values.items():
         if value.shape[1] > 1:
             steps = value[:, 1:] - value[:, :-1]
             found = max(found, float(max(steps.max(), -steps.min())) / (order.unit(name) * SPACING))
     return found
-
-
-def _driver_values(numbers: CallNumbers) -> dict[str, Number]:
-    return {given.name: value for given, value in numbers.given.items() if (given.kind, given.part) == (DRIVE, "0")}
 
 
 def _is_rigid(numbers: CallNumbers) -> bool:
@@ -83,8 +78,8 @@ def _is_rigid(numbers: CallNumbers) -> bool:
 class LimitPrograms(PrintsShort):
     """The programs that look at limits, recorded when they are first needed."""
 
-    def __init__(self, recording: Recording, reference: Motion, shown: Shown, backend: str | None) -> None:
-        self.recording, self.reference, self.shown, self.backend = recording, reference, shown, backend
+    def __init__(self, recording: Recording, approach: DrawnApproach, backend: str | None) -> None:
+        self.recording, self.approach, self.backend = recording, approach, backend
         self._ready: dict[Any, tuple[FlatProgram, Runner]] = {}
 
     def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
@@ -96,7 +91,7 @@ class LimitPrograms(PrintsShort):
             near = ~(known & (least.min(axis=1) >= bound(order, numbers)))
             return np.zeros_like(near), near
         near = ~(least.min(axis=1) >= bound(order, numbers))
-        way = approach_values(self.reference, self.shown, _driver_values(numbers)) if self._squares else None
+        way = self.approach.values(numbers.driver_values) if self._squares else None
         if not _is_rigid(numbers):
             # solving tells all of designs whose dimensions vary along the motion
             return np.zeros_like(near), near | (way is not None)
@@ -137,13 +132,13 @@ class LimitPrograms(PrintsShort):
         steps = int(np.ceil(_longest_step(self.recording.solving_order, numbers)))
         squares = self._squares if steps else None
         if squares:
-            handed |= self._touches(squares, numbers, max(1, steps))
+            handed |= self._touches(squares, numbers, steps)
         return failed, handed
 
     def _touches(self, squares: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers, per_pose: int) -> Number:
         """Tell which designs may pass a change point between two samples."""
         poses = numbers.extent[1]
-        whole = {name: np.broadcast_to(v, (len(v), poses)) for name, v in _driver_values(numbers).items()}
+        whole = {name: np.broadcast_to(v, (len(v), poses)) for name, v in numbers.driver_values.items()}
         values = {name: _refined(value, per_pose) for name, value in whole.items()}
         ahead = {name: value[:, 1:] - value[:, :-1] for name, value in values.items()}
         ends = [{name: value[:, part] for name, value in values.items()} for part in (slice(-1), slice(1, None))]

@@ -15,7 +15,6 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number, Series, as_series
-from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.lost_digits import FAST
 from compoundkin.programs.graph.least_value import least_value
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
@@ -125,6 +124,3 @@ class RecordedLimits(PrintsShort):
 
     def _number(self, value: Number) -> RecordedNumber:
         return self.mechanism.number(value)
-
-
-__all__ = ["CLOSE", "NEAR", "RecordedLimits"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import reduce
-from typing import Protocol
 
 import numpy as np
 
@@ -14,37 +13,19 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import OF_POINTS, RATES, coordinate_dimension, unit_of
 from compoundkin.programs.calls.seed_values import seed_values
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.ready_program import PathVariants, RecordedPath
 from compoundkin.programs.recording.input_kinds import DRIVE, SIDE
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_motion import RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber
-from compoundkin.programs.recording.recorded_outputs import ProgramOutput
 from compoundkin.programs.sources.carried_states import CarriedState, carried_states, followed
 from compoundkin.programs.sources.contract import Argument, Result, WrittenProgram
 from compoundkin.programs.sources.identifiers import Identifiers, identifier
 from compoundkin.programs.sources.told_configuration import notes
 
 
-class PathToWrite(Protocol):
-    """What is asked of a compiled path to write it."""
-
-    reference: Motion
-    outputs: tuple[ProgramOutput, ...]
-    dimensions: tuple[FreeDimension, ...]
-
-    @property
-    def stated(self) -> StatedDimensions:
-        """All dimensions of its mechanism."""
-
-    def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
-        """Return it recorded where some rates of drivers are zero."""
-
-
-def written_program(path: PathToWrite, name: str = "") -> WrittenProgram:
+def written_program(path: PathVariants, name: str = "") -> WrittenProgram:
     """Return a path as a program that every language can write. Raises InvalidInput where none can."""
     motion = path.reference
     # groups without a closed form by single steps, of which a text takes as many as it needs
@@ -89,7 +70,7 @@ def _of_one_configuration(motion: Motion) -> None:
             raise InvalidInput(Problem(where, what, "compile it with values that lie between two change points"))
 
 
-def _arguments(path: PathToWrite, mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> Iterator[Argument]:
+def _arguments(path: PathVariants, mechanism: RecordedMechanism, states: Sequence[CarriedState]) -> Iterator[Argument]:
     """Yield drivers with their rates, free dimensions, and states; the motion's first assembled pose is their own."""
     names, motion = Identifiers(), path.reference
     first = int(np.argmax(motion.failed[0] == 0))
@@ -103,9 +84,8 @@ def _arguments(path: PathToWrite, mechanism: RecordedMechanism, states: Sequence
             unit, start = unit_of(motion.mechanism.unit, dimension, k), float(values[0, first])
             yield Argument(given, names.take(called), meaning, unit, start if k else None, start)
     for one in (each for each in path.dimensions if not each.is_of_law):
-        whole = path.stated.own(one)
-        for given, number in zip(one.inputs, (np.real(whole), np.imag(whole)), strict=False):
-            word, value = f"{given.name}.{given.part}" if given.part else given.name, float(number)
+        for given, number in one.parts_of(path.stated.own(one)):
+            word, value = given.full_name, float(number)
             yield Argument(given, names.take(word), f"dimension {word}", path.stated.unit(one), value, value)
     seeds = seed_values([state.given for state in states if state.given.part != SIDE], motion)
     for state in states:
@@ -120,7 +100,7 @@ def _next(state: CarriedState) -> Result:
     return Result(state.now.x, f"state.{state.name}", state.meaning, unit)
 
 
-def _outputs(path: PathToWrite, recorded: RecordedPath) -> Iterator[Result]:
+def _outputs(path: PathVariants, recorded: RecordedPath) -> Iterator[Result]:
     motion = RecordedMotion(recorded.mechanism)
     for output, nodes in zip(path.outputs, recorded.nodes, strict=True):
         unit, turns = quantity(motion, output.name).unit, ", from -pi to pi" if output.is_wrapped else ""

@@ -7,9 +7,10 @@ from typing import ClassVar, cast
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.base.suffixes import Kind
+from compoundkin.programs.ready_program import PathVariants
 from compoundkin.programs.sources import LANGUAGES
 from compoundkin.programs.sources.contract import WrittenProgram
-from compoundkin.programs.sources.path_text import PathToWrite, written_program
+from compoundkin.programs.sources.path_text import written_program
 
 
 class WritesSources:
@@ -37,7 +38,7 @@ class WritesSources:
 
     def written(self, name: str = "") -> WrittenProgram:
         """Return what all languages write."""
-        return written_program(cast(PathToWrite, self), name)
+        return written_program(cast(PathVariants, self), name)
 
     def content(self, form: str) -> bytes:
         """Return the file of a function in a language, for `save`."""

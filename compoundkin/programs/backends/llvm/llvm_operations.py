@@ -8,25 +8,18 @@ from compoundkin.programs.backends.llvm.llvm_functions import arctangent, expone
 from compoundkin.programs.backends.llvm.llvm_text import LaneText
 
 
-def lesser(text: LaneText, a: str, b: str) -> str:
-    """Write the lesser of two numbers; where either is none, so is this."""
-    found = text.select(text.compare("olt", a, b), a, b)
-    return text.select(text.compare("uno", a, a), a, found)
+def _extreme(how: str, keeps_none: bool) -> Callable[..., str]:
+    """Return what writes the greater or the lesser of two; where either is no number, that or the other one."""
+
+    def written(text: LaneText, a: str, b: str) -> str:
+        found, doubtful = text.select(text.compare(how, a, b), a, b), a if keeps_none else b
+        return text.select(text.compare("uno", doubtful, doubtful), a, found)
+
+    return written
 
 
-def _greater(text: LaneText, a: str, b: str) -> str:
-    found = text.select(text.compare("ogt", a, b), a, b)
-    return text.select(text.compare("uno", a, a), a, found)
-
-
-def _lesser_number(text: LaneText, a: str, b: str) -> str:
-    found = text.select(text.compare("olt", a, b), a, b)
-    return text.select(text.compare("uno", b, b), a, found)
-
-
-def _greater_number(text: LaneText, a: str, b: str) -> str:
-    found = text.select(text.compare("ogt", a, b), a, b)
-    return text.select(text.compare("uno", b, b), a, found)
+lesser, _greater = _extreme("olt", True), _extreme("ogt", True)
+_lesser_number, _greater_number = _extreme("olt", False), _extreme("ogt", False)
 
 
 def _two(instruction: str) -> Callable[..., str]:

@@ -44,7 +44,7 @@ def unpacking_text(plan: LanePlan) -> str:
         _expect(text, _is_matrix_of_numbers(text, array, i))
         _expect(text, _is_of_shape(text, array, i))
     for one, other in plan.layout.pairs:
-        _expect(text, _is_pair(text, plan, one, other))
+        _expect(text, _is_pair(text, one, other))
     rows = (
         f"@{name} = private constant [{n} x i64] [{', '.join(f'i64 {k}' for k in row)}]" for name, row in tables.items()
     )
@@ -102,7 +102,7 @@ def _is_of_shape(text: ControlText, array: str, i: str) -> str:
     return _all(text, *truths)
 
 
-def _is_pair(text: ControlText, plan: LanePlan, one: int, other: int) -> str:
+def _is_pair(text: ControlText, one: int, other: int) -> str:
     """Write whether two arrays are the parts of a complex one."""
     a, b = (text.words("%S", HEADER + 3 * array) for array in (one, other))
     behind = text.whole("add", text.loaded(a, 0), 8)
