@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache
 from math import prod
 
@@ -12,6 +12,8 @@ from compoundkin.base.arrays import Number
 
 # A line of the caches: arrays that begin on one are read and written fastest.
 LINE = 64
+# Arrays of more bytes in all come from the system and not from what lies at hand: one piece is had sooner than several.
+LARGE = 1 << 16
 # The largest piece whose release tells the allocator of Linux to keep freed memory, and pages it takes beside it.
 KEPT, PAGES = 32 * 2**20, 2 * 4096
 
@@ -33,6 +35,18 @@ def arrays_of_one_buffer(wanted: Iterable[tuple[tuple[int, ...], np.dtype[Number
         found.append(buffer[start : start + size].view(dtype).reshape(shape))
         start += room
     return found
+
+
+def empty_arrays(wanted: Sequence[tuple[tuple[int, ...], np.dtype[Number]]]) -> list[Number]:
+    """Return empty arrays of these shapes and types; large ones in one piece, kept for the next when it is freed.
+
+    >>> [one.shape for one in empty_arrays([((1, 3), np.dtype(complex)), ((2, 1), np.dtype(float))])]
+    [(1, 3), (2, 1)]
+    """
+    if sum(prod(shape) * dtype.itemsize for shape, dtype in wanted) < LARGE:
+        return [np.empty(shape, dtype) for shape, dtype in wanted]
+    keep_freed_memory()
+    return arrays_of_one_buffer(wanted)
 
 
 @cache

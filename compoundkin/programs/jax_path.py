@@ -17,7 +17,7 @@ from compoundkin.model.attributes import RATES
 from compoundkin.programs.backends.jax_operations import evaluated
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.jax_numbers import common_shape, held
-from compoundkin.programs.ready_program import PathVariants, RecordedPath
+from compoundkin.programs.recorded_path import PathVariants, RecordedPath
 from compoundkin.programs.recording.input_kinds import DRIVE, SEED
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 

@@ -17,7 +17,6 @@ from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.calls.call_numbers import CallNumbers, DriverNumbers, call_numbers
 from compoundkin.programs.calls.call_seeds import CallSeeds
 from compoundkin.programs.derivatives.law_chain import with_law_slopes
-from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.dimension_values import dimension_values, hold_laws
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
@@ -27,10 +26,14 @@ from compoundkin.programs.limits.limit_look import LimitPrograms
 from compoundkin.programs.limits.settled_values import settled_values
 from compoundkin.programs.limits.solved_designs import ProgramConfiguration, solved_designs
 from compoundkin.programs.path_values import PathValues
-from compoundkin.programs.ready_program import ReadyProgram, RecordedPath
+from compoundkin.programs.ready_program import ReadyProgram
+from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_march import STEPS
 from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_outputs import ProgramOutput
+
+# The least margin among what a program finds; no output is called so.
+LEAST = ""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,7 +48,7 @@ class PathPrograms(PrintsShort):
     dimensions: tuple[FreeDimension, ...]
     chosen_backend: str | None = None
     _variants: dict[Any, RecordedPath] = field(default_factory=dict)
-    _programs: dict[Any, ReadyProgram] = field(default_factory=dict)
+    _programs: dict[Any, ReadyProgram[str]] = field(default_factory=dict)
 
     @property
     def backend(self) -> str:
@@ -121,10 +124,13 @@ class PathPrograms(PrintsShort):
         read = tuple(one for one in self.dimensions if not one.is_of_law)
         return Recording(own.solving_order, self.signs, read, self.order, still, own.inputs.ends, steps)
 
-    def program(self, numbers: CallNumbers) -> ReadyProgram:
-        """Return the program for numbers of these forms."""
+    def program(self, numbers: CallNumbers) -> ReadyProgram[str]:
+        """Return the program for numbers of these forms: of all outputs, and last of the least margin."""
         if numbers.form not in self._programs:
-            self._programs[numbers.form] = ReadyProgram.of(self.variant(numbers.still), numbers, self.chosen_backend)
+            path = self.variant(numbers.still)
+            nodes = {**dict(zip(self.names, path.nodes, strict=True)), LEAST: (path.least,)}
+            graph, carried = path.mechanism.graph, path.carried(numbers)
+            self._programs[numbers.form] = ReadyProgram.of(graph, nodes, numbers, self.chosen_backend, carried)
         return self._programs[numbers.form]
 
     def numbers(
@@ -165,15 +171,13 @@ class PathPrograms(PrintsShort):
     def outputs_of(self, numbers: CallNumbers) -> dict[str, bool]:
         """Return the names of its outputs, and which are vectors."""
         nodes = self.program(numbers).nodes
-        return {name: len(parts) > 1 for name, parts in zip(self.names, nodes, strict=True)}
+        return {name: len(nodes[name]) > 1 for name in self.names}
 
     def computed(self, numbers: CallNumbers, threads: int, given: Mapping[str, Number]) -> PathValues:
         """Compute all outputs. Those in arrays that are given are written there."""
-        program = self.program(numbers)
-        nodes = dict(zip((*self.names, ""), (*program.nodes, program.flat.outputs[-1:]), strict=True))
-        found = results(program.flat, program.runner, numbers, nodes, threads, given)
-        least, arrays = found.pop(""), list(found.values())
-        return self.settled(numbers, arrays, least)
+        found = self.program(numbers).run(numbers, threads, given)
+        least = found.pop(LEAST)
+        return self.settled(numbers, list(found.values()), least)
 
     def solved(self, numbers: CallNumbers, order: int | None = None) -> Told:
         """Solve the designs of some numbers instead, in its configuration."""

@@ -1,102 +1,71 @@
-"""Variants of a compiled path: recorded for drivers whose rates are zero, flat for the forms of a call's numbers."""
+"""A program ready to run, and arrays for what it finds: complex ones of two nodes, which may vary by fewer axes."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Protocol
+from types import MappingProxyType
+from typing import Generic, TypeVar
 
-from compoundkin.kinematics.motion import Motion
+import numpy as np
+
+from compoundkin.base.buffers import empty_arrays
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.calls.call_numbers import CallNumbers
-from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.flat_program import Carried, FlatProgram, flat_program
-from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import SEED, SIDE
-from compoundkin.programs.recording.recorded_limits import RecordedLimits
-from compoundkin.programs.recording.recorded_march import RecordedMarch
-from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
-from compoundkin.programs.recording.recorded_number import RecordedNumber
-from compoundkin.programs.recording.recorded_outputs import ProgramOutput, recorded_outputs
+from compoundkin.programs.graph.operation_graph import OperationGraph
+
+Name = TypeVar("Name")
 
 
-@dataclass(frozen=True)
-class RecordedPath:
-    """A mechanism recorded, and its outputs."""
+@dataclass(frozen=True, eq=False, repr=False)
+class ReadyProgram(PrintsShort, Generic[Name]):
+    """A flat program made ready by a back end, with the nodes of what it finds by name.
 
-    mechanism: RecordedMechanism
-    outputs: tuple[RecordedNumber, ...]
-    march: RecordedMarch | None = None
-
-    @classmethod
-    def of(cls, recording: Recording, outputs: Sequence[ProgramOutput], marches: bool = True) -> RecordedPath:
-        """Record a mechanism and outputs of it."""
-        mechanism = recorded(recording)
-        march = RecordedMarch.of(mechanism) if marches and recording.steps else None
-        return cls(mechanism, recorded_outputs(mechanism, outputs), march)
-
-    @cached_property
-    def nodes(self) -> tuple[tuple[int, ...], ...]:
-        """The nodes of each output: one, or two of a vector."""
-        return tuple((o.x,) if o.y is None else (o.x, o.y) for o in self.outputs)
-
-    @cached_property
-    def seeds(self) -> tuple[InputNumber, ...]:
-        """What it asks to be found outside."""
-        graph = self.mechanism.graph
-        needed = graph.inputs([*(k for nodes in self.nodes for k in nodes), RecordedLimits(self.mechanism).certain.x])
-        found = (given for k in needed if (given := graph.nodes[k].given) and given.kind == SEED)
-        return tuple(given for given in found if given.part != SIDE)
-
-    @property
-    def can_march(self) -> bool:
-        """Whether all that it asks for are states that a march carries."""
-        return self.march is not None and {*self.seeds} <= {*self.march.seeds}
-
-    def carried(self, numbers: CallNumbers) -> tuple[Carried, ...]:
-        """Return the numbers that are carried along the motion."""
-        return self.march.carried if self.march and numbers.marches else ()
-
-
-class PathVariants(Protocol):
-    """What is asked of a compiled path by what is made of its recorded variants: sources, functions of JAX."""
-
-    @property
-    def reference(self) -> Motion:
-        """Its motion."""
-
-    @property
-    def outputs(self) -> tuple[ProgramOutput, ...]:
-        """What it computes."""
-
-    @property
-    def dimensions(self) -> tuple[FreeDimension, ...]:
-        """What is free."""
-
-    @property
-    def stated(self) -> StatedDimensions:
-        """All dimensions of its mechanism."""
-
-    def variant(self, still: frozenset[tuple[str, int]]) -> RecordedPath:
-        """Return it recorded where some rates of drivers are zero."""
-
-
-@dataclass(frozen=True)
-class ReadyProgram:
-    """A flat program ready to run. Its outputs are the nodes of each output, then the least margin."""
+    Two nodes are the parts of a planar vector.
+    """
 
     flat: FlatProgram
-    nodes: tuple[tuple[int, ...], ...]
     runner: Runner
+    nodes: Mapping[Name, tuple[int, ...]]
 
     @classmethod
-    def of(cls, path: RecordedPath, numbers: CallNumbers, backend: str | None) -> ReadyProgram:
-        """Make the program of a recorded path for numbers of some form."""
-        graph = path.mechanism.graph
-        least = RecordedLimits(path.mechanism).least
-        carried = path.carried(numbers)
-        flat = flat_program(graph, [*(n for each in path.nodes for n in each), least], numbers.strata(graph), carried)
-        return cls(flat, path.nodes, runner_of(flat, backend))
+    def of(
+        cls,
+        graph: OperationGraph,
+        nodes: Mapping[Name, tuple[int, ...]],
+        numbers: CallNumbers,
+        backend: str | None,
+        carried: Sequence[Carried] = (),
+    ) -> ReadyProgram[Name]:
+        """Make the program of some nodes for numbers of some form."""
+        wanted = [k for parts in nodes.values() for k in parts]
+        flat = flat_program(graph, wanted, numbers.strata(graph), carried)
+        return cls(flat, runner_of(flat, backend), nodes)
+
+    def run(
+        self, numbers: CallNumbers, threads: int = 1, given: Mapping[Name, Number] = MappingProxyType({})
+    ) -> dict[Name, Number]:
+        """Compute everything, (1 or designs, 1 or poses) each.
+
+        Arrays that are `given`, designs x poses, are written.
+        """
+        rows: list[Number] = []
+        narrow: list[tuple[Number, Number]] = []
+        shapes = {name: [self.flat.shape(k, *numbers.extent) for k in parts] for name, parts in self.nodes.items()}
+        wanted = [name for name in self.nodes if name not in given]
+        kinds = [np.dtype(complex if len(self.nodes[name]) > 1 else float) for name in wanted]
+        made = empty_arrays([(np.broadcast_shapes(*shapes[n]), kind) for n, kind in zip(wanted, kinds, strict=True)])
+        found = {**dict.fromkeys(self.nodes), **dict(zip(wanted, made, strict=True)), **given}
+        for name, whole in found.items():
+            for shape, part in zip(shapes[name], (whole.real, whole.imag), strict=False):
+                rows.append(part if shape == whole.shape else np.empty(shape))
+                if shape != whole.shape:
+                    narrow.append((part, rows[-1]))
+        self.runner(numbers.arrays(self.flat), rows, numbers.extent, threads)
+        for part, row in narrow:
+            part[...] = row
+        return found

@@ -10,8 +10,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.kinematics.motion import Motion
+from compoundkin.programs import ready_program
 from compoundkin.programs.compiled_path import CompiledPath
-from compoundkin.programs.limits import limit_look
 
 DESIGNS = 60
 # Linkages that stop short, pass change points, slide to ends; trains, rollers and cylinders.
@@ -82,11 +82,11 @@ def test_modes_are_carried_from_the_drawing_to_a_part_of_the_motion(begin: float
 def test_looks_at_limits_make_their_programs_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """A call at another value than the mechanism's own looks at the way there: what it needs is kept."""
     made: list[Any] = []
-    ready = limit_look.runner_of
-    monkeypatch.setattr(limit_look, "runner_of", lambda flat, name=None: made.append(flat) or ready(flat, name))
+    ready = ready_program.runner_of
+    monkeypatch.setattr(ready_program, "runner_of", lambda flat, name=None: made.append(flat) or ready(flat, name))
     six_bar = ck.catalog.load_named("six-bar")
     path = ck.compile(six_bar, "G.position")
     for angle in (0.5, 0.6, 3.0):
         place = ck.solve(six_bar, angle, modes=path.modes).points["G"].position
         assert np.allclose(path(angle)["G.position"], place, rtol=1e-12, atol=0)
-    assert len(made) == 1
+    assert len(made) == 2  # its own, and the one that looks

@@ -16,7 +16,7 @@ from compoundkin.programs.calls.design_way import DesignWay, ramp
 from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.solved_designs import Solving, solved_parts
-from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.input_kinds import DRIVE, HOLDS, STEP, start_of
 from compoundkin.programs.recording.recorded_march import side_of
 

@@ -11,13 +11,10 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.groups.newton_steps import STRAY
-from compoundkin.programs.backends import runner_of
-from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.calls.call_numbers import CallNumbers
-from compoundkin.programs.derivatives.result_arrays import results
-from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.ready_program import ReadyProgram
+from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE, STEP, start_of
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_march import side_of
@@ -36,9 +33,7 @@ class DesignWay(PrintsShort):
     The drivers rest at one pose.
     """
 
-    flat: FlatProgram
-    runner: Runner
-    nodes: Mapping[InputNumber, tuple[int]]
+    program: ReadyProgram[InputNumber]
     weights: Mapping[InputNumber, float]
 
     @classmethod
@@ -47,23 +42,22 @@ class DesignWay(PrintsShort):
         assert path.march is not None
         mechanism, carried = path.mechanism, path.march.carried
         graph, size = mechanism.graph, mechanism.recording.solving_order.size
-        nodes, weights = {}, {}
+        nodes: dict[InputNumber, tuple[int, ...]] = {}
+        weights: dict[InputNumber, float] = {}
         for solver in path.march.solvers:
             for k, (one, number) in enumerate(path.march.states(solver)):
                 nodes[one], weights[one] = (number.x,), 1.0 if k % 3 == 2 else 1.0 / size
             nodes[side_of(solver)] = (path.march.side(solver).x,)
         limits = RecordedLimits(mechanism)
         nodes |= {_MARGIN: (limits.margin.x,), _CERTAIN: (limits.certain.x,)}
-        flat = flat_program(graph, [k for (k,) in nodes.values()], numbers.strata(graph), carried)
-        return cls(flat, runner_of(flat, backend), nodes, weights)
+        return cls(ReadyProgram.of(graph, nodes, numbers, backend, carried), weights)
 
     def ends(self, numbers: CallNumbers) -> tuple[dict[InputNumber, Number], Number]:
         """Return the states at the ends of the way, and which designs are near.
 
         They are (designs, 1).
         """
-        narrow = results(self.flat, self.runner, numbers, self.nodes, 1)
-        found = {one: np.broadcast_to(value, numbers.extent) for one, value in narrow.items()}
+        found = {one: np.broadcast_to(value, numbers.extent) for one, value in self.program.run(numbers).items()}
         # on the way states need not be exact, but must not stray
         near = (found.pop(_CERTAIN)[:, -1] >= NEAR) & (found.pop(_MARGIN).min(axis=1) >= NEAR)
         for one, weight in self.weights.items():

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from compoundkin.base.buffers import arrays_of_one_buffer, keep_freed_memory
+from compoundkin.base.buffers import LARGE, arrays_of_one_buffer, keep_freed_memory
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.programs.calls.call_numbers import CallNumbers
@@ -16,8 +16,6 @@ from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.ready_program import ReadyProgram
 
 FLOAT, COMPLEX = np.dtype(float), np.dtype(complex)
-# Results of more bytes are put in one piece of memory, which is kept for the next call when it is freed.
-LARGE = 1 << 16
 
 
 class QuickPlan(PrintsShort):
@@ -28,18 +26,18 @@ class QuickPlan(PrintsShort):
 
     __slots__ = ("_picks", "_rows", "_runner", "_shapes", "is_watched")
 
-    def __init__(self, program: ReadyProgram, numbers: CallNumbers, value: InputNumber) -> None:
+    def __init__(self, program: ReadyProgram[str], numbers: CallNumbers, value: InputNumber) -> None:
         flat, names = program.flat, list(numbers.given)
         least = flat.outputs[-1]
         self._runner = program.runner
         self._picks = [names.index(flat.graph.nodes[k].given) for k in flat.inputs]  # type: ignore[arg-type]
         # whether each output, and at last the margin, is a vector, and how it varies
-        self._rows = [(len(nodes) > 1, flat.strata[nodes[0]]) for nodes in (*program.nodes, (least,))]
+        self._rows = [(len(nodes) > 1, flat.strata[nodes[0]]) for nodes in program.nodes.values()]
         self._shapes = self._shaped((1, 1))
         self.is_watched = flat.graph.input(value) in flat.graph.needed([least])
 
     @classmethod
-    def of(cls, program: ReadyProgram, numbers: CallNumbers, value: InputNumber) -> QuickPlan | None:
+    def of(cls, program: ReadyProgram[str], numbers: CallNumbers, value: InputNumber) -> QuickPlan | None:
         """Return the plan of a program.
 
         None where inputs are found outside, or parts of a vector vary by other axes.
@@ -47,7 +45,7 @@ class QuickPlan(PrintsShort):
         flat = program.flat
         if any(flat.graph.nodes[k].given not in numbers.given for k in flat.inputs):
             return None
-        if any(len({flat.strata[k] for k in nodes}) > 1 for nodes in program.nodes):
+        if any(len({flat.strata[k] for k in nodes}) > 1 for nodes in program.nodes.values()):
             return None
         return cls(program, numbers, value)
 

@@ -12,19 +12,15 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.programs.backends import runner_of
-from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.derivatives.adjoints import reverse
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose, recorded_cost
-from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.derivatives.told_designs import known_poses
-from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import TOTAL
-from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.ready_program import ReadyProgram
+from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_functions import chosen
-from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
 # Besides the names of dimensions: the sum and the least margin.
@@ -55,6 +51,11 @@ class ObjectiveValues(PrintsShort):
     value: Number
     least: Number
     slopes: Mapping[str, Number]
+
+    @classmethod
+    def of(cls, found: Mapping[str, Number]) -> ObjectiveValues:
+        """Return what the program of an objective has found."""
+        return cls(found[_TOTAL], found[_LEAST], {k: slope for k, slope in found.items() if k not in (_TOTAL, _LEAST)})
 
     @classmethod
     def joined(cls, count: int, parts: Sequence[tuple[Number, ObjectiveValues]]) -> ObjectiveValues:
@@ -91,40 +92,22 @@ class ObjectiveValues(PrintsShort):
         return formed(self.value), {name: formed(slope) for name, slope in self.slopes.items()}
 
 
-@dataclass(frozen=True, repr=False)
-class ObjectiveProgram(PrintsShort):
-    """A flat program ready to run, with the nodes of its slopes."""
-
-    flat: FlatProgram
-    runner: Runner
-    slopes: Mapping[str, tuple[int, ...]]
-
-    @classmethod
-    def of(
-        cls, path: RecordedPath, names: Sequence[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
-    ) -> ObjectiveProgram:
-        """Make the program of an objective for numbers of some form."""
-        graph, limits = path.mechanism.graph, RecordedLimits(path.mechanism)
-        assembled, known = known_poses(path, names, form.known)
-        outputs = {name: _masked(each, known[name]) for name, each in zip(names, path.outputs, strict=True)}
-        cost = recorded_cost(form.function, graph, outputs, form.given, assembled)
-        carried = path.carried(numbers)
-        root, least, strata = graph.apply(TOTAL, cost), limits.least, numbers.strata(graph)
-        kept = reduce(RecordedNumber.__and__, _read(graph, cost, known), assembled)
-        by = {name: tuple(map(graph.input, parts)) for name, parts in form.by.items()}
-        every = [k for nodes in by.values() for k in nodes]
-        found = dict(zip(every, reverse(graph, root, every, strata, kept.x), strict=True))
-        slopes = {name: tuple(found[k] for k in nodes) for name, nodes in by.items()}
-        wanted = [root, least, *(k for nodes in slopes.values() for k in nodes)]
-        flat = flat_program(graph, wanted, strata, carried)
-        return cls(flat, runner_of(flat, backend), slopes)
-
-    def run(self, numbers: CallNumbers, threads: int) -> ObjectiveValues:
-        """Compute sum and slopes."""
-        total, least = self.flat.outputs[:2]
-        nodes = {_TOTAL: (total,), _LEAST: (least,), **self.slopes}
-        slopes = results(self.flat, self.runner, numbers, nodes, threads)
-        return ObjectiveValues(slopes.pop(_TOTAL), slopes.pop(_LEAST), slopes)
+def objective_program(
+    path: RecordedPath, names: Sequence[str], numbers: CallNumbers, form: ObjectiveForm, backend: str | None
+) -> ReadyProgram[str]:
+    """Make the program of an objective for numbers of some form."""
+    graph = path.mechanism.graph
+    assembled, known = known_poses(path, names, form.known)
+    outputs = {name: _masked(each, known[name]) for name, each in zip(names, path.outputs, strict=True)}
+    cost = recorded_cost(form.function, graph, outputs, form.given, assembled)
+    root = graph.apply(TOTAL, cost)
+    kept = reduce(RecordedNumber.__and__, _read(graph, cost, known), assembled)
+    by = {name: tuple(map(graph.input, parts)) for name, parts in form.by.items()}
+    every = [k for nodes in by.values() for k in nodes]
+    found = dict(zip(every, reverse(graph, root, every, numbers.strata(graph), kept.x), strict=True))
+    slopes = {name: tuple(found[k] for k in nodes) for name, nodes in by.items()}
+    nodes = {_TOTAL: (root,), _LEAST: (path.least,), **slopes}
+    return ReadyProgram.of(graph, nodes, numbers, backend, path.carried(numbers))
 
 
 def _masked(output: RecordedNumber, assembled: RecordedNumber) -> RecordedNumber:

@@ -15,10 +15,11 @@ from compoundkin.base.errors import UnassembledPoses, warn
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
 from compoundkin.programs.calls.written_arrays import hold_threads
 from compoundkin.programs.derivatives.law_chain import slope_inputs, summed_slopes
-from compoundkin.programs.derivatives.objective_program import ObjectiveForm, ObjectiveProgram, ObjectiveValues
+from compoundkin.programs.derivatives.objective_program import ObjectiveForm, ObjectiveValues, objective_program
 from compoundkin.programs.derivatives.parameters import with_parameters
 from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
 from compoundkin.programs.derivatives.told_designs import ASSEMBLED, EVERYWHERE, SOLVED, told_designs
+from compoundkin.programs.ready_program import ReadyProgram
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms
@@ -35,7 +36,7 @@ class PathObjective(PrintsShort):
 
     path: PathPrograms
     function: Callable[[ObjectivePose], Any]
-    _programs: dict[Any, ObjectiveProgram] = field(default_factory=dict)
+    _programs: dict[Any, ReadyProgram[str]] = field(default_factory=dict)
 
     @checked
     def __call__(
@@ -125,8 +126,8 @@ class PathObjective(PrintsShort):
             by = slope_inputs(path.dimensions, path.order) if is_sloped else {}
             form = ObjectiveForm(self.function, given, by, known)
             variant = path.variant(numbers.still, known == SOLVED)
-            self._programs[key] = ObjectiveProgram.of(variant, path.names, numbers, form, path.chosen_backend)
-        found = self._programs[key].run(numbers, threads)
+            self._programs[key] = objective_program(variant, path.names, numbers, form, path.chosen_backend)
+        found = ObjectiveValues.of(self._programs[key].run(numbers, threads))
         if not (is_sloped and self.path.law_numbers):
             return found
         return replace(found, slopes=summed_slopes(self.path.dimensions, numbers, found.slopes, self.path.order))

@@ -11,22 +11,18 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.base.series import Number
-from compoundkin.programs.backends import runner_of
-from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.calls.written_arrays import hold_threads
 from compoundkin.programs.derivatives.law_chain import chained, slope_inputs
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
-from compoundkin.programs.derivatives.result_arrays import results
 from compoundkin.programs.derivatives.tangents import forward
 from compoundkin.programs.derivatives.told_designs import told_designs
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
-from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.settled_values import settled_values
-from compoundkin.programs.ready_program import RecordedPath
+from compoundkin.programs.ready_program import ReadyProgram
+from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
-from compoundkin.programs.recording.recorded_limits import RecordedLimits
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms
@@ -36,39 +32,19 @@ Wanted: TypeAlias = tuple[str, str]
 _MARGIN = ("", "")
 
 
-@dataclass(frozen=True, repr=False)
-class SensitivityProgram(PrintsShort):
-    """A flat program ready to run, with the nodes of what it finds."""
-
-    flat: FlatProgram
-    runner: Runner
-    nodes: Mapping[Wanted, tuple[int, ...]]
-
-    @classmethod
-    def of(
-        cls,
-        path: RecordedPath,
-        names: Sequence[str],
-        by: Mapping[str, InputNumber],
-        numbers: CallNumbers,
-        backend: str | None,
-    ) -> SensitivityProgram:
-        """Make the program of a recorded path for numbers of some form."""
-        graph = path.mechanism.graph
-        outputs = dict(zip(names, path.nodes, strict=True))
-        wanted = [k for parts in path.nodes for k in parts]
-        nodes: dict[Wanted, tuple[int, ...]] = {(name, ""): parts for name, parts in outputs.items()}
-        for word, given in by.items():
-            found = dict(zip(wanted, forward(graph, wanted, {graph.input(given): 1.0}), strict=True))
-            nodes |= {(name, word): tuple(found[k] for k in parts) for name, parts in outputs.items()}
-        nodes[_MARGIN] = (RecordedLimits(path.mechanism).least,)
-        every, carried = [k for parts in nodes.values() for k in parts], path.carried(numbers)
-        flat = flat_program(graph, every, numbers.strata(graph), carried)
-        return cls(flat, runner_of(flat, backend), nodes)
-
-    def run(self, numbers: CallNumbers, threads: int) -> dict[Wanted, Number]:
-        """Compute everything, (1 or designs, 1 or poses) each."""
-        return results(self.flat, self.runner, numbers, self.nodes, threads)
+def sensitivity_program(
+    path: RecordedPath, names: Sequence[str], by: Mapping[str, InputNumber], numbers: CallNumbers, backend: str | None
+) -> ReadyProgram[Wanted]:
+    """Make the program of a recorded path and its slopes for numbers of some form."""
+    graph = path.mechanism.graph
+    outputs = dict(zip(names, path.nodes, strict=True))
+    wanted = [k for parts in path.nodes for k in parts]
+    nodes: dict[Wanted, tuple[int, ...]] = {(name, ""): parts for name, parts in outputs.items()}
+    for word, given in by.items():
+        found = dict(zip(wanted, forward(graph, wanted, {graph.input(given): 1.0}), strict=True))
+        nodes |= {(name, word): tuple(found[k] for k in parts) for name, parts in outputs.items()}
+    nodes[_MARGIN] = (path.least,)
+    return ReadyProgram.of(graph, nodes, numbers, backend, path.carried(numbers))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,7 +52,7 @@ class SensitivityPrograms(PrintsShort):
     """The programs that compute outputs of a path and their slopes."""
 
     path: PathPrograms
-    _programs: dict[Any, SensitivityProgram] = field(default_factory=dict)
+    _programs: dict[Any, ReadyProgram[Wanted]] = field(default_factory=dict)
 
     def found(self, numbers: CallNumbers, by: str | Sequence[str] | None, threads: int) -> PathSensitivities:
         """Compute outputs and slopes.
@@ -115,7 +91,7 @@ class SensitivityPrograms(PrintsShort):
         key = numbers.form, tuple(by), is_seeded
         if key not in self._programs:
             path, backend = self.path.variant(numbers.still, is_seeded), self.path.chosen_backend
-            self._programs[key] = SensitivityProgram.of(path, self.path.names, by, numbers, backend)
+            self._programs[key] = sensitivity_program(path, self.path.names, by, numbers, backend)
         return self._programs[key].run(numbers, threads)
 
 

@@ -19,12 +19,10 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import SPACING
 from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.programs.backends import runner_of
-from compoundkin.programs.backends.contract import Runner
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
-from compoundkin.programs.graph.flat_program import FlatProgram, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.approach_look import DrawnApproach
+from compoundkin.programs.ready_program import ReadyProgram
 from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE, HOLDS
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, recorded
@@ -80,7 +78,7 @@ class LimitPrograms(PrintsShort):
 
     def __init__(self, recording: Recording, approach: DrawnApproach, backend: str | None) -> None:
         self.recording, self.approach, self.backend = recording, approach, backend
-        self._ready: dict[Any, tuple[FlatProgram, Runner]] = {}
+        self._ready: dict[Any, ReadyProgram[int]] = {}
 
     def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
         """Return which designs need a look, and which may change mode before their motion."""
@@ -165,19 +163,16 @@ class LimitPrograms(PrintsShort):
 
     def _computed(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> list[Number]:
         """Return some nodes at all designs and poses."""
-        flat, runner = self._program(asked, numbers)
-        outputs = [np.empty(flat.shape(k, *numbers.extent)) for k in asked[1]]
-        runner(numbers.arrays(flat), outputs, numbers.extent)
-        return [np.broadcast_to(one, numbers.extent) for one in outputs]
+        return [np.broadcast_to(one, numbers.extent) for one in self._program(asked, numbers).run(numbers).values()]
 
-    def _program(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> tuple[FlatProgram, Runner]:
+    def _program(self, asked: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> ReadyProgram[int]:
         """Return the program of some nodes for numbers of these forms, made once."""
         limits, nodes = asked
         graph = limits.mechanism.graph
         key = id(graph), tuple(nodes), tuple(numbers.given), numbers.form
         if key not in self._ready:
-            flat = flat_program(graph, nodes, numbers.strata(graph))
-            self._ready[key] = flat, runner_of(flat, self.backend)
+            asked_for = {place: (node,) for place, node in enumerate(nodes)}
+            self._ready[key] = ReadyProgram.of(graph, asked_for, numbers, self.backend)
         return self._ready[key]
 
 

@@ -14,7 +14,7 @@ from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import OF_POINTS, RATES, coordinate_dimension, unit_of
 from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.ready_program import PathVariants, RecordedPath
+from compoundkin.programs.recorded_path import PathVariants, RecordedPath
 from compoundkin.programs.recording.input_kinds import DRIVE, SIDE
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_motion import RecordedMotion

@@ -7,7 +7,7 @@ from typing import ClassVar, cast
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.base.suffixes import Kind
-from compoundkin.programs.ready_program import PathVariants
+from compoundkin.programs.recorded_path import PathVariants
 from compoundkin.programs.sources import LANGUAGES
 from compoundkin.programs.sources.contract import WrittenProgram
 from compoundkin.programs.sources.path_text import written_program
