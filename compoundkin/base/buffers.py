@@ -38,7 +38,9 @@ def arrays_of_one_buffer(wanted: Iterable[tuple[tuple[int, ...], np.dtype[Number
 
 
 def empty_arrays(wanted: Sequence[tuple[tuple[int, ...], np.dtype[Number]]]) -> list[Number]:
-    """Return empty arrays of these shapes and types; large ones in one piece, kept for the next when it is freed.
+    """Return empty arrays of these shapes and types.
+
+    Large ones lie in one piece, which is kept for the next ones when it is freed.
 
     >>> [one.shape for one in empty_arrays([((1, 3), np.dtype(complex)), ((2, 1), np.dtype(float))])]
     [(1, 3), (2, 1)]

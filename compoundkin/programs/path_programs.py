@@ -125,7 +125,10 @@ class PathPrograms(PrintsShort):
         return Recording(own.solving_order, self.signs, read, self.order, still, own.inputs.ends, steps)
 
     def program(self, numbers: CallNumbers) -> ReadyProgram[str]:
-        """Return the program for numbers of these forms: of all outputs, and last of the least margin."""
+        """Return the program for numbers of these forms.
+
+        It computes all outputs, and last the least margin.
+        """
         if numbers.form not in self._programs:
             path = self.variant(numbers.still)
             nodes = {**dict(zip(self.names, path.nodes, strict=True)), LEAST: (path.least,)}

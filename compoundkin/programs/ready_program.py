@@ -23,7 +23,7 @@ Name = TypeVar("Name")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ReadyProgram(PrintsShort, Generic[Name]):
-    """A flat program made ready by a back end, with the nodes of what it finds by name.
+    """A flat program made ready, and the nodes of what it finds by name.
 
     Two nodes are the parts of a planar vector.
     """

@@ -65,7 +65,7 @@ class RecordedPath:
 
 
 class PathVariants(Protocol):
-    """What is asked of a compiled path by what is made of its recorded variants: sources, functions of JAX."""
+    """What is asked of a compiled path by its sources and functions of JAX."""
 
     @property
     def reference(self) -> Motion:

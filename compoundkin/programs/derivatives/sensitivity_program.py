@@ -35,7 +35,7 @@ _MARGIN = ("", "")
 def sensitivity_program(
     path: RecordedPath, names: Sequence[str], by: Mapping[str, InputNumber], numbers: CallNumbers, backend: str | None
 ) -> ReadyProgram[Wanted]:
-    """Make the program of a recorded path and its slopes for numbers of some form."""
+    """Make the program of a path's outputs and slopes for numbers of some form."""
     graph = path.mechanism.graph
     outputs = dict(zip(names, path.nodes, strict=True))
     wanted = [k for parts in path.nodes for k in parts]

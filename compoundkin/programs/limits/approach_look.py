@@ -16,7 +16,7 @@ from compoundkin.kinematics.motion import Motion
 
 
 class DrawnApproach(PrintsShort):
-    """Where the drivers of a path are drawn, and the ways from there to motions."""
+    """Where a path's drivers are drawn, and the ways from there to motions."""
 
     def __init__(self, reference: Motion, shown: Shown) -> None:
         self.reference, self.shown = reference, shown
@@ -63,7 +63,9 @@ class DrawnApproach(PrintsShort):
 
 
 def comes_by(drawn: float, first: float, last: float, is_angle: bool) -> bool:
-    """Tell whether a driver comes by its drawn value between its first value and its last.
+    """Tell whether a driver comes by its drawn value on a motion.
+
+    It does where that lies between its first value and its last.
 
     >>> comes_by(0.5, 6.0, 7.0, True), comes_by(0.5, 6.0, 7.0, False)
     (True, False)
