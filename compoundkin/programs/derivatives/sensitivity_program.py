@@ -124,7 +124,7 @@ def _chained(
 
 def _coordinates(name: str, known: Mapping[str, InputNumber]) -> list[str]:
     """Return the coordinates of a free point, or the name itself."""
-    return [each for each in (f"{name}.x", f"{name}.y") if each in known] or [name]
+    return [each for each, given in known.items() if given.name == name] or [name]
 
 
 def _masked(value: Number, slope: Number) -> Number:
