@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from compoundkin.kinematics import solve
     from compoundkin.kinematics.gaps import gaps
     from compoundkin.kinematics.quantities import quantity
-    from compoundkin.programs.compiled_path import compile
+    from compoundkin.programs.compilation import compile
     from compoundkin.structure import decompose
     from compoundkin.structure.redundancy import mobility_analysis
     from compoundkin.synthesis.alternatives import alternatives
@@ -130,7 +130,7 @@ _LATE = {
     "animate": "view.animation",
     "characteristics": "analysis.characteristics.characteristics_of_motion",
     "circuits": "configurations.circuit_search",
-    "compile": "programs.compiled_path",
+    "compile": "programs.compilation",
     "configurations": "configurations.enumeration",
     "decompose": "structure",
     "draw": "view.sketch",

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def _program(structure: Structure, form: str, asked: Mapping[str, Any]) -> str:
     """A function in another language."""
     from compoundkin.cli.progress import working
-    from compoundkin.programs.compiled_path import compile
+    from compoundkin.programs.compilation import compile
 
     modes = assembly_modes(structure, asked["modes"]) or None
     outputs = asked["outputs"] or _own_outputs(structure)

@@ -140,7 +140,8 @@ def _planar(where: str, value: Any) -> Any:
             told = f"{where}: {value} is read as x = {x[0]:g}, y = {y[0]:g} of one design"
             warn(f"{told}; two designs are written ({value}, 0)", LikelySlip)
         try:
-            return x + 1j * y
+            with np.errstate(invalid="ignore"):  # infinite coordinates are told where they have no meaning
+                return x + 1j * y
         except ValueError:
             raise _no_point(where, value) from None
     if value is None or isinstance(value, tuple | list | str):

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.configuration import Configuration
-from compoundkin.kinematics.solution import solve
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.calls.quick_calls import QuickCalls
 from compoundkin.programs.calls.written_arrays import held_arrays, hold_threads
 from compoundkin.programs.derivatives.path_objective import PathObjective
@@ -22,70 +18,38 @@ from compoundkin.programs.derivatives.recorded_objective import ObjectivePose
 from compoundkin.programs.derivatives.sensitivity_program import SensitivityPrograms
 from compoundkin.programs.dimensions.designed_mechanism import designed
 from compoundkin.programs.dimensions.dimension_values import dimension_values
-from compoundkin.programs.dimensions.named_dimensions import free_dimensions, hold_one_design
-from compoundkin.programs.dimensions.redundant_dimensions import hold_consistent
-from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.jax_path import JaxPath, jax_path
 from compoundkin.programs.path_programs import PathPrograms
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.program_modes import program_modes
-from compoundkin.programs.recording.recorded_outputs import output_of
 from compoundkin.programs.sources.source_writer import WritesSources
-from compoundkin.structure.kinematic_structure import Structure
-
-
-@checked
-def compile(
-    mechanism: Mechanism | Structure,
-    outputs: str | Sequence[str],
-    *,
-    free: str | Sequence[str] = (),
-    values: Any = None,
-    modes: Mapping[str, int] | str | Configuration | None = None,
-    hint: Mapping[str, Any] | None = None,
-    backend: str | None = None,
-) -> CompiledPath:
-    """Return a fast function of drivers and free dimensions of a mechanism.
-
-    `outputs` are quantities by name ("G.position", "bar.angle"), `free` the dimensions that every call may change
-    ("crank.D" a point of a link). The assembly modes are those that `solve` takes for the mechanism as it stands, at
-    its own driver values or `values`, or with `modes` and `hint`; they are kept for all designs. Raises UnknownName for
-    what there is not, and what `solve` raises.
-
-    >>> import numpy as np
-    >>> from compoundkin.model.elements import drive, link
-    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
-    >>> path = compile(crank, "B.velocity.length", free="crank.B")
-    >>> path([0.0, 1.0], {"crank.B": np.array([[1.0], [2.0]])}, speed=3.0)["B.velocity.length"][:, 0].tolist()
-    [3.0, 6.0]
-    """
-    names = (outputs,) if isinstance(outputs, str) else tuple(dict.fromkeys(outputs))
-    if not names:
-        raise InvalidInput(Problem("outputs", "no output is named", 'compile(mechanism, ["G.position", ...])'))
-    freed = (free,) if isinstance(free, str) else tuple(free)
-    chosen_back_end(backend)
-    with warnings.catch_warnings():
-        # what is not assembled or has few digits is told at each call
-        warnings.simplefilter("ignore")
-        motion = solve(mechanism, values, order=0, modes=modes, hint=hint)
-    found = tuple(output_of(motion, name) for name in names)
-    stated = StatedDimensions(motion.mechanism, motion.inputs.ends)
-    dimensions = free_dimensions(stated, freed)
-    hold_one_design(stated, dimensions)
-    hold_consistent(motion, stated, dimensions)
-    request = {"mechanism": mechanism, "outputs": names, "free": freed, "values": values, "modes": modes, "hint": hint}
-    return CompiledPath(motion, found, dimensions, backend, request={**request, "backend": backend})
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CompiledPath(WritesSources, PathPrograms):
+class CompiledPath(WritesSources):
     """A mechanism compiled for some outputs, in one configuration.
 
     It is called with driver values and free dimensions. `names` are its outputs, `free` its dimensions, `modes` the
     name of its configuration, `backend` what computes it. It is pickled as what it was made of, and compiled anew.
     """
 
-    request: Mapping[str, Any] = field(default_factory=dict)  # the arguments of `compile`
+    programs: PathPrograms
+    request: Mapping[str, Any]  # the arguments of `compile`
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of its outputs."""
+        return self.programs.names
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The names of its free dimensions."""
+        return self.programs.free
+
+    @property
+    def backend(self) -> str:
+        """What computes it: "llvm", or "numpy" where that is not installed."""
+        return self.programs.backend
 
     def __call__(
         self,
@@ -108,6 +72,7 @@ class CompiledPath(WritesSources, PathPrograms):
         `threads`. Raises InvalidInput for what does not fit; warns UnassembledPoses and FewDigits as `solve`.
 
         >>> from compoundkin.model.elements import drive, link
+        >>> from compoundkin.programs.compilation import compile
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
         >>> compile(crank, "B")([0.0])["B"].tolist()
         [(2+0j)]
@@ -118,12 +83,12 @@ class CompiledPath(WritesSources, PathPrograms):
             if found is not None:
                 return found
         hold_threads(threads)
-        numbers = self.numbers(values, dimensions, *rates, time=time)
-        return self.computed(numbers, threads, held_arrays(out, self.outputs_of(numbers), numbers.shape))
+        programs, numbers = self.programs, self.programs.numbers(values, dimensions, *rates, time=time)
+        return programs.computed(numbers, threads, held_arrays(out, programs.outputs_of(numbers), numbers.shape))
 
     @cached_property
     def _quick(self) -> QuickCalls | None:
-        return QuickCalls.of(self)
+        return QuickCalls.of(self.programs)
 
     @property
     def modes(self) -> str | Configuration:
@@ -131,7 +96,7 @@ class CompiledPath(WritesSources, PathPrograms):
 
         It is the name, or where a group has no signs the configuration itself.
         """
-        return program_modes(self.reference, self.configuration)
+        return program_modes(self.programs.reference, self.programs.configuration)
 
     @checked
     def mechanism(self, dimensions: Mapping[str, Any] | None = None) -> Mechanism:
@@ -141,12 +106,14 @@ class CompiledPath(WritesSources, PathPrograms):
         InvalidMechanism for those that no such mechanism can have, such as wheels that do not fit their axes.
 
         >>> from compoundkin.model.elements import drive, link
+        >>> from compoundkin.programs.compilation import compile
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
         >>> compile(crank, "B", free="crank.B.x").mechanism({"crank.B.x": 3.0}).links["crank"].points["B"]
         (3+0j)
         """
-        values = dimension_values(self.stated, self.dimensions, dimensions)
-        return designed(self.stated, {one: value for one, value in values.items() if one.name in (dimensions or {})})
+        stated = self.programs.stated
+        values = dimension_values(stated, self.programs.dimensions, dimensions)
+        return designed(stated, {one: value for one, value in values.items() if one.name in (dimensions or {})})
 
     @checked
     def objective(self, function: Callable[[ObjectivePose], Any]) -> PathObjective:
@@ -156,11 +123,12 @@ class CompiledPath(WritesSources, PathPrograms):
         It is written in arithmetic and NumPy's functions of numbers.
 
         >>> from compoundkin.model.elements import drive, link
+        >>> from compoundkin.programs.compilation import compile
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
         >>> float(compile(crank, "B").objective(lambda at: abs(at["B"]) ** 2 * at["weight"])([0.0], weight=0.5))
         2.0
         """
-        return PathObjective(self, function)
+        return PathObjective(self.programs, function)
 
     @checked
     def derivatives(
@@ -181,25 +149,28 @@ class CompiledPath(WritesSources, PathPrograms):
         "crank.B" is both coordinates. Raises UnknownName for others, and what a call does.
 
         >>> from compoundkin.model.elements import drive, link
+        >>> from compoundkin.programs.compilation import compile
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
         >>> found = compile(crank, "B", free="crank.B").derivatives([0.0])
         >>> found["B", "crank.B.x"].real.tolist(), found["B", "crank"].imag.tolist()
         ([1.0], [2.0])
         """
-        numbers = self.sloped_numbers(values, dimensions, speed, acceleration, jerk, time)
+        numbers = self.programs.sloped_numbers(values, dimensions, speed, acceleration, jerk, time)
         return self.sensitivities.found(numbers, by, threads)
 
     @cached_property
     def sensitivities(self) -> SensitivityPrograms:
         """The programs that compute slopes at every pose."""
-        return SensitivityPrograms(self)
+        return SensitivityPrograms(self.programs)
 
     def jax(self) -> JaxPath:
         """Return it as a pure function of JAX; raises InvalidInput where there is none."""
-        return jax_path(self)
+        return jax_path(self.programs)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _compiled, (dict(self.request),)
+        from compoundkin.programs.compilation import compiled_again
+
+        return compiled_again, (dict(self.request),)
 
     def __copy__(self) -> CompiledPath:
         return self
@@ -209,11 +180,4 @@ class CompiledPath(WritesSources, PathPrograms):
 
     def __repr__(self) -> str:
         of = f" of {', '.join(self.free)}" if self.free else ""
-        return f"CompiledPath({self.reference.mechanism.title!r}: {', '.join(self.names)}{of})"
-
-
-def _compiled(request: Mapping[str, Any]) -> CompiledPath:
-    return compile(**request)
-
-
-__all__ = ["CompiledPath", "compile"]
+        return f"CompiledPath({self.programs.reference.mechanism.title!r}: {', '.join(self.names)}{of})"

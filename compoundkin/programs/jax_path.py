@@ -15,10 +15,10 @@ from compoundkin.kinematics.driver_values import by_name
 from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.model.attributes import RATES
 from compoundkin.programs.backends.jax_operations import evaluated
+from compoundkin.programs.graph.input_kinds import DRIVE, SEED
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.jax_numbers import common_shape, held
 from compoundkin.programs.recorded_path import PathVariants, RecordedPath
-from compoundkin.programs.recording.input_kinds import DRIVE, SEED
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 
 ASSEMBLED, CERTAIN = "assembled", "certain"

@@ -12,8 +12,8 @@ from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.graph.flat_program import Carried
+from compoundkin.programs.graph.input_kinds import SEED, SIDE
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import SEED, SIDE
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_march import RecordedMarch
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded

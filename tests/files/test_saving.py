@@ -16,7 +16,7 @@ import compoundkin as ck
 from compoundkin.base.suffixes import SUFFIXES, form_of
 from compoundkin.cli import cli
 from compoundkin.files.shipped_mechanisms import load_named
-from compoundkin.programs.compiled_path import compile
+from compoundkin.programs.compilation import compile
 
 
 @cache

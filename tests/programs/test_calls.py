@@ -73,7 +73,7 @@ def test_one_driver_stands_while_another_comes_to_a_limit():
 def test_a_configuration_without_a_name_is_given_itself():
     mechanism = loaded("class-iii-six-bar")
     path = ck.compile(mechanism, [f"{point}.position" for point in mechanism.carriers])
-    values = np.ravel(path.reference.inputs.drives[mechanism.drives[0].name][0])[5:20]
+    values = np.ravel(path.programs.reference.inputs.drives[mechanism.drives[0].name][0])[5:20]
     found, motion = path(values), ck.solve(path.mechanism(), values, modes=path.modes)
     for name in path.names:
         np.testing.assert_allclose(found[name], motion.points[name.partition(".")[0]].position, atol=1e-11)

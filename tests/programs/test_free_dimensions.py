@@ -10,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, UnknownName
-from compoundkin.programs.compiled_path import compile
+from compoundkin.programs.compilation import compile
 from tests.catalog import mechanism as loaded
 
 # Sizes of wheels must fit the distance of their axes; teeth are whole.
@@ -36,7 +36,7 @@ def test_all_dimensions_at_once_move_a_program_as_they_move_the_mechanism(name):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         whole = compile(mechanism, "A" if "A" in mechanism.carriers else next(iter(mechanism.carriers)))
-        known = whole.stated.known.values()
+        known = whole.programs.stated.known.values()
         free = [one for one in known if one.word not in FIXED and one.part not in ("x", "y")]
         outputs = [f"{point}.{word}" for point in mechanism.carriers for word in ("position", "velocity")]
         path = compile(mechanism, outputs, free=[one.name for one in free])
@@ -44,10 +44,10 @@ def test_all_dimensions_at_once_move_a_program_as_they_move_the_mechanism(name):
     dimensions = {}
     for one in free:
         change = rng.standard_normal((3, 1)) * (1.0 if one.word in ("angle", "turn") else size)
-        dimensions[one.name] = path.stated.own(one) + change * (np.exp(1j) if one.is_vector else 1.0)
-    driven = path.reference.inputs.drives
+        dimensions[one.name] = path.programs.stated.own(one) + change * (np.exp(1j) if one.is_vector else 1.0)
+    driven = path.programs.reference.inputs.drives
     values = {driver: np.ravel(numbers[0])[:40] for driver, numbers in driven.items()}
-    modes = {path.reference.structure.groups[k].links[0]: sign for k, sign in path.signs.items()}
+    modes = {path.programs.reference.structure.groups[k].links[0]: sign for k, sign in path.programs.signs.items()}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         found = path(values, dimensions)
@@ -73,9 +73,9 @@ def test_all_dimensions_at_once_move_a_program_as_they_move_the_mechanism(name):
 def test_sizes_of_wheels_and_ends_of_guides_are_free(name, free):
     mechanism, (free, change) = loaded(name), free
     path = ck.compile(mechanism, [f"{link}.angle" for link in mechanism.rigid_links], free=free)
-    own = float(path.stated.own(path.dimensions[0]))
+    own = float(path.programs.stated.own(path.programs.dimensions[0]))
     dimensions = {free: np.array([[own], [own + change]])}
-    driven = path.reference.inputs.drives
+    driven = path.programs.reference.inputs.drives
     values = {driver: np.ravel(numbers[0])[:30] for driver, numbers in driven.items()}
     found, motion = path(values, dimensions), ck.solve(path.mechanism(dimensions), values, modes=path.modes)
     np.testing.assert_array_equal(found.assembled, motion.assembled)
@@ -87,7 +87,7 @@ def test_sizes_of_wheels_and_ends_of_guides_are_free(name, free):
 def test_teeth_are_free_where_three_wheels_are_placed_together():
     name = "left/planet-1.teeth.0"
     path = ck.compile(loaded("differential"), ["left.angle", "planet-2.angle"], free=name)
-    own, found = float(path.stated.own(path.dimensions[0])), path.derivatives(by=name)
+    own, found = float(path.programs.stated.own(path.programs.dimensions[0])), path.derivatives(by=name)
     less, more = (path(dimensions={name: own + away}) for away in (-1e-4, 1e-4))
     for out in path.names:
         assert np.allclose(found[out], ck.quantity(ck.solve(loaded("differential")), out).values, atol=1e-12)

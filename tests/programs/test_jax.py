@@ -14,7 +14,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import CompoundkinError, InvalidInput, UnknownName
-from compoundkin.programs.compiled_path import compile
+from compoundkin.programs.compilation import compile
 from compoundkin.programs.graph.operation_graph import OperationGraph
 from tests.benchmarks import six_bar
 from tests.programs.test_tape import arrays, plain, program_of_everything
@@ -162,7 +162,7 @@ def test_a_slip_is_told() -> None:
 
 
 def test_the_package_does_without_it() -> None:
-    told = "import sys, compoundkin, compoundkin.programs.compiled_path; sys.exit('jax' in sys.modules)"
+    told = "import sys, compoundkin, compoundkin.programs.compilation; sys.exit('jax' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", told], check=False).returncode == 0
 
 

@@ -88,12 +88,14 @@ def test_slopes_where_a_law_is_not_smooth_are_none():
 def test_calls_and_slopes_are_those_of_the_mechanism_with_another_law(law):
     free = [f"crank.law.{name}" for name in law_numbers(law)]
     path = ck.compile(driven(law), OUTPUTS, free=[*free, "plate.C.x"], values=[0.3])
-    given = {free[0]: path.stated.own(path.stated.known[free[0]]) + 0.05, "plate.C.x": 1.02 * path.stated.own(
-        path.stated.known["plate.C.x"]
-    )}  # fmt: skip
+    stated = path.programs.stated
+    given = {
+        free[0]: stated.own(stated.known[free[0]]) + 0.05,
+        "plate.C.x": 1.02 * stated.own(stated.known["plate.C.x"]),
+    }
     found = path.derivatives(None, given, time=TIMES)
     for name in path.free:
-        own = given.get(name, path.stated.own(path.stated.known[name]))
+        own = given.get(name, stated.own(stated.known[name]))
 
         def at(value, name=name):
             motion = ck.solve(path.mechanism({**given, name: value}), time=TIMES, modes=path.modes)
@@ -198,7 +200,7 @@ def test_mistakes_are_told():
     with pytest.raises(UnknownName, match=r"segments.1.rise.*no such dimension"):
         ck.compile(driven(LIFT), "G", free="crank.law.segments.1.rise")  # a dwell
     for law in (laws.time_table([0, 1, 2], [0, 0.1, 0.3]), lambda t: 0.1 * t):
-        assert not any(".law." in name for name in ck.compile(driven(law), "G", values=[0.3]).stated.known)
+        assert not any(".law." in name for name in ck.compile(driven(law), "G", values=[0.3]).programs.stated.known)
     with pytest.raises(InvalidInput, match="values are given"):
         path([0.3], {"crank.law.start": 0.4})
     with pytest.raises(InvalidInput, match="along the motion"):

@@ -118,7 +118,7 @@ def test_poses_that_are_not_assembled_are_left_out_where_masked():
 def test_functions_of_numbers_are_those_of_numpy(function):
     """Values and slopes of an objective, by NumPy itself and its differences."""
     path = ck.compile(loaded("crank-rocker"), "rocker.angle", free="coupler.C.x")
-    own = float(path.stated.own(path.dimensions[0]))
+    own = float(path.programs.stated.own(path.programs.dimensions[0]))
     value, slope = path.objective(lambda at: function(at["rocker.angle"])).gradient(ANGLES)
     less, here, more = (
         function(path(ANGLES, {"coupler.C.x": own + away})["rocker.angle"]).sum() for away in (-STEP, 0.0, STEP)
@@ -134,7 +134,7 @@ def test_what_is_chosen_where_its_root_is_real_has_slopes_once_it_is_clipped():
     cost = path.objective(
         lambda at: np.where(at["rocker.angle"] > least, np.sqrt(np.maximum(at["rocker.angle"] - least, 0.0)), 0.0)
     )
-    own = float(path.stated.own(path.dimensions[0]))
+    own = float(path.programs.stated.own(path.programs.dimensions[0]))
     less, more = (float(cost(ANGLES, {"coupler.C.x": own + away})) for away in (-STEP, STEP))
     np.testing.assert_allclose(cost.gradient(ANGLES)[1]["coupler.C.x"], (more - less) / (2.0 * STEP), rtol=1e-6)
 
@@ -232,12 +232,14 @@ def test_slopes_by_every_kind_of_dimension(name):
     """Each at three poses against `solve` of mechanisms that differ in one dimension, all solved at once."""
     mechanism = loaded(name)
     whole = ck.compile(mechanism, next(iter(mechanism.carriers)))
-    known = [one for one in whole.stated.known.values() if one.word not in FITTED and one.part not in ("x", "y")]
+    known = [
+        one for one in whole.programs.stated.known.values() if one.word not in FITTED and one.part not in ("x", "y")
+    ]
     free = [one for one in known if not one.is_of_link] + [one for one in known if one.is_of_link]
     free = free[: EVERY_KIND[name]]
     out = [f"{point}.{word}" for point in mechanism.carriers for word in ("position", "velocity")]
     path = ck.compile(mechanism, out, free=[one.name for one in free], backend="numpy")
-    driven = path.reference.inputs.drives
+    driven = path.programs.reference.inputs.drives
     values = {each: (np.ravel(v[0])[3] + np.array([0.013, 0.2, 0.31])) for each, v in driven.items()}
     speed = dict.fromkeys(values, 1.3)
     found = path.derivatives(values, speed=speed, by=None)
@@ -245,13 +247,13 @@ def test_slopes_by_every_kind_of_dimension(name):
     step = {each: STEP * (1.0 if each.endswith(("angle", "turn")) else mechanism.geometry.size) for each in by}
     places = {}
     for one in free:
-        place = np.full((2 * len(by), 1), path.stated.own(one), dtype=complex if one.is_vector else float)
+        place = np.full((2 * len(by), 1), path.programs.stated.own(one), dtype=complex if one.is_vector else float)
         for k, each in enumerate(by):
             if each.removesuffix(".x").removesuffix(".y") == one.name:
                 change = step[each] * (1j if one.is_vector and each.endswith(".y") else 1.0)
                 place[2 * k : 2 * k + 2] += change * np.array([[1.0], [-1.0]])
         places[one.name] = place
-    modes = {path.reference.structure.groups[k].links[0]: sign for k, sign in path.signs.items()}
+    modes = {path.programs.reference.structure.groups[k].links[0]: sign for k, sign in path.programs.signs.items()}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         motion = ck.solve(path.mechanism(places), values, speed=speed, modes=modes)
@@ -272,7 +274,7 @@ def test_a_gradient_is_the_sum_of_slopes_at_every_pose():
         point = f"{link.name}.{next(iter(link.points))}"
         output = f"{next(reversed(mechanism.carriers))}.velocity"
         path = ck.compile(mechanism, output, free=[*free, point])
-        values = {each: np.ravel(v[0])[:25] for each, v in path.reference.inputs.drives.items()}
+        values = {each: np.ravel(v[0])[:25] for each, v in path.programs.reference.inputs.drives.items()}
         speed = dict.fromkeys(values, 1.3)
         _, slope = path.objective(lambda at, o=output: abs(at[o] - at["target"]) ** 2).gradient(
             values, speed=speed, target=1.0 + 2.0j

@@ -25,7 +25,7 @@ from compoundkin.model.pairs import KINDS
 from compoundkin.programs.backends import runner_of
 from compoundkin.programs.calls.seed_values import seed_values
 from compoundkin.programs.graph.flat_program import BY_BOTH, FlatProgram, flat_program
-from compoundkin.programs.recording.input_kinds import DRIVE, SEED
+from compoundkin.programs.graph.input_kinds import DRIVE, SEED
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, recorded
 from compoundkin.programs.recording.recorded_outputs import output_of, recorded_outputs

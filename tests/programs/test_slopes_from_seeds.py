@@ -29,7 +29,9 @@ def test_slopes_are_those_of_solve(name: str, point: str, free: tuple[str, ...])
     found, step = path.derivatives(values, speed=2.0), 1e-4 * own.geometry.size
     for dimension in free:
         # four points about each: the error is of the fourth order of a small step
-        places = float(path.stated.own(path.stated.known[dimension])) + step * np.array([[-2.0], [-1.0], [1.0], [2.0]])
+        places = float(path.programs.stated.own(path.programs.stated.known[dimension])) + step * np.array(
+            [[-2.0], [-1.0], [1.0], [2.0]]
+        )
         moved = path(values, {dimension: places}, speed=2.0)
         solved = ck.solve(path.mechanism({dimension: places}), values, speed=2.0)
         for output in outputs:

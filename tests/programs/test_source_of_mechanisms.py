@@ -12,7 +12,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.series import Number
 from compoundkin.programs.calls.seed_values import seed_values
-from compoundkin.programs.compiled_path import CompiledPath, compile
+from compoundkin.programs.compilation import compile
+from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.recording.recorded_outputs import output_of
 from compoundkin.programs.sources import LANGUAGES
 from compoundkin.programs.sources.contract import WrittenProgram
@@ -81,7 +82,7 @@ def case(name: str) -> Case:
                 continue
             state = seed_values([one], found)[one][0]
             rows.append(at(np.append(state[0], state[:-1])))  # of the pose before
-    wanted = [one for output in path.outputs for one in ck.quantity(found, output.name).components]
+    wanted = [one for output in path.programs.outputs for one in ck.quantity(found, output.name).components]
     pace = max(np.max(np.abs(drive.rate)) / found.solving_order.unit(name) for name, drive in found.drives.items())
     sizes = [pace**one.order * (found.size if one.dimension == "length" else 1.0) for one in wanted]
     return Case(program, np.array(rows), at(found.assembled), [at(one.values) for one in wanted], sizes)
@@ -131,7 +132,7 @@ def test_a_text_marches_with_its_own_states(name: str) -> None:
     exec(LANGUAGES["python"].text(program), names)
     (driver,) = found.drives.values()
     state: dict[str, float] = {}
-    wanted = [one for output in path.outputs for one in ck.quantity(found, output.name).components]
+    wanted = [one for output in path.programs.outputs for one in ck.quantity(found, output.name).components]
     for pose in range(0, found.shape[-1] - 1):
         told = names["one"](float(driver.value[pose]), **state)
         state = {word: number for word, number in told.items() if word.startswith("state_")}

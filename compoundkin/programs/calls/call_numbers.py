@@ -19,9 +19,9 @@ from compoundkin.model.elements import Drive
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.moved_drives import moved_by_call
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, FlatProgram
+from compoundkin.programs.graph.input_kinds import DRIVE, SEED, STEP
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.graph.operations import INPUT
-from compoundkin.programs.recording.input_kinds import DRIVE, SEED, STEP
 
 
 @dataclass(frozen=True)

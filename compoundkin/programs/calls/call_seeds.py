@@ -14,10 +14,10 @@ from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
 from compoundkin.programs.calls.design_way import DesignWay, ramp
 from compoundkin.programs.calls.seed_values import seed_values
+from compoundkin.programs.graph.input_kinds import DRIVE, HOLDS, STEP, start_of
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.solved_designs import Solving, solved_parts
 from compoundkin.programs.recorded_path import RecordedPath
-from compoundkin.programs.recording.input_kinds import DRIVE, HOLDS, STEP, start_of
 from compoundkin.programs.recording.recorded_march import side_of
 
 # Without compiled code a march of fewer designs than these takes longer than solving them.

@@ -12,10 +12,10 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.groups.newton_steps import STRAY
 from compoundkin.programs.calls.call_numbers import CallNumbers
+from compoundkin.programs.graph.input_kinds import DIMENSION, DRIVE, STEP, start_of
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.ready_program import ReadyProgram
 from compoundkin.programs.recorded_path import RecordedPath
-from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE, STEP, start_of
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_march import side_of
 

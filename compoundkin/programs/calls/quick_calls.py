@@ -20,9 +20,9 @@ from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.likely_slips import COUNTED
 from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.calls.quick_plan import COMPLEX, FLOAT, QuickPlan
+from compoundkin.programs.graph.input_kinds import DRIVE
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.approach_look import comes_by
-from compoundkin.programs.recording.input_kinds import DRIVE
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms

@@ -11,8 +11,8 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.pairs.profile_contact import as_profiled
+from compoundkin.programs.graph.input_kinds import SIGN, TURNS, group_seed
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import SIGN, TURNS, group_seed
 
 
 def seed_values(wanted: Collection[InputNumber], motion: Motion) -> dict[InputNumber, Number]:

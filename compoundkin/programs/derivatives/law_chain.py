@@ -14,8 +14,8 @@ from compoundkin.model.laws.laws_of_designs import slopes_of
 from compoundkin.programs.calls.call_numbers import CallNumbers, DriverNumbers
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.moved_drives import moved_by_call
+from compoundkin.programs.graph.input_kinds import DRIVE, LAW_SLOPE
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import DRIVE, LAW_SLOPE
 
 
 def with_law_slopes(

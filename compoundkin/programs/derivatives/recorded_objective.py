@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, UnknownName, nearest
+from compoundkin.programs.graph.input_kinds import PARAMETER
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.recording.input_kinds import PARAMETER
 from compoundkin.programs.recording.numpy_answers import one_pose
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 

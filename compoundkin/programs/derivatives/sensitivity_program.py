@@ -18,11 +18,11 @@ from compoundkin.programs.derivatives.path_sensitivities import PathSensitivitie
 from compoundkin.programs.derivatives.tangents import forward
 from compoundkin.programs.derivatives.told_designs import told_designs
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.graph.input_kinds import DIMENSION, DRIVE
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.settled_values import settled_values
 from compoundkin.programs.ready_program import ReadyProgram
 from compoundkin.programs.recorded_path import RecordedPath
-from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE
 
 if TYPE_CHECKING:
     from compoundkin.programs.path_programs import PathPrograms

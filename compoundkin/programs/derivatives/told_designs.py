@@ -12,10 +12,10 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
 from compoundkin.programs.calls.seed_values import seed_values
+from compoundkin.programs.graph.input_kinds import PARAMETER
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.solved_designs import solved_parts
 from compoundkin.programs.recorded_path import RecordedPath
-from compoundkin.programs.recording.input_kinds import PARAMETER
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.series import Number
+from compoundkin.programs.graph.input_kinds import DIMENSION
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import DIMENSION
 
 AXES = ("x", "y")
 # The word of a law's numbers.

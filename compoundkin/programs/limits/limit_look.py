@@ -20,10 +20,10 @@ from compoundkin.kinematics.approach import SPACING
 from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
+from compoundkin.programs.graph.input_kinds import DIMENSION, DRIVE, HOLDS
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.approach_look import DrawnApproach
 from compoundkin.programs.ready_program import ReadyProgram
-from compoundkin.programs.recording.input_kinds import DIMENSION, DRIVE, HOLDS
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, recorded
 

@@ -18,7 +18,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import first_configuration, solved, solving_order_of
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
-from compoundkin.programs.recording.input_kinds import DRIVE
+from compoundkin.programs.graph.input_kinds import DRIVE
 
 # Solves the designs of some numbers.
 Solving: TypeAlias = Callable[[CallNumbers], Told]

@@ -15,8 +15,8 @@ from compoundkin.model.fields import Key
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.profile_contact import as_profiled
 from compoundkin.model.profiles import Profile
+from compoundkin.programs.graph.input_kinds import SEED
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.recording.input_kinds import SEED
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
 # A profile is expanded by so many orders more than the motion: one for its tangent, one for what changes with

@@ -12,8 +12,8 @@ from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import run
 from compoundkin.programs.graph.flat_program import Carried
+from compoundkin.programs.graph.input_kinds import DRIVE, SEED, SIDE, STEP, group_seed, start_of
 from compoundkin.programs.graph.operation_graph import InputNumber
-from compoundkin.programs.recording.input_kinds import DRIVE, SEED, SIDE, STEP, group_seed, start_of
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.programs.recording.seeded_order import SeededChoice

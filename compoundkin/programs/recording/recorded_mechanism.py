@@ -13,8 +13,8 @@ from compoundkin.kinematics.solving_order import SolvingOrder, run
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.graph.input_kinds import DRIVE
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.recording.input_kinds import DRIVE
 from compoundkin.programs.recording.recorded_block import RecordedBlock
 from compoundkin.programs.recording.recorded_dimensions import recorded_ends, recorded_geometry
 from compoundkin.programs.recording.recorded_number import RecordedNumber

@@ -11,8 +11,8 @@ from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
+from compoundkin.programs.graph.input_kinds import SEED, SIGN, TURNS, group_seed
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.recording.input_kinds import SEED, SIGN, TURNS, group_seed
 from compoundkin.programs.recording.local_profile import with_local_profile
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.structure.kinematic_structure import Structure

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.model.attributes import ANGLE
+from compoundkin.programs.graph.input_kinds import SEED, TURNS, group_seed
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
-from compoundkin.programs.recording.input_kinds import SEED, TURNS, group_seed
 from compoundkin.programs.recording.recorded_march import side_of, state_seeds
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_number import RecordedNumber

@@ -13,9 +13,9 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import OF_POINTS, RATES, coordinate_dimension, unit_of
 from compoundkin.programs.calls.seed_values import seed_values
+from compoundkin.programs.graph.input_kinds import DRIVE, SIDE
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.recorded_path import PathVariants, RecordedPath
-from compoundkin.programs.recording.input_kinds import DRIVE, SIDE
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism
 from compoundkin.programs.recording.recorded_motion import RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, cast
+from typing import ClassVar
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import Problem, UnknownName, nearest
@@ -17,6 +17,7 @@ class WritesSources:
     """A path of a mechanism that writes itself in other languages."""
 
     saved_as: ClassVar[Kind] = "program"
+    programs: PathVariants
 
     @checked
     def source(self, language: str, name: str = "") -> str:
@@ -27,7 +28,7 @@ class WritesSources:
 
         >>> from compoundkin.model.elements import drive, link
         >>> from compoundkin.model.mechanism import Mechanism
-        >>> from compoundkin.programs.compiled_path import compile
+        >>> from compoundkin.programs.compilation import compile
         >>> crank = Mechanism("A crank", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
         >>> "out->B_position_x = B_x;" in compile(crank, "B.position").source("c")
         True
@@ -38,7 +39,7 @@ class WritesSources:
 
     def written(self, name: str = "") -> WrittenProgram:
         """Return what all languages write."""
-        return written_program(cast(PathVariants, self), name)
+        return written_program(self.programs, name)
 
     def content(self, form: str) -> bytes:
         """Return the file of a function in a language, for `save`."""
