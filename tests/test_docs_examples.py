@@ -54,7 +54,8 @@ def test_the_page_on_compiled_programs_is_true(tmp_path: Path) -> None:
     motion = ck.solve(names["six_bar"], turn, speed=10, modes=names["path"].modes)
     assert np.allclose(names["places"], motion.points["G"].position, rtol=1e-12, atol=0)
     for name, slope in zip(names["found"].by, names["slopes"], strict=True):
-        own = float(names["path"].stated.own(names["path"].stated.known[name]))
+        stated = names["path"].programs.stated
+        own = float(stated.own(stated.known[name]))
         near = [ck.compile(names["six_bar"], "bar.angle", free=name).mechanism({name: own + h}) for h in (1e-4, -1e-4)]
         angles = [ck.solve(one, turn[at], modes=names["path"].modes).links["bar"].angle for one in near]
         assert float(angles[0] - angles[1]) / 2e-4 == pytest.approx(float(slope[at]), rel=1e-7)
