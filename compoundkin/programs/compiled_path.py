@@ -155,7 +155,7 @@ class CompiledPath(WritesSources):
         >>> found["B", "crank.B.x"].real.tolist(), found["B", "crank"].imag.tolist()
         ([1.0], [2.0])
         """
-        numbers = self.programs.sloped_numbers(values, dimensions, speed, acceleration, jerk, time)
+        numbers = self.programs.numbers(values, dimensions, speed, acceleration, jerk, time, is_sloped=True)
         return self.sensitivities.found(numbers, by, threads)
 
     @cached_property

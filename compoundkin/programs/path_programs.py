@@ -144,32 +144,20 @@ class PathPrograms(PrintsShort):
         acceleration: Any,
         jerk: Any,
         time: Any = None,
+        is_sloped: bool = False,
     ) -> CallNumbers:
-        """Return the numbers of a call; raises InvalidInput for what does not fit."""
+        """Return the numbers of a call, perhaps with the slopes of laws.
+
+        Raises InvalidInput for what does not fit.
+        """
         found = dimension_values(self.stated, self.dimensions, dimensions)
         motion = DriverNumbers(values, speed, acceleration, jerk, time, self.order)
         order = self.reference.solving_order
         if self.law_numbers:
             hold_laws(self.law_numbers, dimensions, motion.times(order))
         numbers = call_numbers(order, motion, found)
-        return self.seeds.added(self.variant(numbers.still), numbers)
-
-    def sloped_numbers(
-        self,
-        values: Any,
-        dimensions: Mapping[str, Any] | None,
-        speed: Any,
-        acceleration: Any,
-        jerk: Any,
-        time: Any = None,
-    ) -> CallNumbers:
-        """Return the numbers of a call with the slopes of laws."""
-        numbers = self.numbers(values, dimensions, speed, acceleration, jerk, time)
-        if not self.law_numbers:
-            return numbers
-        found = dimension_values(self.stated, self.dimensions, dimensions)
-        motion = DriverNumbers(values, speed, acceleration, jerk, time, self.order)
-        return with_law_slopes(numbers, self.reference.solving_order, motion, found)
+        numbers = self.seeds.added(self.variant(numbers.still), numbers)
+        return with_law_slopes(numbers, order, motion, found) if is_sloped and self.law_numbers else numbers
 
     def outputs_of(self, numbers: CallNumbers) -> dict[str, bool]:
         """Return the names of its outputs, and which are vectors."""

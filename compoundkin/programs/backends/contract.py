@@ -24,7 +24,5 @@ class Runner(Protocol):
 class BackEnd(Protocol):
     """A way to compute flat programs."""
 
-    name: str
-
     def runner(self, program: FlatProgram) -> Runner:
         """Make a program ready to run."""

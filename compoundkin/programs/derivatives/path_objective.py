@@ -91,7 +91,7 @@ class PathObjective(PrintsShort):
         >>> float(value), complex(slope["crank.B"])
         (2.0, (4+0j))
         """
-        numbers = self.path.sloped_numbers(values, dimensions, speed, acceleration, jerk, time)
+        numbers = self.path.numbers(values, dimensions, speed, acceleration, jerk, time, is_sloped=True)
         return self._found(numbers, given, True, threads)
 
     def _found(

@@ -126,8 +126,6 @@ def _by_segments(code: PlannedCode, objects: int, shape: tuple[int, int], segmen
 class Llvm:
     """The back end that compiles."""
 
-    name = "llvm"
-
     def runner(self, program: FlatProgram) -> LlvmRunner:
         """Make a program ready to run."""
         return LlvmRunner(program)

@@ -112,8 +112,6 @@ class TapeRunner:
 class Tape:
     """The back end that needs nothing but NumPy."""
 
-    name = "numpy"
-
     def runner(self, program: FlatProgram) -> TapeRunner:
         """Make a program ready to run."""
         return TapeRunner(program)
