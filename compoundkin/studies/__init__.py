@@ -1,0 +1,1 @@
+"""Studies of many designs: what dimensions do to figures, tolerances, better dimensions."""
