@@ -1,0 +1,135 @@
+"""What a search of better dimensions is asked: goals, whose values shall be least, and constraints, which hold."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.kinematics.motion import Motion
+from compoundkin.studies.goals.design_trial import DesignTrial
+
+
+@dataclass(frozen=True)
+class GoalUnknown:
+    """A number that a goal finds beside the dimensions.
+
+    Such is a driver's value at a point without timing. The search begins between `low` and `high`, and stays there where it is bounded; angles are radians.
+    """
+
+    name: str
+    low: float
+    high: float
+    is_bounded: bool = True
+
+
+class Term(ABC):
+    """What goals and constraints have in common: numbers of each design, their slopes."""
+
+    @property
+    @abstractmethod
+    def told(self) -> str:
+        """What it asks, in a few words: "G.position through 10 points"."""
+
+    @property
+    def unit(self) -> str:
+        """The unit of its numbers, radians for angles."""
+        return ""
+
+    @property
+    def has_own_poses(self) -> bool:
+        """Whether it asks at driver values of its own.
+
+        It does so by `DesignTrial.at`, and not along the motion.
+        """
+        return False
+
+    @abstractmethod
+    def outputs(self, motion: Motion) -> tuple[str, ...]:
+        """Return the names of all that it asks of a trial.
+
+        `motion` is that of the mechanism as it stands. Raises InvalidInput for what does not fit, such as a target of
+        another number of poses.
+        """
+
+    def unknowns(self, motion: Motion) -> tuple[GoalUnknown, ...]:
+        """Return what it finds beside the dimensions."""
+        return ()
+
+    def guesses(self, trial: DesignTrial) -> Number:
+        """Return good unknowns of each design, where a search begins.
+
+        They are (designs, unknowns), from those of the sample, `trial.unknowns`.
+        """
+        return trial.unknowns
+
+    def has_slopes(self, trial: DesignTrial) -> bool:
+        """Tell whether its slopes are known."""
+        return all(response.has_slopes for response in trial.responses.values())
+
+    @abstractmethod
+    def slopes(self, trial: DesignTrial) -> Number:
+        """Return the slopes of its numbers, (designs, numbers, coordinates and then unknowns).
+
+        Coordinates are the free numbers, in the order of `trial.coordinates`.
+        """
+
+
+class Goal(Term):
+    """What shall be least.
+
+    It is the sum of its residuals, or where `is_squares` of their squares.
+    """
+
+    @property
+    def is_squares(self) -> bool:
+        """Whether the sum of squares is meant."""
+        return True
+
+    @abstractmethod
+    def residuals(self, trial: DesignTrial) -> Number:
+        """Return what is summed, (designs, residuals); NaN where a design is not assembled."""
+
+    @property
+    def parts(self) -> tuple[tuple[float, Goal], ...]:
+        """Weights and goals of a sum: itself."""
+        return ((1.0, self),)
+
+    def __add__(self, other: Goal | GoalSum) -> GoalSum:
+        return GoalSum(self.parts) + other
+
+    def __mul__(self, weight: float) -> GoalSum:
+        return GoalSum(self.parts) * weight
+
+    __rmul__ = __mul__
+
+
+@dataclass(frozen=True)
+class GoalSum:
+    """Several goals at once, by their weights."""
+
+    parts: tuple[tuple[float, Goal], ...]
+
+    def __add__(self, other: Goal | GoalSum) -> GoalSum:
+        return GoalSum((*self.parts, *other.parts))
+
+    def __mul__(self, weight: float) -> GoalSum:
+        if not (isinstance(weight, int | float) and np.isfinite(weight) and weight > 0):
+            raise InvalidInput(Problem("weight", f"{weight!r} is no positive number", "2 * goal"))
+        return GoalSum(tuple((weight * own, goal) for own, goal in self.parts))
+
+    __rmul__ = __mul__
+
+
+class DesignConstraint(Term):
+    """What shall hold: all its margins are at least 0."""
+
+    @abstractmethod
+    def margins(self, trial: DesignTrial) -> Number:
+        """Return how far it holds, (designs, margins), in its unit.
+
+        NaN where a design is not assembled.
+        """

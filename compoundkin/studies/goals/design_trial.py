@@ -1,0 +1,86 @@
+"""Designs on trial: what goals and constraints ask of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.studies.responses.contract import Response
+from compoundkin.studies.responses.designs import Designs
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DesignTrial(PrintsShort):
+    """Some designs along the motion, and the unknowns of the goal that asks.
+
+    Those are (designs, unknowns). What is computed is computed once, however often it is asked for.
+    """
+
+    designs: Designs
+    responses: Mapping[str, Response]
+    unknowns: Number
+    _elsewhere: dict[tuple[bytes, ...], DesignTrial] = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def number(self) -> int:
+        """How many designs there are."""
+        return self.designs.number
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The free numbers, by which slopes are."""
+        return self.designs.path.coordinates
+
+    @property
+    def drivers(self) -> tuple[str, ...]:
+        """The names of the drivers."""
+        return tuple(self.designs.inputs.drives)
+
+    def values(self, name: str) -> Number:
+        """Return what has a name.
+
+        It is (designs,) of a figure, (designs, poses) of a course; NaN where not assembled.
+        """
+        return self.responses[name].values(self.designs)
+
+    def slopes(self, name: str) -> Number:
+        """Return its slopes by the coordinates, the last axis."""
+        return np.moveaxis(self.responses[name].slopes(self.designs), 0, -1)
+
+    def driver_slopes(self, name: str, driver: str) -> Number:
+        """Return the slopes of a course by a driver's value, (designs, poses)."""
+        return np.asarray(self.designs.slopes[name, driver])
+
+    def at(self, driver: str, values: Number) -> DesignTrial:
+        """Return the same designs where one driver has other values, (poses,) or (designs, poses).
+
+        All other drivers stay where the motion begins; rates that vary along the motion are those of its first pose.
+        """
+        placed = np.atleast_2d(np.asarray(values, dtype=float))
+        key = (driver.encode(), placed.tobytes(), str(placed.shape).encode())
+        if key not in self._elsewhere:
+            inputs = self.designs.inputs
+            first = {name: tuple(_first(one) for one in rates) for name, rates in inputs.drives.items()}
+            drives = {**first, driver: (placed, *first[driver][1:])}
+            elsewhere = inputs.of_poses(placed.shape[-1]).driven(drives)
+            self._elsewhere[key] = replace(self, designs=self.designs.at(elsewhere))
+        return self._elsewhere[key]
+
+
+def _first(rate: Number) -> Number:
+    return rate[..., :1] if np.ndim(rate) else rate
+
+
+def real_parts(vectors: Number) -> Number:
+    """Return complex residuals as real ones, along the second axis.
+
+    They are x of all, then y of all.
+
+    >>> real_parts(np.array([[1 + 2j, 3 + 4j]])).tolist()
+    [[1.0, 3.0, 2.0, 4.0]]
+    """
+    return np.concatenate([vectors.real, vectors.imag], axis=1) if np.iscomplexobj(vectors) else vectors
