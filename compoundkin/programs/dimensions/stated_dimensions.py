@@ -60,7 +60,9 @@ class StatedDimensions(PrintsShort):
         return self._stated(one.owner)[one.number]
 
     def unit(self, one: FreeDimension) -> str:
-        """Return the unit of a dimension, nothing for a ratio."""
+        """Return the unit of a dimension. Ratios and numbers of laws have none."""
+        if one.is_of_law:
+            return ""
         keys = () if one.is_of_link else self.items[one.owner].keys
         kind = next((key.kind for key in keys if key.name == one.word), "length")
         dimension = _DIMENSIONS.get(kind)
