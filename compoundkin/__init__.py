@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from compoundkin.programs.compilation import compile
     from compoundkin.structure import decompose
     from compoundkin.structure.redundancy import mobility_analysis
+    from compoundkin.studies.tolerances.tolerance import tolerance
     from compoundkin.synthesis.alternatives import alternatives
     from compoundkin.synthesis.inversion import with_driver, with_frame
     from compoundkin.view.animation import animate
@@ -113,6 +114,7 @@ __all__ = [
     "slot",
     "solve",
     "spring",
+    "tolerance",
     "torque",
     "verify",
     "with_driver",
@@ -147,6 +149,7 @@ _LATE = {
     "save": "files",
     "simulate": "dynamics.simulation.forward_dynamics",
     "solve": "kinematics",
+    "tolerance": "studies.tolerances.tolerance",
     "verify": "analysis.checks",
     "with_driver": "synthesis.inversion",
     "with_frame": "synthesis.inversion",

@@ -47,6 +47,8 @@ from compoundkin.programs.jax_path import JaxPath
 from compoundkin.programs.path_values import PathValues
 from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis
+from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
+from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.animation import Animation
 from compoundkin.view.page import Page
 from compoundkin.view.plot import Plot
@@ -82,6 +84,7 @@ __all__ = [
     "MobilityAnalysis",
     "Motion",
     "ObjectivePose",
+    "OutputTolerance",
     "Page",
     "PairForce",
     "PairFriction",
@@ -104,6 +107,7 @@ __all__ = [
     "SingularPose",
     "Structure",
     "Table",
+    "ToleranceAnalysis",
     "Undetermined",
     "Wedged",
     "Workspace",
