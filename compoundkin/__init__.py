@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import compoundkin.dynamics
 import compoundkin.view  # noqa: F401  (says how objects show themselves)
+from compoundkin.base.moved_names import MOVED as _MOVED
 from compoundkin.base.version import VERSION
 from compoundkin.model.elements import drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
     from compoundkin.structure import decompose
     from compoundkin.structure.redundancy import mobility_analysis
     from compoundkin.studies.tolerances.tolerance import tolerance
+    from compoundkin.studies.variations.around import around
     from compoundkin.synthesis.alternatives import alternatives
     from compoundkin.synthesis.inversion import with_driver, with_frame
     from compoundkin.view.animation import animate
@@ -70,6 +72,7 @@ __all__ = [
     "alternatives",
     "animate",
     "arc",
+    "around",
     "belt",
     "cam",
     "characteristics",
@@ -130,6 +133,7 @@ globals().pop("configurations", None)
 _LATE = {
     "alternatives": "synthesis.alternatives",
     "animate": "view.animation",
+    "around": "studies.variations.around",
     "characteristics": "analysis.characteristics.characteristics_of_motion",
     "circuits": "configurations.circuit_search",
     "compile": "programs.compilation",
@@ -160,47 +164,6 @@ _MODULES = (
     *("advantage", "cams", "catalog", "chains", "composing", "coupler", "dyads"),
     *("equations", "equivalents", "errors", "laws", "machine", "performance", "plots", "profiles", "results"),
 )
-
-# Names of version 0.1 and what is written for them now.
-_MOVED = {
-    "Animation": "compoundkin.results.Animation",
-    "CamAnalysis": "compoundkin.cams.CamAnalysis",
-    "Check": "compoundkin.results.Check",
-    "Composer": "compoundkin.composing.Composer",
-    "CompoundkinError": "compoundkin.errors.CompoundkinError",
-    "Finding": "compoundkin.results.Finding",
-    "Gap": "compoundkin.results.Gap",
-    "InvalidInput": "compoundkin.errors.InvalidInput",
-    "InvalidMechanism": "compoundkin.errors.InvalidMechanism",
-    "MobilityAnalysis": "compoundkin.results.MobilityAnalysis",
-    "Motion": "compoundkin.results.Motion",
-    "NotAssembled": "compoundkin.errors.NotAssembled",
-    "NotDetermined": "compoundkin.errors.NotDetermined",
-    "Page": "compoundkin.results.Page",
-    "Picture": "compoundkin.results.Picture",
-    "Structure": "compoundkin.results.Structure",
-    "UnassembledPoses": "compoundkin.errors.UnassembledPoses",
-    "UnknownName": "compoundkin.errors.UnknownName",
-    "cam_analysis": "compoundkin.cams.cam_analysis",
-    "constant_acceleration": "compoundkin.laws.constant_acceleration",
-    "constant_speed": "compoundkin.laws.constant_speed",
-    "disc": "compoundkin.profiles.disc",
-    "draw_structure": 'compoundkin.draw(mechanism, kind="groups")',
-    "dwell": "compoundkin.laws.dwell",
-    "equivalent_linkage": "compoundkin.equivalents.equivalent_linkage",
-    "fall": "compoundkin.laws.fall",
-    "formula": "compoundkin.profiles.formula",
-    "profile": "compoundkin.profiles.profile",
-    "program": "compoundkin.laws.program",
-    "random_mechanism": "compoundkin.composing.random_mechanism",
-    "rendered": "compoundkin.report(mechanism).text()",
-    "rise": "compoundkin.laws.rise",
-    "save_table": 'compoundkin.save(motion.table(), "motion.csv")',
-    "synthesise": "compoundkin.profiles.synthesise",
-    "time_table": "compoundkin.laws.time_table",
-    "to_pandas": "motion.to_pandas()",
-    "vector_polygon": 'compoundkin.draw(motion, kind="polygon")',
-}
 
 
 def __getattr__(name: str) -> Any:

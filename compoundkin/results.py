@@ -49,6 +49,7 @@ from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
+from compoundkin.studies.variations.around import AroundCentre
 from compoundkin.view.animation import Animation
 from compoundkin.view.page import Page
 from compoundkin.view.plot import Plot
@@ -57,6 +58,7 @@ from compoundkin.view.sketch import Picture
 
 __all__ = [
     "Animation",
+    "AroundCentre",
     "Centres",
     "Characteristics",
     "Check",

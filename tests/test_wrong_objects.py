@@ -80,6 +80,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "animate": {"what": motion, "design": 0, "paths": (), "vectors": (), "centres": False, "labels": True,
                     "seconds": 1.0, "fps": 10.0, "back": None, "size": None},
         "arc": {"link": "a", "on": "b", "at": "A", "centre_at": "B", "radius": 1.0, "name": "n"},
+        "around": {"centre": (1.0, 2.0), "within": 0.1, "sigmas": 3.0},
         "belt": {"first": "a", "second": "b", "radii": (1.0, 2.0), "name": "n", "carrier": "frame", "teeth": None,
                  "phase": None, "first_at": "A", "second_at": "B", "crossed": False},
         "cam": {"link": "a", "on": "b", "at": "A", "profile": ck.profiles.disc(1), "radius": 0.0, "inside": False},

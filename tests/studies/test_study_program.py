@@ -19,7 +19,7 @@ TURN = ck.deg(np.arange(0.0, 360.0, 10.0))
 def program() -> StudyProgram:
     names = ["G.position", "bar.angle.stroke", "plate.transmission_angle.least"]
     path, responses = studied_path(ck.catalog.load_named("six-bar"), list(RANGES), names, TURN, speed=3.0)
-    return StudyProgram(RANGES, sample_of("sobol", 10000, 1), path, responses)
+    return StudyProgram(RANGES, sample_of("sobol", 8192, 1), path, responses)
 
 
 def test_rows_are_the_same_in_any_chunk(program: StudyProgram) -> None:

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
+from compoundkin.base.argument_forms import is_whole
+from compoundkin.base.display import short
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.studies.variations.contract import Variation
+
+# Sobol's numbers have 30 bits, and strata of a Latin hypercube are told apart in doubles; a thousand million rows are
+# many terabytes.
+MOST_DESIGNS = 2**30
 
 
 class DesignSample(ABC):
@@ -18,6 +25,11 @@ class DesignSample(ABC):
 
     word: ClassVar[str]
     count: int
+
+    @classmethod
+    @abstractmethod
+    def of(cls, count: int | None, seed: int, variations: Mapping[str, Variation]) -> Self:
+        """Return the sample of so many designs; raises InvalidInput where that cannot be."""
 
     @abstractmethod
     def designs(self, variations: Mapping[str, Variation], rows: range) -> dict[str, Number]:
@@ -30,17 +42,52 @@ class DesignSample(ABC):
 
 
 class UnitSample(DesignSample):
-    """Designs made of numbers between 0 and 1."""
+    """Designs made of numbers between 0 and 1. Another `seed` makes others of the same kind."""
+
+    seed: int
 
     @abstractmethod
     def units(self, columns: int, rows: range) -> Number:
-        """Return numbers between 0 and 1, (rows, columns)."""
+        """Return numbers from 0, without 1, (rows, columns)."""
+
+    @classmethod
+    def of(cls, count: int | None, seed: int, variations: Mapping[str, Variation]) -> Self:
+        """Return the sample of so many designs; raises InvalidInput where that cannot be."""
+        made: Any = cls
+        found: Self = made(held_count(count), held_seed(seed))
+        return found
+
+    @property
+    def data(self) -> Mapping[str, Any]:
+        """Its word, count and seed."""
+        return {"sample": self.word, "count": self.count, "seed": self.seed}
 
     def designs(self, variations: Mapping[str, Variation], rows: range) -> dict[str, Number]:
         """Return the values of all dimensions in some rows."""
-        widths = [one.coordinates for one in variations.values()]
-        units, found, column = self.units(sum(widths), rows), {}, 0
-        for (name, one), width in zip(variations.items(), widths, strict=True):
-            found[name] = one.values(units[:, column : column + width])
-            column += width
+        units, found, column = self.units(columns_of(variations), rows), {}, 0
+        for name, one in variations.items():
+            found[name] = one.values(units[:, column : column + one.coordinates])
+            column += one.coordinates
         return found
+
+
+def columns_of(variations: Mapping[str, Variation]) -> int:
+    """Return how many numbers between 0 and 1 a design takes."""
+    return sum(one.coordinates for one in variations.values())
+
+
+def held_count(count: object) -> int:
+    """Return a number of designs; raises InvalidInput for what is none."""
+    if count is None:
+        raise InvalidInput(Problem("count", "it is not said how many designs", "count=2**16"))
+    if not is_whole(count) or not 1 <= int(str(count)) <= MOST_DESIGNS:
+        what = f"{short(count)} is no number of designs"
+        raise InvalidInput(Problem("count", what, f"1 to {MOST_DESIGNS}, as in count=2**16"))
+    return int(str(count))
+
+
+def held_seed(seed: object) -> int:
+    """Return a seed; raises InvalidInput for what is none."""
+    if not is_whole(seed) or int(str(seed)) < 0:
+        raise InvalidInput(Problem("seed", f"{short(seed)} is no seed", "a whole number from 0"))
+    return int(str(seed))

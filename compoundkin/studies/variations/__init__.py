@@ -2,12 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from compoundkin.base.display import short
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, nearest
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.studies.variations.around import AroundCentre
 from compoundkin.studies.variations.contract import Variation
+from compoundkin.studies.variations.distribution import Distribution
+from compoundkin.studies.variations.levels import Levels
 from compoundkin.studies.variations.value_range import ValueRange
+
+VARIATIONS: tuple[type[Variation], ...] = (ValueRange, Distribution, AroundCentre, Levels)
+_REMEDY = "give a range (40, 60), a distribution scipy.stats.norm(40, 0.1), compoundkin.around(40, 0.1), or a list"
+
+
+def variations_of(given: Mapping[str, Any]) -> dict[str, Variation]:
+    """Return what is given for some dimensions as variations.
+
+    Raises InvalidInput with all that is wrong, each with its place, as dimensions.crank.B.
+    """
+    found: dict[str, Variation] = {}
+    problems: list[Problem] = []
+    for name, one in given.items():
+        try:
+            found[name] = variation_of(f"dimensions.{name}", one)
+        except InvalidInput as error:
+            problems += error.problems
+    if not given:
+        problems.append(Problem("dimensions", "there is none", 'name some: {"crank.B.x": (40, 60)}'))
+    if problems:
+        raise InvalidInput(problems)
+    return found
 
 
 def variation_of(where: str, given: Any) -> Variation:
@@ -17,6 +44,46 @@ def variation_of(where: str, given: Any) -> Variation:
     """
     if isinstance(given, Variation):
         return given
-    if isinstance(given, tuple) and len(given) == 2:
-        return ValueRange(float(given[0]), float(given[1]))
-    raise InvalidInput(Problem(where, f"{short(given)} is nothing that a dimension can be", "give a range (40, 60)"))
+    for kind in VARIATIONS:
+        found = kind.given_as(where, given)
+        if found is not None:
+            return found
+    raise InvalidInput(Problem(where, f"{short(given)} is nothing that a dimension can be", _REMEDY))
+
+
+def variation_from(where: str, data: Mapping[str, Any]) -> Variation:
+    """Return what study files say of a dimension as a variation.
+
+    Raises InvalidInput. Angles are in radians here, as in `Variation.data`.
+    """
+    fitting = [kind for kind in VARIATIONS if kind.keys[0] in data]
+    if len(fitting) != 1:
+        what = f"{short(dict(data))} is nothing that a dimension can be"
+        keys = ", ".join(kind.keys[0] for kind in VARIATIONS)
+        raise InvalidInput(Problem(where, what, f"just one of these keys: {keys}"))
+    _hold_keys(where, fitting[0], data)
+    return fitting[0].read(where, data)
+
+
+def _hold_keys(where: str, kind: type[Variation], data: Mapping[str, Any]) -> None:
+    known, needed = (*kind.keys, *kind.optional), " and ".join(kind.keys)
+    problems = [Problem(where, f"it has no {key!r}", f"say {needed}") for key in kind.keys if key not in data]
+    problems += [
+        Problem(f"{where}.{key}", "there is no such key", nearest(key, known)) for key in data if key not in known
+    ]
+    if problems:
+        raise InvalidInput(problems)
+
+
+def hold_kinds(variations: Mapping[str, Variation], dimensions: Iterable[FreeDimension]) -> None:
+    """Raise InvalidInput for points instead of numbers, and the reverse."""
+    problems = []
+    for one in dimensions:
+        if one.is_vector and not variations[one.name].is_point:
+            remedy = "give points, as in ((x, y), (x, y)), or free one of its coordinates"
+            problems.append(Problem(f"dimensions.{one.name}", "it is a point, and numbers are given", remedy))
+        if not one.is_vector and variations[one.name].is_point:
+            remedy = "give numbers, as in (40, 60)"
+            problems.append(Problem(f"dimensions.{one.name}", "it is a number, and points are given", remedy))
+    if problems:
+        raise InvalidInput(problems)

@@ -1,0 +1,166 @@
+"""What dimensions may be: their values are those of scipy's distributions, and what is none is told."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import compoundkin as ck
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.studies.samples.random_rows import RandomSample
+from compoundkin.studies.variations import hold_kinds, variation_from, variation_of, variations_of
+
+UNITS = RandomSample(4096, 2).units(2, range(4096))
+GIVEN: Sequence[tuple[Any, Any]] = [
+    ((40, 60), stats.uniform(40, 20)),
+    (ck.around(40, 0.1), stats.uniform(39.9, 0.2)),
+    (ck.around(40, 0.1, sigmas=2), stats.norm(40, 0.05)),
+    (stats.norm(40, scale=0.1), stats.norm(40, 0.1)),
+    (stats.uniform(), stats.uniform()),
+    (stats.triang(0.3, loc=2, scale=3), stats.triang(0.3, 2, 3)),
+    (stats.beta(2, b=3, scale=4), stats.beta(2, 3, 0, 4)),
+    (stats.truncnorm(-3, 3), stats.truncnorm(-3, 3)),
+    (stats.weibull_min(1.5, 1, 2), stats.weibull_min(1.5, 1, 2)),
+]
+DISCRETE = (stats.randint(3, 9), stats.binom(10, 0.3), stats.poisson(2, loc=5))
+POINTS: Sequence[Any] = [((1, 2), (3, 5)), (1 + 2j, 3 + 5j), ck.around((1, 2), 0.1), ck.around(1 + 2j, 0.1, sigmas=3)]
+
+
+@pytest.mark.parametrize(("given", "expected"), GIVEN)
+def test_values_are_distributed_as_they_should(given: Any, expected: Any) -> None:
+    """By Kolmogorov and Smirnov's test, and quantile by quantile."""
+    one = variation_of("a", given)
+    values = one.values(UNITS[:, :1])
+    assert stats.kstest(values, expected.cdf).pvalue > 1e-3
+    assert np.abs(expected.cdf(values) - UNITS[:, 0]).max() < 1e-9
+    assert np.allclose(one.ends, expected.support())
+
+
+@pytest.mark.parametrize("given", DISCRETE)
+def test_discrete_values_are_as_often_as_they_should(given: Any) -> None:
+    one = variation_of("a", given)
+    values = one.values(UNITS[:, :1])
+    assert np.array_equal(values, given.ppf(UNITS[:, 0]))
+    assert np.array_equal(one.in_units(2.0).values(UNITS[:, :1]), 2.0 * values)
+
+
+@pytest.mark.parametrize("given", POINTS)
+def test_coordinates_of_points_vary_for_themselves(given: Any) -> None:
+    one = variation_of("a", given)
+    values = one.values(UNITS)
+    assert one.is_point
+    assert abs(np.corrcoef(values.real, values.imag)[0, 1]) < 0.07
+    x = np.stack([UNITS[:, 0], np.full(4096, 0.5)], axis=-1)
+    assert np.array_equal(one.values(x).real, values.real)
+    assert len(set(one.levels(3).tolist())) == len(one.levels(3)) == one.number_of_levels(3) == 9
+
+
+@pytest.mark.parametrize("given", [*(one for one, _ in GIVEN), *DISCRETE, *POINTS, [1, 2.5], [(1, 2), (3, 4)]])
+def test_what_files_say_is_read_back(given: Any) -> None:
+    one = variation_of("a", given)
+    again = variation_from("a", dict(one.data))
+    assert again == pickle.loads(pickle.dumps(one)) == one
+    assert hash(again) == hash(one)
+    units = UNITS[:, : one.coordinates]
+    assert np.array_equal(again.values(units), one.values(units))
+    in_degrees = one.in_units(180 / np.pi)
+    assert np.allclose(in_degrees.values(units), 180 / np.pi * one.values(units), rtol=1e-12)
+    low, high = one.ends
+    assert all(f(low) <= f(v) <= f(high) for v in one.values(units)[:20] for f in (np.real, np.imag))
+    assert in_degrees.in_units(np.pi / 180).data.keys() == one.data.keys()
+
+
+def test_values_at_0_and_1_are_finite() -> None:
+    for given in (stats.norm(40, 0.1), stats.poisson(3), ck.around(0, 1, sigmas=3)):
+        found = variation_of("a", given).values(np.array([[0.0], [1.0]]))
+        assert np.isfinite(found).all()
+        assert found[0] < found[1]
+
+
+def test_levels_are_even() -> None:
+    assert variation_of("a", (0, 10)).levels(3).tolist() == [0, 5, 10]
+    assert variation_of("a", (0, 10)).levels(1).tolist() == [5]
+    assert ck.around(0, 1).levels(2).tolist() == [-1, 1]
+    assert np.allclose(ck.around(0, 1, sigmas=1).levels(2), stats.norm.ppf([0.25, 0.75]))
+    assert variation_of("a", stats.randint(1, 4)).levels(3).tolist() == [1, 2, 3]
+    assert variation_of("a", [3, 1]).levels(9).tolist() == [3, 1]
+
+
+WRONG: Sequence[tuple[Any, str]] = [
+    ((60, 40), "the range 60.0 to 40.0 is reversed; (40.0, 60.0)"),
+    (((1, 5), (3, 2)), "the range [1.0, 5.0] to [3.0, 2.0] is reversed; ((1.0, 2.0), (3.0, 5.0))"),
+    ((40, 40), "is empty; leave out a dimension that stays as it is"),
+    (((1, 2), (1, 3)), "is empty"),
+    ((40, np.inf), "it is not finite"),
+    ((40, np.nan), "it is not finite"),
+    ((40, "x"), "a text is no number"),
+    ((40, (1, 2)), "one end is a number, the other a point"),
+    ((1, 2, 3), "(1, 2, 3) is no range: that has two ends"),
+    ((), "is no range"),
+    ([], "[] has no values"),
+    ([1, np.nan], "it is not finite"),
+    ([[1, 2, 3]], "are neither numbers nor points"),
+    (["x"], "a text is no number"),
+    (3.0, "3.0 is nothing that a dimension can be; give a range (40, 60)"),
+    ("x", "'x' is nothing that a dimension can be"),
+    (None, "None is nothing that a dimension can be"),
+    ({"low": 1}, "is nothing that a dimension can be"),
+    (stats.norm, "is no distribution with its numbers; write scipy.stats.norm(40, 0.1)"),
+    (stats.norm(40, -1), "these numbers do not make a distribution norm; the scale is above 0"),
+    (stats.norm([1, 2], 1), "is not one number"),
+    (stats.beta(-1, 2), "these numbers do not make a distribution beta"),
+    (stats.rv_histogram(([1, 2], [0, 1, 2]))(), "it is no distribution that scipy.stats has by a name"),
+]
+
+
+@pytest.mark.parametrize(("given", "told"), WRONG)
+def test_what_is_no_variation_is_told_with_its_place(given: Any, told: str) -> None:
+    with pytest.raises(ck.errors.InvalidInput) as error:
+        variations_of({"crank.B": given})
+    assert str(error.value).startswith("dimensions.crank.B")
+    assert told in str(error.value)
+
+
+def test_all_that_is_wrong_is_told_at_once() -> None:
+    with pytest.raises(ck.errors.InvalidInput) as error:
+        variations_of({"a": (2, 1), "b": (1, 2), "c": None})
+    assert [problem.where for problem in error.value.problems] == ["dimensions.a", "dimensions.c"]
+    with pytest.raises(ck.errors.InvalidInput, match="dimensions: there is none"):
+        variations_of({})
+
+
+@pytest.mark.parametrize(
+    ("data", "told"),
+    [
+        ({}, "just one of these keys: low, distribution, centre, values"),
+        ({"low": 1, "centre": 2}, "just one of these keys"),
+        ({"low": 1}, "a: it has no 'high'; say low and high"),
+        ({"low": 1, "high": 2, "sigmas": 3}, "a.sigmas: there is no such key; known: low, high"),
+        ({"distribution": "nrm"}, "did you mean 'norm'?"),
+        ({"distribution": 3}, "scipy.stats has no distribution 3"),
+        ({"distribution": "beta", "shape": [1]}, "a.shape: the distribution beta has 2 numbers of its shape, not 1"),
+        ({"distribution": "norm", "scale": 0}, "these numbers do not make a distribution norm"),
+        ({"centre": 1, "within": -1}, "a.within: -1 is no distance above 0"),
+        ({"centre": 1, "within": 1, "sigmas": 0}, "a.sigmas: 0 is no number above 0"),
+        ({"values": 3}, "are neither numbers nor points"),
+    ],
+)
+def test_what_files_say_wrong_is_told(data: dict[str, Any], told: str) -> None:
+    with pytest.raises(ck.errors.InvalidInput) as error:
+        variation_from("a", data)
+    assert told in str(error.value)
+
+
+def test_points_and_numbers_are_not_mixed_up() -> None:
+    dimensions = [FreeDimension("p.B", "p", "B", is_of_link=True), FreeDimension("p.C.x", "p", "C", "x", True)]
+    hold_kinds(variations_of({"p.B": ((1, 2), (3, 4)), "p.C.x": (1, 2)}), dimensions)
+    with pytest.raises(ck.errors.InvalidInput) as error:
+        hold_kinds(variations_of({"p.B": (1, 2), "p.C.x": [(1, 2)]}), dimensions)
+    first, second = map(str, error.value.problems)
+    assert first.startswith("dimensions.p.B: it is a point, and numbers are given; give points, as in ((x, y), (x, y))")
+    assert second.startswith("dimensions.p.C.x: it is a number, and points are given")
