@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from compoundkin.programs.compilation import compile
     from compoundkin.structure import decompose
     from compoundkin.structure.redundancy import mobility_analysis
+    from compoundkin.studies.study import study
     from compoundkin.studies.tolerances.tolerance import tolerance
     from compoundkin.studies.variations.around import around
     from compoundkin.synthesis.alternatives import alternatives
@@ -68,61 +69,13 @@ if TYPE_CHECKING:
 __version__ = VERSION
 
 __all__ = [
-    "Mechanism",
-    "alternatives",
-    "animate",
-    "arc",
-    "around",
-    "belt",
-    "cam",
-    "characteristics",
-    "circuits",
-    "compile",
-    "configurations",
-    "cylinder",
-    "damper",
-    "decompose",
-    "deg",
-    "draw",
-    "drawn",
-    "drive",
-    "effort",
-    "expect",
-    "face",
-    "force",
-    "force_analysis",
-    "friction",
-    "gaps",
-    "gear",
-    "gravity",
-    "instant_centres",
-    "link",
-    "load",
-    "loop_equations",
-    "mass",
-    "mobility_analysis",
-    "mode",
-    "page",
-    "plot",
-    "polar",
-    "pretension",
-    "quantity",
-    "rack",
-    "report",
-    "roll",
-    "roll_around",
-    "save",
-    "simulate",
-    "slide",
-    "slot",
-    "solve",
-    "spring",
-    "tolerance",
-    "torque",
-    "verify",
-    "with_driver",
-    "with_frame",
-]
+    "Mechanism", "alternatives", "animate", "arc", "around", "belt", "cam", "characteristics", "circuits",
+    "compile", "configurations", "cylinder", "damper", "decompose", "deg", "draw", "drawn", "drive", "effort",
+    "expect", "face", "force", "force_analysis", "friction", "gaps", "gear", "gravity", "instant_centres", "link",
+    "load", "loop_equations", "mass", "mobility_analysis", "mode", "page", "plot", "polar", "pretension",
+    "quantity", "rack", "report", "roll", "roll_around", "save", "simulate", "slide", "slot", "solve", "spring",
+    "study", "tolerance", "torque", "verify", "with_driver", "with_frame",
+]  # fmt: skip
 
 # A room has the name of a function: the room is loaded once and its name given back, so that `__getattr__` finds the
 # function. The room itself holds nothing, so that this costs nothing.
@@ -153,6 +106,7 @@ _LATE = {
     "save": "files",
     "simulate": "dynamics.simulation.forward_dynamics",
     "solve": "kinematics",
+    "study": "studies.study",
     "tolerance": "studies.tolerances.tolerance",
     "verify": "analysis.checks",
     "with_driver": "synthesis.inversion",

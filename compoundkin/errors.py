@@ -18,6 +18,7 @@ from compoundkin.base.errors import (
     NotAssembled,
     NotDetermined,
     Problem,
+    StudyStopped,
     UnassembledPoses,
     UnknownName,
     WedgedPoses,
@@ -25,6 +26,6 @@ from compoundkin.base.errors import (
 
 __all__ = [
     "ChangePointWarning", "CompoundkinError", "DrawnBeyondEnd", "FewDigits", "InvalidInput", "InvalidMechanism",
-    "LikelySlip", "NotAssembled", "NotDetermined", "Problem", "UnassembledPoses", "UnknownName",
-    "WedgedPoses",
+    "LikelySlip", "NotAssembled", "NotDetermined", "Problem", "StudyStopped", "UnassembledPoses",
+    "UnknownName", "WedgedPoses",
 ]  # fmt: skip

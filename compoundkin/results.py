@@ -47,6 +47,8 @@ from compoundkin.programs.jax_path import JaxPath
 from compoundkin.programs.path_values import PathValues
 from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis
+from compoundkin.studies.study import Study
+from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.studies.variations.around import AroundCentre
@@ -108,6 +110,8 @@ __all__ = [
     "SimulationEvent",
     "SingularPose",
     "Structure",
+    "Study",
+    "StudyResult",
     "Table",
     "ToleranceAnalysis",
     "Undetermined",

@@ -76,6 +76,13 @@ class NotAssembled(CompoundkinError):
     exit_code = 3
 
 
+class StudyStopped(CompoundkinError):
+    """A run of a study that came to no end.
+
+    Workers died, or a disk was full; what was written stays.
+    """
+
+
 class UnassembledPoses(UserWarning):
     """Some poses of a motion cannot be assembled; they are NaN, masked and explained."""
 

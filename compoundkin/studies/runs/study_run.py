@@ -1,0 +1,67 @@
+"""Runs: all rows of a study that are missing, computed in pieces and put where they are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError
+from pickle import PicklingError
+from typing import Any, TypeAlias
+
+from compoundkin.base.errors import CompoundkinError, Problem, StudyStopped
+from compoundkin.studies.runs.contract import RunStore
+from compoundkin.studies.runs.row_pieces import piece_size, pieces_of
+from compoundkin.studies.runs.side_by_side import answers
+from compoundkin.studies.runs.study_rows import StudyRows
+from compoundkin.studies.runs.workers import Workers, workers
+from compoundkin.studies.silence import silence
+
+Progress: TypeAlias = Callable[[int, int], Any]
+# What ends a run and is nobody's mistake in the program: workers that die, disks that are full, connections lost.
+_ENDS = (CompoundkinError, BrokenExecutor, CancelledError, OSError, PicklingError, MemoryError)
+# Errors of libraries that carry tasks to workers, by the library: none of them is imported here.
+_CARRIERS = {"distributed", "tornado"}
+
+
+def run(
+    store: RunStore,
+    on: Any = None,
+    chunk: int | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> StudyRows:
+    """Compute all rows that are missing and return all.
+
+    Raises InvalidInput for workers that are none, StudyStopped where it comes to no end.
+    """
+    with workers(on, threads) as computing, silence():
+        missing = list(store.missing())
+        count = len(store.plan)
+        done = count - sum(map(len, missing))
+        tell = progress or (lambda done, count: None)
+        tell(done, count)
+        size = piece_size(store.plan.program, computing.number(), chunk)
+        try:
+            for rows, answer in _answered(computing, store, pieces_of(missing, size)):
+                store.take(rows, answer)
+                done += len(rows)
+                tell(done, count)
+        except Exception as error:
+            if isinstance(error, _ENDS) or type(error).__module__.partition(".")[0] in _CARRIERS:
+                raise _stopped(store, error, done) from error
+            raise
+    return store.finished()
+
+
+def _answered(computing: Workers, store: RunStore, pieces: Iterable[range]) -> Iterator[tuple[range, Any]]:
+    task = store.task
+    if computing.executor is None:
+        return ((rows, task(rows)) for rows in pieces)
+    return answers(computing.executor, task, pieces, computing.room)
+
+
+def _stopped(store: RunStore, error: Exception, done: int) -> StudyStopped:
+    """Return what is told of a run that stops."""
+    what = str(error).strip() or type(error).__name__
+    if isinstance(error, BrokenExecutor):
+        what = f"a worker died: {what}"
+    return StudyStopped(Problem("", what, store.kept(done)))

@@ -1,0 +1,39 @@
+"""The task of a worker: rows of a study, whatever process it runs in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from threading import Lock
+from typing import Any
+
+from compoundkin.studies.silence import silence
+from compoundkin.studies.study_plan import StudyPlan
+from compoundkin.studies.study_program import StudyProgram
+
+# So many studies a worker keeps compiled.
+KEPT = 4
+_LOCK = Lock()
+
+
+@dataclass(frozen=True)
+class StudyTask:
+    """Computes rows of a study. It may be pickled; a worker compiles a study once."""
+
+    plan: StudyPlan
+
+    def __call__(self, rows: range) -> dict[str, Any]:
+        """Return some rows."""
+        with silence():
+            return kept_program(self.plan).rows(rows)
+
+
+def kept_program(plan: StudyPlan) -> StudyProgram:
+    """Return the program of a study, compiled once in each process."""
+    with _LOCK:
+        return _kept(plan).program
+
+
+@lru_cache(KEPT)
+def _kept(plan: StudyPlan) -> StudyPlan:
+    return plan

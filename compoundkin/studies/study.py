@@ -1,0 +1,88 @@
+"""`study`: what some dimensions do to what is asked of a mechanism, in thousands of designs or millions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.kinematics.configuration import Configuration
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.studies.runs.memory_store import MemoryStore
+from compoundkin.studies.runs.study_run import run
+from compoundkin.studies.samples import sample_of
+from compoundkin.studies.samples.contract import DesignSample
+from compoundkin.studies.silence import silence
+from compoundkin.studies.study_plan import StudyPlan
+from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.variations import variations_of
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Study(StudyPlan):
+    """A study that can be run: designs, and what is asked of each."""
+
+    @checked
+    def run(
+        self,
+        *,
+        on: Any = None,
+        chunk: int | None = None,
+        threads: int | None = None,
+        progress: Callable[[int, int], Any] | None = None,
+    ) -> StudyResult:
+        """Compute all rows and return them.
+
+        They are computed by `threads`, as many as there are cores, or `on` other workers: any executor of
+        `concurrent.futures`, or a Dask client. `chunk` is how many rows a worker computes at a time, in whole blocks.
+        `progress` is called with how many rows are there, and of how many. Numbers depend on none of these.
+        Raises InvalidInput for what cannot be meant, StudyStopped where workers die.
+        """
+        for name, value in {"chunk": chunk, "threads": threads}.items():
+            if value is not None and value < 1:
+                raise InvalidInput(Problem(name, f"{value} is too few", "at least 1"))
+        return StudyResult(self, run(MemoryStore(self), on, chunk, threads, progress))
+
+
+@checked
+def study(
+    mechanism: Mechanism,
+    dimensions: Mapping[str, Any],
+    outputs: str | Sequence[str] | Mapping[str, Callable[..., Any]],
+    *,
+    sample: str | Mapping[str, int] | DesignSample = "sobol",
+    count: int | None = None,
+    seed: int = 0,
+    values: Any = None,
+    speed: Any = None,
+    acceleration: Any = None,
+    jerk: Any = None,
+    time: Any = None,
+    modes: Mapping[str, int] | str | Configuration | None = None,
+    given: Mapping[str, Any] | None = None,
+) -> Study:
+    """Return a study of many designs of a mechanism, to be run.
+
+    `dimensions` are free dimensions by name and what each may be: a range (40, 60), a frozen distribution of
+    scipy.stats, levels, `around(centre, within)`. `outputs` are quantities and figures by name, `sample` says which
+    designs, `count` how many. Drivers move as in `solve`, in the same `modes`.
+    Raises InvalidInput and UnknownName for what cannot be computed, before anything is.
+
+    >>> import compoundkin as ck
+    >>> press = ck.catalog.load_named("crank-rocker")
+    >>> studied = ck.study(press, {"crank.B.x": (1.8, 2.2)}, ["rocker.angle.stroke"], count=64, seed=1)
+    >>> result = studied.run()
+    >>> len(result), bool(result.assembled.all())
+    (64, True)
+    """
+    asked = (outputs,) if isinstance(outputs, str) else outputs if isinstance(outputs, Mapping) else tuple(outputs)
+    if not asked:
+        raise InvalidInput(Problem("outputs", "there is none", 'name some: ["G.position", "bar.angle.stroke"]'))
+    free = variations_of(dimensions)
+    drive = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time}
+    made = Study(mechanism, free, asked, sample_of(sample, count, seed, free), **drive, modes=modes, given=given)
+    with silence():
+        made.hold()
+    return made
