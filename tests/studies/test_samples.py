@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 import compoundkin as ck
-from compoundkin.studies.samples import SAMPLES, sample_of
+from compoundkin.studies.samples import SAMPLES, sample_from, sample_of
 from compoundkin.studies.samples.latin_hypercube import LatinHypercubeSample
 from compoundkin.studies.samples.permutation import permuted
 from compoundkin.studies.samples.random_rows import RandomSample
@@ -35,8 +35,7 @@ def test_rows_alone_are_those_in_bulk(word: str) -> None:
         some = sample.designs(own, rows)
         for name, values in whole.items():
             assert some[name].tobytes() == values[rows.start : rows.stop].tobytes()
-    again = sample_of(**sample.data, variations=own)
-    assert again == sample
+    assert sample_of(**sample.data, variations=own) == sample == sample_from(sample.data)
 
 
 @pytest.mark.parametrize("kind", OF_UNITS)
@@ -50,6 +49,7 @@ def test_sobol_is_that_of_scipy() -> None:
     expected = stats.qmc.Sobol(5, scramble=True, seed=np.random.default_rng(9)).random(2**12)
     assert np.array_equal(SobolSample(2**12, 9).units(5, range(2**12)), expected)
     assert np.array_equal(SobolSample(2**20, 9).units(5, range(1000, 1100)), expected[1000:1100])
+    assert np.array_equal(SobolSample(1, 9).units(5, range(1)), expected[:1])
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 10, 97, 1024])
@@ -59,7 +59,7 @@ def test_each_stratum_of_a_latin_hypercube_has_one_design(count: int) -> None:
 
 
 def test_strata_of_a_thousand_million_designs_are_kept() -> None:
-    """The last strata, where rounding is greatest: the row from which a permutation comes is found by its inverse."""
+    """Rounding is greatest in the last ones."""
     count = 2**30
     rows = range(count - 2000, count)
     units = LatinHypercubeSample(count, 1).units(2, rows)

@@ -82,6 +82,12 @@ def test_values_at_0_and_1_are_finite() -> None:
         assert found[0] < found[1]
 
 
+def test_columns_of_tables_are_levels() -> None:
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame({"a": [1.0, 2.0], "b": [3, 4]})
+    assert variations_of(dict(frame)) == variations_of({"a": np.array([1.0, 2.0]), "b": [3, 4]})
+
+
 def test_levels_are_even() -> None:
     assert variation_of("a", (0, 10)).levels(3).tolist() == [0, 5, 10]
     assert variation_of("a", (0, 10)).levels(1).tolist() == [5]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import Any
 
 from compoundkin.base.display import short
 from compoundkin.base.errors import InvalidInput, Problem, nearest
@@ -33,13 +34,26 @@ def sample_of(
     Levels are numbers by dimensions: {"crank.B": 5}.
 
     Raises InvalidInput for what is none, UnknownName for levels of what is no dimension; warns LikelySlip of counts
-    that do not suit the sample. With what a sample's `data` say it is made again.
+    that do not suit the sample.
     """
     if isinstance(sample, DesignSample):
         return sample
     if isinstance(sample, Mapping):
         return GridSample.with_levels(sample, count, variations)
+    return _kind(sample).of(count, seed, variations)
+
+
+def sample_from(data: Mapping[str, Any]) -> DesignSample:
+    """Return the sample of what its `data` say; raises InvalidInput.
+
+    It was held against variations when it was made: nothing is warned of, and they are not needed.
+    """
+    sample = data.get("sample")
+    return (GridSample if isinstance(sample, Mapping) else _kind(sample)).read(data)
+
+
+def _kind(sample: object) -> type[DesignSample]:
     if not isinstance(sample, str) or sample not in SAMPLES:
         known = nearest(sample, list(SAMPLES)) if isinstance(sample, str) else f"known: {', '.join(SAMPLES)}"
         raise InvalidInput(Problem("sample", f"there is no sample {short(sample)}", known))
-    return SAMPLES[sample].of(count, seed, variations)
+    return SAMPLES[sample]

@@ -31,6 +31,11 @@ class DesignSample(ABC):
     def of(cls, count: int | None, seed: int, variations: Mapping[str, Variation]) -> Self:
         """Return the sample of so many designs; raises InvalidInput where that cannot be."""
 
+    @classmethod
+    @abstractmethod
+    def read(cls, data: Mapping[str, Any]) -> Self:
+        """Return the sample of what `data` say, without asking variations; raises InvalidInput."""
+
     @abstractmethod
     def designs(self, variations: Mapping[str, Variation], rows: range) -> dict[str, Number]:
         """Return the values of all dimensions in some rows: (rows,) each, complex for points."""
@@ -53,8 +58,13 @@ class UnitSample(DesignSample):
     @classmethod
     def of(cls, count: int | None, seed: int, variations: Mapping[str, Variation]) -> Self:
         """Return the sample of so many designs; raises InvalidInput where that cannot be."""
+        return cls.read({"count": count, "seed": seed})
+
+    @classmethod
+    def read(cls, data: Mapping[str, Any]) -> Self:
+        """Return the sample of a count and a seed; raises InvalidInput."""
         made: Any = cls
-        found: Self = made(held_count(count), held_seed(seed))
+        found: Self = made(held_count(data.get("count")), held_seed(data.get("seed", 0)))
         return found
 
     @property

@@ -17,6 +17,8 @@ from compoundkin.base.series import Number
 from compoundkin.studies.samples.contract import MOST_DESIGNS, DesignSample, held_count
 from compoundkin.studies.variations.contract import Variation
 
+_WHOLE = "a whole number from 1; values of one's own are lists as dimensions, with sample='grid' or 'table'"
+
 
 @dataclass(frozen=True)
 class GridSample(DesignSample):
@@ -58,7 +60,7 @@ class GridSample(DesignSample):
         # lists of values have their own levels
         levels = {name: given.get(name, 1 if one.is_listed else None) for name, one in variations.items()}
         problems = [
-            Problem(f"sample.{name}", "it is not said how many levels it has", "a whole number from 1")
+            Problem(f"sample.{name}", "it is not said how many levels it has", _WHOLE)
             for name, number in levels.items()
             if not is_whole(number) or not 1 <= number <= MOST_DESIGNS
         ]
@@ -70,6 +72,11 @@ class GridSample(DesignSample):
             remedy = f"leave the count out; a grid has up to {MOST_DESIGNS}"
             raise InvalidInput(Problem("count", f"the grid has {size} designs{told}", remedy))
         return cls(size, {name: int(number) for name, number in levels.items()})
+
+    @classmethod
+    def read(cls, data: Mapping[str, Any]) -> Self:
+        """Return the grid of a count and of levels that make it."""
+        return cls(held_count(data.get("count")), {name: held_count(one) for name, one in data["sample"].items()})
 
     def designs(self, variations: Mapping[str, Variation], rows: range) -> dict[str, Number]:
         """Return the levels of all dimensions in some rows."""

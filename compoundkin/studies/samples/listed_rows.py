@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.studies.samples.contract import DesignSample
+from compoundkin.studies.samples.contract import DesignSample, held_count
 from compoundkin.studies.variations.contract import Variation
 
 
@@ -39,6 +39,11 @@ class TableSample(DesignSample):
         if count not in (None, size):
             raise InvalidInput(Problem("count", f"the table has {size} rows, not {count}", "leave the count out"))
         return cls(size)
+
+    @classmethod
+    def read(cls, data: Mapping[str, Any]) -> Self:
+        """Return the table of so many rows."""
+        return cls(held_count(data.get("count")))
 
     def designs(self, variations: Mapping[str, Variation], rows: range) -> dict[str, Number]:
         """Return the values in some rows."""

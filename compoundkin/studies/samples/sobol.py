@@ -53,7 +53,7 @@ class SobolSample(UnitSample):
         """
         if not len(rows):
             return np.empty((0, columns))
-        first, directions = _directions(columns, self.seed, self.count.bit_length())
+        first, directions = _directions(columns, self.seed, max(self.count - 1, 1).bit_length())
         steps = np.empty((len(rows), columns), dtype=np.uint32)
         bits = _gray_bits(rows.start)
         steps[0] = np.bitwise_xor.reduce(directions[bits], axis=0, initial=0) ^ first

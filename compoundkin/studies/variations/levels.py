@@ -83,8 +83,9 @@ class Levels(PrintsShort, Variation):
 
     @classmethod
     def given_as(cls, where: str, given: Any) -> Self | None:
-        """Return a list or an array as levels."""
-        return cls.of(where, given) if isinstance(given, list | range | np.ndarray) else None
+        """Return a list, an array or a column of a table as levels."""
+        is_array = hasattr(given, "__array__") and np.ndim(given) > 0
+        return cls.of(where, given) if isinstance(given, list | range) or is_array else None
 
     @classmethod
     def of(cls, where: str, given: Any) -> Self:
