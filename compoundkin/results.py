@@ -50,6 +50,7 @@ from compoundkin.structure.redundancy import MobilityAnalysis
 from compoundkin.studies.study import Study
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
+from compoundkin.studies.tolerances.sampled_output import SampledOutput
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.studies.variations.around import AroundCentre
 from compoundkin.view.animation import Animation
@@ -104,6 +105,7 @@ __all__ = [
     "Powers",
     "Quantity",
     "Report",
+    "SampledOutput",
     "ShakingForce",
     "SimulatedEnergy",
     "Simulation",

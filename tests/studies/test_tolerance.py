@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import compoundkin as ck
+from compoundkin.studies.samples.random_rows import RandomSample
+from compoundkin.studies.tolerances.sampled_output import SampledOutput
 
 TURN = ck.deg(np.arange(0, 360, 15))
 STEP = 1e-4
@@ -76,7 +79,9 @@ def test_a_play_is_the_same_on_either_link() -> None:
     six_bar = ck.catalog.load_named("six-bar")
     for pin, links in {"D": ("crank", "plate"), "A": ("plate", "rocker"), "E": ("frame", "crank")}.items():
         one, other = (
-            ck.tolerance(six_bar, {}, "bar.angle", values=TURN, clearance={f"{link}.{pin}": 0.02})["bar.angle"]
+            ck.tolerance(six_bar, {}, "bar.angle", values=TURN, clearance={f"{link}.{pin}": 0.02}, count=800)[
+                "bar.angle"
+            ]
             for link in links
         )
         assert one.worst == pytest.approx(other.worst, rel=1e-9)
@@ -86,6 +91,90 @@ def test_a_play_is_the_same_on_either_link() -> None:
 def test_figures_have_tolerances_too() -> None:
     found = ck.tolerance(ck.catalog.load_named("slider-crank"), {"crank.A.x": 0.001}, "stroke.stroke")["stroke.stroke"]
     assert (found.is_course, found.nominal, found.worst) == (False, pytest.approx(0.24), pytest.approx(0.002))
+
+
+def test_random_designs_agree_with_the_slopes_where_tolerances_are_small() -> None:
+    six_bar = ck.catalog.load_named("six-bar")
+    names = ["G.position", "bar.angle", "G.velocity.length", "G.x.stroke"]
+    given = {"crank.D.x": 1e-3, "plate.C": (-2e-3, 0), "frame.B": ck.around(six_bar.links["frame"].points["B"], 1e-3)}
+    found = ck.tolerance(six_bar, given, names, values=TURN, speed=2.0, count=8000, seed=3, percentiles=(2, 50, 98))
+    for name, one in found.items():
+        sample = one.sample
+        # the means of many poses of one sample hang together, so that few of them are more than 4 errors off
+        assert np.max(np.abs(sample.mean - one.mean) / sample.mean_error) < 4.5, name
+        assert np.max(np.abs(sample.deviation - one.deviation) / sample.deviation_error) < 4.5, name
+        # several sources of about the same size make a distribution that is nearly normal
+        normal = one.mean + np.multiply.outer(stats.norm.ppf([0.02, 0.5, 0.98]), one.deviation)
+        assert np.max(np.abs(sample.percentiles - normal) / sample.percentile_errors) < 6, name
+        assert np.all((sample.values > one.low - one.worst) & (sample.values < one.high + one.worst)), name
+
+
+def test_random_designs_are_those_of_solve() -> None:
+    """Also where tolerances are not small; a play displaces one link's point by just its radius."""
+    six_bar = ck.catalog.load_named("six-bar")
+    given = {"plate.C.x": stats.norm(12, 0.5), "crank.D.x": 0.3}
+    asked = {"values": TURN, "speed": 2.0, "clearance": {"plate.C": 0.2}, "count": 40, "percentiles": [50]}
+    found = ck.tolerance(six_bar, given, ["bar.angle", "G.velocity.length"], **asked)
+    own, errors = six_bar.links["plate"].points["C"], {one.name: one for one in found.sources}
+    sample = RandomSample(40, 0).units(3, range(40))
+    x = stats.norm(12, 0.5).ppf(sample[:, 0])
+    play = 0.2 * np.exp(2j * np.pi * sample[:, 2])
+    assert errors["clearance plate.C"].errors(sample[:, 2:]) == pytest.approx(np.array([play.real, play.imag]))
+    for row in (0, 7, 39):
+        D = six_bar.links["crank"].points["D"] + 0.1 * stats.norm.ppf(sample[row, 1])
+        plate = {**six_bar.links["plate"].points, "C": x[row] + 1j * own.imag + play[row]}
+        crank = {**six_bar.links["crank"].points, "D": D}
+        motion = ck.solve(six_bar.replace(ck.link("plate", **plate), ck.link("crank", **crank)), TURN, speed=2.0)
+        for name, one in found.items():
+            assert one.sample.values[row] == pytest.approx(ck.quantity(motion, name).values, rel=1e-9), name
+
+
+def test_a_distribution_has_its_mean_deviation_and_ends() -> None:
+    crank = slider_crank(50.0, 120.0, 0.0)
+    for given, low, high, mean, deviation in (
+        (ck.around(50.1, 0.2), -0.1, 0.3, 0.1, 0.2 / np.sqrt(3)),
+        (stats.triang(0.25, 49.9, 0.4), -0.1, 0.3, 0.2 / 3, 0.4 * np.sqrt((1 + 0.25**2 - 0.25) / 18)),
+        (stats.norm(50.2, 0.1), -0.2, 0.6, 0.2, 0.1),
+    ):
+        one = ck.tolerance(crank, {"crank.A.x": given}, "B.x", values=0.0, sigmas=4, count=800)["B.x"]
+        expected = [[170 + low], [170 + high], [170 + mean], [deviation]]
+        assert np.array([one.low, one.high, one.mean, one.deviation]) == pytest.approx(np.array(expected), rel=1e-6)
+
+
+def test_standard_errors_are_those_of_many_samples() -> None:
+    samples = [SampledOutput(np.random.default_rng(k).gamma(2.0, size=2000), (1, 50, 99)) for k in range(300)]
+    for found, told in (
+        ([one.mean for one in samples], [one.mean_error for one in samples]),
+        ([one.deviation for one in samples], [one.deviation_error for one in samples]),
+        ([one.percentiles for one in samples], [one.percentile_errors for one in samples]),
+    ):
+        assert np.mean(told, axis=0) == pytest.approx(np.std(found, axis=0), rel=0.15)
+
+
+def test_designs_that_cannot_be_assembled_are_counted() -> None:
+    """Coupler and rocker must reach: the longest diagonal of crank and frame is 5."""
+    bar = ck.Mechanism(
+        "Rocker", ck.link("frame", A=0, D=4), ck.link("crank", A=0, B=1), ck.link("coupler", B=0, C=3),
+        ck.link("rocker", D=0, C=2.05), ck.drive("crank"), ck.mode(1, "rocker"),
+    )  # fmt: skip
+    with pytest.warns(ck.errors.UnassembledPoses, match="of 4096 random designs cannot be assembled") as told:
+        found = ck.tolerance(bar, {"crank.B.x": 0.06, "rocker.C.x": 0.06}, "rocker.angle", values=TURN)
+    assert len(told) == 1
+    # crank 1 +- 0.02, rocker 2.05 +- 0.02: the sum of the crank's error and the rocker's lack is beyond 0.05
+    expected = stats.norm.sf(0.05 / (0.02 * np.sqrt(2)))
+    assert found.unassembled / 4096 == pytest.approx(expected, abs=5 * np.sqrt(expected / 4096))
+    assert found["rocker.angle"].sample.count == 4096 - found.unassembled
+    told = pytest.raises(ck.errors.NotAssembled, match="values: 3 poses of the mechanism itself cannot be assembled")
+    with told, pytest.warns(ck.errors.UnassembledPoses):
+        ck.tolerance(bar.replace(ck.link("rocker", D=0, C=1.9)), {"crank.B.x": 0.06}, "rocker.angle", values=TURN)
+
+
+def test_angles_are_counted_by_the_nearest_turn() -> None:
+    press = slider_crank(50.0, 120.0, 0.0).replace(ck.link("rod", A=0, B=-120))
+    rod = ck.tolerance(press, {"guide.offset": 0.2}, "rod.angle", values=ck.deg([180.0]))
+    for one in rod.values():
+        assert abs(one.nominal) == pytest.approx(np.pi)
+        assert one.sample.deviation == pytest.approx(0.2 / 3 / 120, rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -104,6 +193,14 @@ def test_figures_have_tolerances_too() -> None:
         ({"clearance": {"block.C": 0.1}}, "clearance.block.C: another pair is at C on block.*'plate.C'"),
         ({"clearance": {"A": -1}}, "clearance.A: -1 is no clearance"),
         ({"sigmas": 0}, "sigmas: 0 is no number"),
+        ({"count": 700}, "count: 700 random designs are too few for percentile 0.135 or 99.865; count=741 or more"),
+        ({"percentiles": (0, 50)}, "percentiles: .* are no percentiles"),
+        ({"seed": -1}, "seed: -1 is no seed"),
+        (
+            {"tolerances": {"plate.C": stats.norm(12, 1)}},
+            "tolerances.plate.C: its values are numbers, and the dimension",
+        ),
+        ({"tolerances": {"plate.C.x": ck.around((1, 2), 1)}}, "tolerances.plate.C.x: its values are points"),
     ],
 )
 def test_what_is_wrong_is_told(given: dict[str, object], told: str) -> None:

@@ -26,6 +26,18 @@ class ErrorSource(ABC):
     def limits(self) -> tuple[float, float]:
         """Between which two errors each coordinate lies."""
 
+    @property
+    def columns(self) -> int:
+        """How many numbers between 0 and 1 a random design takes of it."""
+        return len(self.coordinates)
+
+    @abstractmethod
+    def errors(self, units: Number) -> Number:
+        """Return the errors at numbers between 0 and 1.
+
+        Those are (designs, columns); the errors (coordinates, designs).
+        """
+
     @abstractmethod
     def worst(self, slopes: Sequence[Number]) -> Number:
         """Return the greatest error of an output to either side of its `middle`."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.studies.tolerances.contract import ErrorSource
+from compoundkin.studies.variations.normal_quantiles import normal_quantiles
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,10 @@ class DimensionTolerance(ErrorSource):
     def limits(self) -> tuple[float, float]:
         """Its limits."""
         return self.low, self.high
+
+    def errors(self, units: Number) -> Number:
+        """Return normally distributed errors, perhaps beyond the limits."""
+        return (self.low + self.high) / 2 + self._half / self.sigmas * normal_quantiles(units).T
 
     def worst(self, slopes: Sequence[Number]) -> Number:
         """Return the sum over the coordinates of slope times half the width."""

@@ -11,15 +11,24 @@ from compoundkin.base.display import counted, short
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.studies.tolerances.given_errors import GivenError
+from compoundkin.studies.tolerances.pin_clearance import PinClearance
 
 
-def given_clearances(mechanism: Mechanism, clearances: Mapping[str, Any]) -> dict[str, tuple[str, float]]:
-    """Return the point and the radial clearance of each pin.
+def given_clearances(mechanism: Mechanism, clearances: Mapping[str, Any]) -> list[GivenError]:
+    """Return what clearances of pins are.
 
     They are named "C", or "plate.C" where the plate is loose on it. Raises UnknownName for what is no pin, InvalidInput
     where it is open which link is loose, and for no clearance.
     """
-    return {name: (loose_point(mechanism, name), _radius(name, given)) for name, given in clearances.items()}
+    return [_clearance(mechanism, name, given) for name, given in clearances.items()]
+
+
+def _clearance(mechanism: Mechanism, name: str, given: Any) -> GivenError:
+    radius = _radius(name, given)
+    return GivenError(
+        loose_point(mechanism, name), lambda numbers, own: PinClearance(f"clearance {name}", numbers, radius)
+    )
 
 
 def _radius(name: str, given: Any) -> float:

@@ -12,6 +12,7 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.model.attributes import Dimension
 from compoundkin.studies.tolerances.contract import ErrorSource
+from compoundkin.studies.tolerances.sampled_output import SampledOutput
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -20,7 +21,7 @@ class OutputTolerance(PrintsShort):
 
     Figures have numbers, courses arrays over the poses; angles are radians. `nominal` is its value at the mechanism's
     own dimensions, `slopes` are by the coordinates that have tolerances, in units of the output by those of the
-    dimension. All else is to first order.
+    dimension. All else is to first order, but `sample`, which is the output in random designs.
     """
 
     name: str
@@ -29,6 +30,7 @@ class OutputTolerance(PrintsShort):
     nominal: Number
     slopes: Mapping[str, Number]
     sources: tuple[ErrorSource, ...]
+    sample: SampledOutput
 
     @property
     def is_course(self) -> bool:

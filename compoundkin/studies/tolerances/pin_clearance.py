@@ -27,6 +27,16 @@ class PinClearance(ErrorSource):
         """The clearance to either side."""
         return -self.radius, self.radius
 
+    @property
+    def columns(self) -> int:
+        """The angle at which it lies."""
+        return 1
+
+    def errors(self, units: Number) -> Number:
+        """Return places on the circle, all as likely."""
+        angle = 2.0 * np.pi * units[:, 0]
+        return self.radius * np.array([np.cos(angle), np.sin(angle)])
+
     def worst(self, slopes: Sequence[Number]) -> Number:
         """Return the clearance times the steepest slope of all directions."""
         return np.hypot(*slopes) * self.radius

@@ -4,23 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
+from compoundkin.base.display import Shows, way
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.kinematics.motion import Motion
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.studies.tolerances.chances import Chances
 from compoundkin.studies.tolerances.contract import ErrorSource
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ToleranceAnalysis(Mapping[str, OutputTolerance]):
+class ToleranceAnalysis(Mapping[str, OutputTolerance], Shows):
     """Outputs by name, each with what tolerances do to it.
 
-    `sources` are what errors come from.
+    `motion` is that of the mechanism as it stands, `sources` are what errors come from. `unassembled` of the random
+    designs could not be assembled over the whole motion, and are left out.
     """
 
     motion: Motion
     sources: tuple[ErrorSource, ...]
     outputs: Mapping[str, OutputTolerance]
+    chances: Chances
+    unassembled: int
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism as it stands."""
+        return self.motion.mechanism
+
+    @property
+    def count(self) -> int:
+        """How many random designs were made."""
+        return self.chances.sample.count
+
+    @property
+    def percentiles(self) -> tuple[float, ...]:
+        """Which percentiles are told of them."""
+        return self.chances.percentiles
+
+    def plot(self, *names: str, **options: Any) -> Any:
+        """Plot outputs with their bands; see `plots.bands`."""
+        return way("study_plot")(self, *names, **options)
 
     def __getitem__(self, name: str) -> OutputTolerance:
         """Return an output by its name; raises UnknownName."""
@@ -35,5 +61,5 @@ class ToleranceAnalysis(Mapping[str, OutputTolerance]):
         return len(self.outputs)
 
     def __repr__(self) -> str:
-        title, sources = self.motion.mechanism.title, ", ".join(one.name for one in self.sources)
+        title, sources = self.mechanism.title, ", ".join(one.name for one in self.sources)
         return f"ToleranceAnalysis({title!r}: {', '.join(self.outputs)} by {sources})"

@@ -1,0 +1,113 @@
+"""Tolerances as they are given: which dimension each changes, and what source of errors it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.display import short
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
+from compoundkin.base.given_numbers import real_numbers
+from compoundkin.base.series import Number
+from compoundkin.programs.dimensions.free_dimension import AXES
+from compoundkin.studies.responses import StudiedPath
+from compoundkin.studies.tolerances.contract import ErrorSource
+from compoundkin.studies.tolerances.dimension_tolerance import DimensionTolerance
+from compoundkin.studies.tolerances.varied_dimension import VariedDimension
+from compoundkin.studies.variations import variation_of
+from compoundkin.studies.variations.contract import Variation
+
+# A source of errors of the numbers of these names, whose dimension has this value.
+MakeSource: TypeAlias = Callable[[tuple[str, ...], Number], ErrorSource]
+
+
+class GivenError(NamedTuple):
+    """What is given for a dimension.
+
+    It is a source of errors once the numbers of the dimension are known.
+    """
+
+    dimension: str
+    source: MakeSource
+
+
+def given_tolerances(tolerances: Mapping[str, Any], sigmas: float) -> list[GivenError]:
+    """Return what tolerances are.
+
+    They are 0.05 to either side, two deviations (-0.02, 0.05), or variations of the whole dimension. Raises
+    InvalidInput for what is none.
+    """
+    for name in tolerances:
+        point = _point(name)
+        if point in tolerances:
+            what = f"{point!r} has a tolerance, which is that of both coordinates"
+            raise InvalidInput(Problem(f"tolerances.{name}", what, f"give {point}.x and {point}.y, or {point} alone"))
+    return [GivenError(name, _tolerance(name, given, sigmas)) for name, given in tolerances.items()]
+
+
+def _tolerance(name: str, given: Any, sigmas: float) -> MakeSource:
+    where = f"tolerances.{name}"
+    if isinstance(given, Variation) or type(given).__module__.startswith("scipy."):
+        variation = variation_of(where, given)
+        return lambda numbers, own: VariedDimension.of(name, numbers, variation, own, sigmas)
+    low, high = _limits(where, given)
+    return lambda numbers, own: DimensionTolerance(name, numbers, low, high, sigmas)
+
+
+def _limits(where: str, given: Any) -> tuple[float, float]:
+    found = real_numbers(where, given)
+    if found.shape not in ((), (2,)) or not np.isfinite(found).all():
+        raise InvalidInput(Problem(where, f"{short(given)} is no tolerance", "give 0.05, or deviations (-0.02, 0.05)"))
+    low, high = (-found, found) if found.ndim == 0 else found
+    if low > high:
+        remedy = f"give {-float(found)}" if found.ndim == 0 else f"give ({high}, {low})"
+        raise InvalidInput(Problem(where, f"the tolerance {short(given)} is less than nothing", remedy))
+    return float(low), float(high)
+
+
+def freed(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the dimensions that must be free for some names.
+
+    A point that is among them has both coordinates.
+
+    >>> freed(["plate.C.x", "plate.C", "crank.B.x"])
+    ('plate.C', 'crank.B.x')
+    """
+    once = dict.fromkeys(names)
+    return tuple(name for name in once if _point(name) not in once)
+
+
+def _point(name: str) -> str:
+    point, _, axis = name.rpartition(".")
+    return point if axis in AXES else ""
+
+
+@contextmanager
+def told_of(argument: str) -> Iterator[None]:
+    """Tell what is wrong with dimensions by the argument that has them."""
+    try:
+        yield
+    except CompoundkinError as error:
+        told = (replace(one, where=one.where.replace("free.", f"{argument}.", 1)) for one in error.problems)
+        raise type(error)(told, error.heading) from None
+
+
+def error_sources(path: StudiedPath, given: Sequence[GivenError]) -> tuple[ErrorSource, ...]:
+    """Return the sources of errors of a path.
+
+    Raises InvalidInput where a dimension has several values.
+    """
+    stated, sources = path.compiled.programs.stated, []
+    for one in given:
+        dimension = stated.known[one.dimension]
+        own = stated.own(dimension)
+        if np.size(own) != 1:
+            what = f"it has {np.size(own)} values, and tolerances are of one design"
+            raise InvalidInput(Problem(f"tolerances.{one.dimension}", what, "give the mechanism one value"))
+        parts = tuple(f"{dimension.name}.{axis}" for axis in AXES) if dimension.is_vector else (dimension.name,)
+        sources.append(one.source(parts, np.reshape(own, ())))
+    return tuple(sources)

@@ -1,0 +1,77 @@
+"""Random designs within tolerances: what errors of all sources make of the dimensions, and the outputs of those."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.studies.design_states import ASSEMBLED, design_states
+from compoundkin.studies.responses import Designs, Response, StudiedPath
+from compoundkin.studies.samples.random_rows import RandomSample
+from compoundkin.studies.silence import silence
+from compoundkin.studies.study_program import MOST_POSES
+from compoundkin.studies.tolerances.contract import ErrorSource
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TolerancedDesigns(PrintsShort):
+    """The mechanism as it stands, and random designs within the tolerances."""
+
+    path: StudiedPath
+    sources: tuple[ErrorSource, ...]
+    sample: RandomSample
+
+    @cached_property
+    def own(self) -> dict[str, Number]:
+        """The dimensions without errors, (1,) each."""
+        stated = self.path.compiled.programs.stated
+        return {one.name: np.reshape(stated.own(one), 1) for one in self.path.compiled.programs.dimensions}
+
+    @cached_property
+    def nominal(self) -> Designs:
+        """The one design without errors."""
+        return self.path.designs(self.own)
+
+    def found(self, responses: Sequence[Response]) -> tuple[dict[str, Number], Number]:
+        """Return the values of responses by name, and which designs assemble."""
+        parts: dict[str, list[Number]] = {one.name: [] for one in responses}
+        assembled = []
+        for rows in self._blocks():
+            with silence():
+                designs = self.designs(rows)
+                assembled.append(design_states(designs)[ASSEMBLED])
+                for one in responses:
+                    shape = (designs.number, designs.poses)[: 1 + one.is_course]
+                    parts[one.name].append(np.broadcast_to(one.values(designs), shape))
+        return {name: np.concatenate(part) for name, part in parts.items()}, np.concatenate(assembled)
+
+    def _blocks(self) -> Iterator[range]:
+        """Yield the rows in blocks that stay in memory."""
+        block = max(1, MOST_POSES // max(1, self.path.reference.inputs.poses))
+        for start in range(0, self.sample.count, block):
+            yield range(start, min(start + block, self.sample.count))
+
+    def designs(self, rows: range) -> Designs:
+        """Return some of them."""
+        errors = self._errors(rows)
+        found = {}
+        for one in self.path.compiled.programs.dimensions:
+            parts = [errors[f"{one.name}.{given.part}" if one.is_vector else one.name] for given in one.inputs]
+            found[one.name] = self.own[one.name] + (parts[0] + 1j * parts[1] if one.is_vector else parts[0])
+        return self.path.designs(found)
+
+    def _errors(self, rows: range) -> dict[str, Number]:
+        """Return the errors of all coordinates, (designs,) each."""
+        units = self.sample.units(sum(source.columns for source in self.sources), rows)
+        found, column = {name: np.zeros(len(rows)) for name in self.path.coordinates}, 0
+        for source in self.sources:
+            errors = source.errors(units[:, column : column + source.columns])
+            for name, error in zip(source.coordinates, errors, strict=True):
+                found[name] = found[name] + error
+            column += source.columns
+        return found
