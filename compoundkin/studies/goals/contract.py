@@ -17,7 +17,8 @@ from compoundkin.studies.goals.design_trial import DesignTrial
 class GoalUnknown:
     """A number that a goal finds beside the dimensions.
 
-    Such is a driver's value at a point without timing. The search begins between `low` and `high`, and stays there where it is bounded; angles are radians.
+    Such is a driver's value at a point without timing. The search begins between `low` and `high`, and stays there
+    where it is bounded; angles are radians.
     """
 
     name: str

@@ -1,0 +1,71 @@
+"""A quantity or a figure that is to have a given value: a stroke, a time ratio, a force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.arguments import checked
+from compoundkin.base.display import short
+from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.series import Number
+from compoundkin.kinematics.motion import Motion
+from compoundkin.model.attributes import course_figure
+from compoundkin.studies.goals.contract import Goal
+from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
+
+
+@dataclass(frozen=True, eq=False)
+class TargetGoal(Goal):
+    """What a figure, or a quantity at each pose, is off."""
+
+    name: str
+    value: Number
+
+    @property
+    def told(self) -> str:
+        """What is to be how much."""
+        return f"{self.name} {self.value:g}" if not np.ndim(self.value) else f"{self.name} {len(self.value)} values"
+
+    @property
+    def _is_figure(self) -> bool:
+        return bool(course_figure(self.name)[1])
+
+    def outputs(self, motion: Motion) -> tuple[str, ...]:
+        """Return its name; raises InvalidInput where there are not as many values as poses."""
+        count = 1 if self._is_figure else motion.inputs.poses
+        if np.size(self.value) not in (1, count):
+            what = f"there are {np.size(self.value)} values, and {count} poses"
+            raise InvalidInput(Problem(f"target.{self.name}", what, "give one value, or one for each pose"))
+        return (self.name,)
+
+    def residuals(self, trial: DesignTrial) -> Number:
+        """Return what it is off."""
+        found = trial.values(self.name) - self.value
+        return found[:, None] if self._is_figure else real_parts(found)
+
+    def slopes(self, trial: DesignTrial) -> Number:
+        """Return the slopes of that."""
+        found = trial.slopes(self.name)
+        return found[:, None] if self._is_figure else real_parts(found)
+
+
+@checked
+def target(name: str, value: object) -> Goal:
+    """Return the goal that a figure has a value, or a quantity.
+
+    `value` is a number, or one for each pose; radians for angles, complex for vectors. Raises InvalidInput for what is
+    none.
+
+    >>> target("ram.displacement.time_ratio", 1.4).told
+    'ram.displacement.time_ratio 1.4'
+    """
+    try:
+        found = np.asarray(value) + 0
+        good = found.dtype.kind in "fiuc" and found.ndim <= 1 and found.size > 0 and np.isfinite(found).all()
+    except (TypeError, ValueError):
+        good = False
+    if not good:
+        raise InvalidInput(Problem(f"target.{name}", f"{short(value)} is no value", "a number, or one for each pose"))
+    return TargetGoal(name, found if found.ndim else found.item())
