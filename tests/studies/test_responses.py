@@ -2,20 +2,109 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.studies.responses import studied_path
+from compoundkin.base.series import Number
+from compoundkin.studies.responses import Designs, Response, studied_path
+from compoundkin.studies.responses.solved_response import SolvedResponse
 from compoundkin.studies.samples import sample_of
+from compoundkin.studies.silence import silence
 from compoundkin.studies.variations import variation_of
 
-RANGES = {"crank.D.x": variation_of("crank.D.x", (13.0, 14.0)), "plate.C.x": variation_of("plate.C.x", (12.0, 12.5))}
+RANGES = {"crank.D.x": variation_of("crank.D.x", (13.0, 14.0)), "plate.C": ck.around((12.3, 8.6), 0.5)}
+COARSE, FINE = ck.deg(np.arange(0, 361, 10.0)), ck.deg(np.arange(0, 361, 1.0))
+
+
+def given(name: str, values: Any = COARSE, mechanism: str = "six-bar", **rates: Any) -> tuple[Designs, Response]:
+    path, (response,) = studied_path(ck.catalog.load_named(mechanism), list(RANGES), [name], values, **rates)
+    return path.designs(sample_of("sobol", 16, 1).designs(RANGES, range(4, 12))), response
+
+
+def hold_slopes(designs: Designs, response: Response, rtol: float, step: float = 1e-4) -> None:
+    slopes = response.slopes(designs)
+    for one, slope in zip(designs.path.coordinates, slopes, strict=True):
+        above, below = (response.values(designs.moved(one, by)) for by in (step, -step))
+        difference = (above - below) / (2.0 * step)
+        assert np.abs(slope - difference).max() < rtol * np.abs(slopes).max()
 
 
 @pytest.mark.parametrize("name", ["G.position", "bar.angle", "G.velocity.length"])
 def test_courses_are_those_of_solve(name: str) -> None:
-    path, (response,) = studied_path(ck.catalog.load_named("six-bar"), list(RANGES), [name], speed=3.0)
-    designs = path.designs(sample_of("sobol", 16, 1).designs(RANGES, range(4, 12)))
+    designs, response = given(name, speed=3.0)
     expected = ck.quantity(designs.motion, name).values
     assert np.abs(response.values(designs) - expected).max() < 1e-11 * np.abs(expected).max()
+    hold_slopes(designs, response, 1e-6)
+
+
+def of_solve(designs: Designs, name: str, **rates: Any) -> Number:
+    """Return a figure found by `solve` at ten times as many poses."""
+    compiled = designs.path.compiled
+    mechanism = compiled.mechanism({key: value[:, None] for key, value in designs.dimensions.items()})
+    return ck.quantity(ck.solve(mechanism, FINE, modes=compiled.modes, **rates), name).values[:, 0]
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["bar.angle.stroke", "plate.transmission_angle.least", "G.acceleration.length.greatest", "bar.angular_velocity.least",
+     "G.x.greatest", "bar.angle.greatest"],
+)  # fmt: skip
+def test_figures_are_found_between_the_poses_with_their_slopes(name: str) -> None:
+    designs, response = given(name, speed=2.0)
+    expected, found = of_solve(designs, name, speed=2.0), response.values(designs)
+    assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+    assert response.has_slopes
+    hold_slopes(designs, response, 1e-6)
+
+
+def test_figures_with_kinks_and_zeros_are_found() -> None:
+    designs, response = given("plate.transmission_angle.greatest")
+    assert np.abs(response.values(designs) - np.pi / 2).max() < 1e-9
+    designs, response = given("G.velocity.length.least", speed=2.0)
+    assert response.values(designs).max() < 1e-8
+
+
+def test_figures_in_time_follow_the_laws_between_the_poses() -> None:
+    times = np.linspace(0.0, 2.0 * np.pi / 3.0, 25)
+    designs, response = given("bar.angle.stroke", 0.0, time=times, speed=3.0)
+    expected = of_solve(designs, "bar.angle.stroke")
+    assert np.abs(response.values(designs) - expected).max() < 1e-9 * expected.max()
+
+
+def test_designs_that_do_not_assemble_have_no_figure() -> None:
+    designs, response = given("bar.angle.stroke")
+    broken = designs.path.designs(
+        {**designs.dimensions, "crank.D.x": np.append(designs.dimensions["crank.D.x"][1:], 90.0)}
+    )
+    with silence():
+        values, slopes = response.values(broken), response.slopes(broken)
+    assert np.isnan(values).tolist() == [False] * 7 + [True]
+    assert np.isnan(slopes).all(axis=0).tolist() == [False] * 7 + [True]
+
+
+def hold_solved(mechanism: str, dimension: str, name: str) -> None:
+    path, (response,) = studied_path(ck.catalog.load_named(mechanism), [dimension], [name], COARSE, speed=3.0)
+    assert isinstance(response, SolvedResponse)
+    own = path.compiled.programs.stated.own(path.compiled.programs.dimensions[0])
+    designs = path.designs({dimension: own * np.array([0.95, 1.0, 1.05])})
+    found = response.values(designs)
+    for row, value in zip(found, designs.dimensions[dimension], strict=True):
+        motion = ck.solve(path.compiled.mechanism({dimension: value}), COARSE, speed=3.0, modes=path.compiled.modes)
+        expected = np.broadcast_to(ck.quantity(motion, name).values, len(COARSE))[: row.size]
+        assert np.abs(row - expected).max() < 1e-9 * np.abs(expected).max()
+    assert not response.has_slopes
+    slopes = response.slopes(designs)
+    assert slopes.shape == (len(path.coordinates), *found.shape)
+    hold_slopes(designs, response, 1e-4)
+
+
+def test_forces_of_designs_are_solved() -> None:
+    hold_solved("engine-gas-pressure", "crank.A.x", "crank.effort")
+    hold_solved("engine-gas-pressure", "crank.A.x", "crank.effort.greatest")
+
+
+def test_figures_of_groups_without_a_closed_form_are_solved() -> None:
+    hold_solved("class-iii-six-bar", "leg-1.B1.x", "plate.angle.stroke")

@@ -5,17 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.extremes.measures import measure_of
 from compoundkin.kinematics.motion import Motion
-from compoundkin.kinematics.quantities import quantity
+from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.kinematics.solution import solve
-from compoundkin.model.attributes import course_figure
+from compoundkin.model.attributes import VALUE, course_figure
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.compilation import compile
+from compoundkin.programs.recording.recorded_outputs import output_of
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.course_response import CourseResponse
 from compoundkin.studies.responses.designs import Designs, StudiedPath
-from compoundkin.studies.responses.figure_response import FigureResponse
+from compoundkin.studies.responses.figure_response import PARTS_OF, FigureResponse
+from compoundkin.studies.responses.solved_response import SolvedResponse
 
 __all__ = ["Designs", "Response", "StudiedPath", "response_of", "studied_path"]
 
@@ -24,9 +28,28 @@ def response_of(motion: Motion, name: str) -> Response:
     """Return what a name asks of every design. Raises UnknownName with the nearest there is."""
     found = quantity(motion, name)
     of, figure = course_figure(name)
-    if figure:
-        return FigureResponse(name, (of,), found.unit, found.dimension, of=of, figure=figure)
-    return CourseResponse(name, (name,), found.unit, found.dimension, is_vector=found.is_vector)
+    if not _is_computed(motion, of) or (figure and figure not in PARTS_OF):
+        return _solved(found, not figure)
+    if not figure:
+        return CourseResponse(name, (name,), found.unit, found.dimension, is_vector=found.is_vector)
+    squared = measure_of(motion, of).squared
+    return FigureResponse(name, (of,), found.unit, found.dimension, of=of, figure=figure, squared=squared)
+
+
+def _solved(found: Quantity, is_course: bool) -> Response:
+    return SolvedResponse(found.name, (), found.unit, found.dimension, is_course, found.is_vector)
+
+
+def _is_computed(motion: Motion, name: str) -> bool:
+    """Tell whether programs have an output."""
+    try:
+        output = output_of(motion, name)
+        if output.is_derived:
+            # whether a figure is arithmetic of one pose is seen when it is recorded
+            _ = compile(motion.mechanism, name).programs.variant(frozenset())
+    except InvalidInput:
+        return False
+    return True
 
 
 def studied_path(
@@ -45,5 +68,13 @@ def studied_path(
     reference = solve(mechanism, values, modes=modes, **rates)
     responses = tuple(response_of(reference, name) for name in outputs)
     needs = tuple(dict.fromkeys(need for one in responses for need in one.needs))
-    compiled = compile(mechanism, needs, free=free, values=values, modes=modes)
+    driver = f"{next(iter(reference.drives))}.{VALUE}"
+    compiled = compile(mechanism, needs or driver, free=free, values=values, modes=modes)
+    if compiled.programs.variant(frozenset()).seeds:
+        # between its poses a motion of which something is found by search is solved
+        responses = tuple(_between_solved(reference, one) for one in responses)
     return StudiedPath(compiled, reference), responses
+
+
+def _between_solved(reference: Motion, one: Response) -> Response:
+    return _solved(quantity(reference, one.name), False) if course_figure(one.name)[1] else one

@@ -1,4 +1,4 @@
-"""A figure of the whole course of a quantity: its least and greatest value, its stroke."""
+"""A figure of the whole course of a quantity: its least and greatest value, its stroke, between the poses too."""
 
 from __future__ import annotations
 
@@ -7,28 +7,42 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.series import Number
-from compoundkin.model.attributes import GREATEST, LEAST
+from compoundkin.model.attributes import GREATEST, LEAST, RADIANS, STROKE
 from compoundkin.studies.responses.contract import Response
+from compoundkin.studies.responses.course_extremes import CourseExtreme, CourseSearch
 from compoundkin.studies.responses.designs import Designs
+
+# By how much each figure counts the greatest and the least value.
+PARTS_OF = {LEAST: ((-1.0, 1.0),), GREATEST: ((1.0, 1.0),), STROKE: ((1.0, 1.0), (-1.0, -1.0))}
 
 
 @dataclass(frozen=True)
 class FigureResponse(Response):
-    """A figure of the course of a quantity, (designs,)."""
+    """A figure of the course of a quantity, (designs,).
+
+    It is none of designs that are not assembled at all poses. A length of a vector is `squared` to be smooth.
+    """
 
     of: str = ""
     figure: str = ""
+    squared: bool = False
 
     def values(self, designs: Designs) -> Number:
         """Return the figure of each design."""
-        course = designs.found[self.of]
-        low, high = course.min(axis=-1), course.max(axis=-1)
-        return np.asarray({LEAST: low, GREATEST: high}.get(self.figure, high - low))
+        return np.asarray(sum(weight * self.extreme(designs, sign).value for sign, weight in PARTS_OF[self.figure]))
 
     def slopes(self, designs: Designs) -> Number:
-        """Return its slopes: those of the quantity where it has its extreme."""
-        course = designs.found[self.of]
-        rows = np.arange(len(course))
-        by = np.array([designs.slopes[self.of, name] for name in designs.path.coordinates])
-        low, high = by[:, rows, course.argmin(axis=-1)], by[:, rows, course.argmax(axis=-1)]
-        return np.asarray({LEAST: low, GREATEST: high}.get(self.figure, high - low))
+        """Return its slopes. They are those of the quantity where its extremes are."""
+        rows = np.arange(designs.number)
+        ends = [self.extreme(designs, sign).place for sign, _ in PARTS_OF[self.figure]]
+        places = np.stack(ends, axis=1)
+        known = ~np.isnan(places).any(axis=1)
+        found = np.full((len(designs.path.coordinates), *places.shape), np.nan)
+        if known.any():
+            found[:, known] = designs.slopes_at(self.of, rows[known], places[known])
+        return found @ np.array([weight for _, weight in PARTS_OF[self.figure]])
+
+    def extreme(self, designs: Designs, sign: float) -> CourseExtreme:
+        """Return the greatest values, with the sign -1 the least. They are searched once."""
+        search = CourseSearch(designs, self.of, sign, self.unit == RADIANS, self.squared)
+        return designs.kept((self.of, sign), search.found)

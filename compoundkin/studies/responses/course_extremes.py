@@ -1,0 +1,189 @@
+"""The least and greatest values of courses of many designs, between their poses too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.kinematics.extremes.extreme_search import MOST_ADDED, POLE
+from compoundkin.kinematics.extremes.measures import ROUNDING
+from compoundkin.kinematics.extremes.windows import AT_FINE, FINE, FIT, INNER, SAMPLES, TRUSTED, vertices
+from compoundkin.studies.responses.designs import Designs
+
+# A window is narrowed so often at most: at a kink to 1e-10 of it.
+NARROWINGS = 20
+# At a kink a course is farther from the polynomial through its samples than these tell: by so many times the sum of
+# so many of the last coefficients.
+SURE, LAST = 8.0, 3
+# Between the places at which a polynomial is looked at it rises by less than this part of its range.
+MISSED = 0.01
+AT_ENDS = chebyshev.chebvander(np.array([-1.0, 1.0]), INNER - 1).T
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CourseExtreme(PrintsShort):
+    """The greatest value of a course of each design, and its place.
+
+    With the sign -1 it is the least. Both are (designs,), NaN where a design is not assembled at all poses.
+    """
+
+    value: Number
+    place: Number
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CourseSearch(PrintsShort):
+    """A search for the greatest values of a course, between the poses too.
+
+    The course counts times a `sign`. The length of a vector is `squared`, so that it is smooth where it passes zero.
+    """
+
+    designs: Designs
+    name: str
+    sign: float
+    is_angle: bool = False
+    squared: bool = False
+
+    def found(self) -> CourseExtreme:
+        """Return the greatest values, times the sign."""
+        with np.errstate(all="ignore"):
+            course = self.sign * np.broadcast_to(self.designs.found[self.name], self._shape)
+            best = course.argmax(axis=1)
+            offers = CourseOffers(course[np.arange(len(course)), best], best.astype(float))
+            self._search(course, offers)
+        value = np.where(np.isnan(course).any(axis=1), np.nan, self.sign * offers.value)
+        return CourseExtreme(value, np.where(np.isnan(value), np.nan, offers.place))
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return self.designs.number, self.designs.poses
+
+    def _search(self, course: Number, offers: CourseOffers) -> None:
+        """Offer the vertices of peaks: of polynomials through samples, in windows that narrow until they are right."""
+        rows, k = np.nonzero(_peaks(course))
+        low, high = np.maximum(k - 1.0, 0.0), np.minimum(k + 1.0, course.shape[1] - 1.0)
+        span, large = self._sizes(course)
+        for _ in range(NARROWINGS):
+            if not len(rows):
+                return
+            places = low[:, None] + 0.5 * (1.0 + SAMPLES) * (high - low)[:, None]
+            values = self.sign * self.designs.values_at(self.name, rows, places, self.is_angle)
+            window = PeakWindow(values, places, self.squared, self.sign)
+            doubt = window.doubt
+            trusted = doubt <= TRUSTED * span[rows] + ROUNDING * large[rows]
+            self._vertices(window.some(trusted), rows[trusted], offers)
+            # what cannot become the greatest any more is left
+            going = ~trusted & ~(window.most < offers.value[rows]) & (high - low > 0.0)
+            _offer_samples(window.some(~trusted), rows[~trusted], offers)
+            rows, window = rows[going], window.some(going)
+            low, high = window.narrowed()
+        self._poles(course, offers, np.unique(rows))
+
+    def _vertices(self, window: PeakWindow, rows: Number, offers: CourseOffers) -> None:
+        """Offer the vertices of windows."""
+        if len(rows):
+            places = window.vertices()
+            values = self.designs.values_at(self.name, rows, places[:, None], self.is_angle)
+            offers.take(rows, self.sign * values[:, 0], places)
+
+    def _sizes(self, course: Number) -> tuple[Number, Number]:
+        """Return how much courses vary, and how large they are; of lengths their squares."""
+        smooth = course**2 if self.squared else course
+        return np.ptp(smooth, axis=1), np.abs(smooth).max(axis=1)
+
+    @staticmethod
+    def _poles(course: Number, offers: CourseOffers, rows: Number) -> None:
+        """Make infinite what passes through infinity, as the reciprocal of a rate."""
+        far = rows[offers.value[rows] > POLE * np.median(np.abs(course[rows]), axis=1)] if len(rows) else rows
+        offers.value[far] = np.inf
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CourseOffers(PrintsShort):
+    """The greatest values so far and their places, (designs,), written in place."""
+
+    value: Number
+    place: Number
+
+    def take(self, rows: Number, values: Number, places: Number) -> None:
+        """Take what is greater; a design may be offered several values."""
+        in_order = np.lexsort((values, rows))
+        rows, values, places = rows[in_order], values[in_order], places[in_order]
+        last = np.append(rows[1:] != rows[:-1], True) & (values > self.value[rows])
+        self.value[rows[last]], self.place[rows[last]] = values[last], places[last]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PeakWindow(PrintsShort):
+    """Windows with samples of a course, (windows, samples), times a sign."""
+
+    values: Number
+    places: Number
+    squared: bool
+    sign: float
+
+    def some(self, which: Number) -> PeakWindow:
+        """Return some of them."""
+        return PeakWindow(self.values[which], self.places[which], self.squared, self.sign)
+
+    @property
+    def smooth(self) -> Number:
+        """The values, or with their sign the squares."""
+        return self.sign * self.values**2 if self.squared else self.values
+
+    @property
+    def polynomials(self) -> Number:
+        """The coefficients of the polynomials through the inner samples."""
+        return self.smooth[:, 1:-1] @ FIT.T
+
+    @property
+    def doubt(self) -> Number:
+        """About how far the polynomials are off."""
+        off = np.abs(self.polynomials @ AT_ENDS - self.smooth[:, [0, -1]]).max(axis=1)
+        return np.maximum(off, np.abs(self.polynomials[:, -1]))
+
+    @property
+    def most(self) -> Number:
+        """About the greatest value that there may be."""
+        smooth, polynomials = self.smooth, self.polynomials
+        fine, last = polynomials @ AT_FINE, np.abs(polynomials[:, -LAST:]).sum(axis=1)
+        most = np.maximum(fine.max(axis=1), smooth.max(axis=1)) + MISSED * np.ptp(fine, axis=1) + SURE * last
+        return self.sign * np.sqrt(np.maximum(self.sign * most, 0.0)) if self.squared else most
+
+    def vertices(self) -> Number:
+        """Return the places of the greatest values."""
+        polynomials = self.polynomials
+        t = vertices(polynomials, FINE[np.argmax(polynomials @ AT_FINE, axis=1)])
+        low, high = self.places[:, 0], self.places[:, -1]
+        return np.where(t >= 1.0, high, low + 0.5 * (1.0 + t) * (high - low))
+
+    def narrowed(self) -> tuple[Number, Number]:
+        """Return the places of the samples beside the greatest one."""
+        k = np.argmax(self.values, axis=1)
+        rows = np.arange(len(k))
+        return self.places[rows, np.maximum(k - 1, 0)], self.places[rows, np.minimum(k + 1, len(SAMPLES) - 1)]
+
+
+def _offer_samples(window: PeakWindow, rows: Number, offers: CourseOffers) -> None:
+    if len(rows):
+        k = np.argmax(window.values, axis=1)
+        index = np.arange(len(k))
+        offers.take(rows, window.values[index, k], window.places[index, k])
+
+
+def _peaks(course: Number) -> Number:
+    """Tell at which poses the greatest value may be near: no neighbour is higher, and it bends so much."""
+    rising, poses = np.diff(course, axis=1), course.shape[1]
+    peak = np.ones(course.shape, dtype=bool)
+    peak[:, 1:] &= rising >= 0.0
+    peak[:, :-1] &= rising <= 0.0
+    if poses < 3:
+        return peak
+    bend = np.abs(np.diff(rising, axis=1))
+    added = MOST_ADDED * np.concatenate([bend[:, :1], bend, bend[:, -1:]], axis=1)
+    best = course.max(axis=1, keepdims=True)
+    return peak & (course + added >= best) & (added > ROUNDING * np.abs(best))

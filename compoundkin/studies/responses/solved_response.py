@@ -1,0 +1,68 @@
+"""What only solving can tell of designs: forces, and figures of groups without a closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotAssembled, NotDetermined
+from compoundkin.base.series import Number
+from compoundkin.kinematics.quantities import quantity
+from compoundkin.studies.responses.contract import Response
+from compoundkin.studies.responses.designs import Designs
+
+# So many poses are solved at once, so that a motion with all its forces stays in memory.
+MOST_POSES = 2**15
+# The step of a central difference, as a part of what is a large change: truncation and rounding are then alike.
+STEP = 1e-5
+# A design of which nothing can be found must not take the others with it.
+NOTHING = (InvalidInput, InvalidMechanism, NotAssembled, NotDetermined)
+
+
+@dataclass(frozen=True)
+class SolvedResponse(Response):
+    """A quantity or figure found by `solve`. Its slopes are differences."""
+
+    def values(self, designs: Designs) -> Number:
+        """Return it; figures of designs that are not assembled at all poses are none."""
+        shape = (designs.number, designs.poses) if self.is_course else (designs.number,)
+        found = np.full(shape, np.nan, dtype=complex if self.is_vector else float)
+        step = max(1, MOST_POSES // max(designs.poses, 1))
+        for start in range(0, designs.number, step):
+            for rows, values in self._parts(designs, np.arange(start, min(start + step, designs.number))):
+                found[rows] = values
+        return found
+
+    def _parts(self, designs: Designs, rows: Number) -> Iterator[tuple[Number, Number]]:
+        """Yield what is found of some designs, in halves where one of them cannot be solved."""
+        try:
+            with np.errstate(all="ignore"):
+                yield rows, self._solved(designs.picked(rows))
+        except NOTHING:
+            half = len(rows) // 2
+            if half:
+                yield from self._parts(designs, rows[:half])
+                yield from self._parts(designs, rows[half:])
+
+    def _solved(self, some: Designs) -> Number:
+        motion = some.motion
+        shape = some.number, some.poses
+        values = np.broadcast_to(np.reshape(quantity(motion, self.name).values, motion.failed.shape), shape)
+        failed = np.broadcast_to(motion.failed != 0, shape)
+        return values if self.is_course else np.where(failed.any(axis=1), np.nan, values[:, 0])
+
+    @property
+    def has_slopes(self) -> bool:
+        """Whether its slopes are known exactly: they are differences."""
+        return False
+
+    def slopes(self, designs: Designs) -> Number:
+        """Return central differences, (coordinates, designs) and poses for a course."""
+        found = []
+        for one in designs.path.coordinates:
+            step = STEP * designs.path.scale(one)
+            above, below = (self.values(designs.moved(one, by)) for by in (step, -step))
+            found.append((above - below) / (2.0 * step))
+        return np.array(found)
