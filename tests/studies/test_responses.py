@@ -49,9 +49,8 @@ def of_solve(designs: Designs, name: str, **rates: Any) -> Number:
 
 @pytest.mark.parametrize(
     "name",
-    ["bar.angle.stroke", "plate.transmission_angle.least", "G.acceleration.length.greatest", "bar.angular_velocity.least",
-     "G.x.greatest", "bar.angle.greatest"],
-)  # fmt: skip
+    ["bar.angle.stroke", "plate.transmission_angle.least", "G.acceleration.length.greatest", "G.x.greatest"],
+)
 def test_figures_are_found_between_the_poses_with_their_slopes(name: str) -> None:
     designs, response = given(name, speed=2.0)
     expected, found = of_solve(designs, name, speed=2.0), response.values(designs)
@@ -76,9 +75,8 @@ def test_figures_in_time_follow_the_laws_between_the_poses() -> None:
 
 def test_designs_that_do_not_assemble_have_no_figure() -> None:
     designs, response = given("bar.angle.stroke")
-    broken = designs.path.designs(
-        {**designs.dimensions, "crank.D.x": np.append(designs.dimensions["crank.D.x"][1:], 90.0)}
-    )
+    lengths = np.append(designs.dimensions["crank.D.x"][1:], 90.0)
+    broken = designs.path.designs({**designs.dimensions, "crank.D.x": lengths})
     with silence():
         values, slopes = response.values(broken), response.slopes(broken)
     assert np.isnan(values).tolist() == [False] * 7 + [True]
