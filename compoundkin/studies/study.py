@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any
 
 from compoundkin.base.arguments import checked
@@ -14,6 +15,7 @@ from compoundkin.studies.runs.memory_store import MemoryStore
 from compoundkin.studies.runs.study_run import run
 from compoundkin.studies.samples import sample_of
 from compoundkin.studies.samples.contract import DesignSample
+from compoundkin.studies.samples.listed_rows import TableSample
 from compoundkin.studies.silence import silence
 from compoundkin.studies.study_plan import StudyPlan
 from compoundkin.studies.study_result import StudyResult
@@ -49,7 +51,7 @@ class Study(StudyPlan):
 @checked
 def study(
     mechanism: Mechanism,
-    dimensions: Mapping[str, Any],
+    dimensions: Mapping[str, Any] | str | PathLike[str],
     outputs: str | Sequence[str] | Mapping[str, Callable[..., Any]],
     *,
     sample: str | Mapping[str, int] | DesignSample = "sobol",
@@ -66,7 +68,8 @@ def study(
     """Return a study of many designs of a mechanism, to be run.
 
     `dimensions` are free dimensions by name and what each may be: a range (40, 60), a frozen distribution of
-    scipy.stats, levels, `around(centre, within)`. `outputs` are quantities and figures by name, `sample` says which
+    scipy.stats, levels, `around(centre, within)`; or the path of a CSV or Parquet table of one's own designs, with
+    sample="table". `outputs` are quantities and figures by name, `sample` says which
     designs, `count` how many. Drivers move as in `solve`, in the same `modes`.
     Raises InvalidInput and UnknownName for what cannot be computed, before anything is.
 
@@ -81,6 +84,8 @@ def study(
     if not asked:
         raise InvalidInput(Problem("outputs", "there is none", 'name some: ["G.position", "bar.angle.stroke"]'))
     free = variations_of(dimensions)
+    if not isinstance(dimensions, Mapping) and sample != TableSample.word:
+        raise InvalidInput(Problem("sample", "the dimensions are the columns of a table", f"{TableSample.word!r}"))
     drive = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time}
     made = Study(mechanism, free, asked, sample_of(sample, count, seed, free), **drive, modes=modes, given=given)
     with silence():

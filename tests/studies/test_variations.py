@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,12 @@ import pytest
 from scipy import stats
 
 import compoundkin as ck
+from compoundkin.kinematics.quantities import Quantity
+from compoundkin.kinematics.table import Table
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.studies.samples.random_rows import RandomSample
 from compoundkin.studies.variations import hold_kinds, variation_from, variation_of, variations_of
+from compoundkin.studies.variations.levels import Levels
 
 UNITS = RandomSample(4096, 2).units(2, range(4096))
 GIVEN: Sequence[tuple[Any, Any]] = [
@@ -80,6 +84,55 @@ def test_values_at_0_and_1_are_finite() -> None:
         found = variation_of("a", given).values(np.array([[0.0], [1.0]]))
         assert np.isfinite(found).all()
         assert found[0] < found[1]
+
+
+def test_designs_are_read_from_tables(tmp_path: Path) -> None:
+    """Those that `save` writes, and those that people write."""
+    pytest.importorskip("pyarrow")
+    turn, length = np.array([0.1, 0.2, 1 / 3]), np.array([1.0, 2.5, 3.0])
+    columns = (
+        Quantity("slot.angle", "rad", turn, dimension="angle"),
+        Quantity("crank.B.x", "mm", length),
+    )
+    for suffix in (".csv", ".parquet"):
+        ck.save(Table("", columns), tmp_path / f"a{suffix}")
+        found = variations_of(tmp_path / f"a{suffix}")
+        assert list(found) == ["slot.angle", "crank.B.x"]
+        assert np.allclose(found["slot.angle"].levels(1), turn, rtol=1e-15)
+        assert found["crank.B.x"] == Levels(length)
+    own = tmp_path / "own.csv"
+    own.write_text("\ufeffcrank.B.x, plate.C.y [mm]\n1, 2\n3, 4\n", encoding="utf-8")
+    assert {name: one.levels(1).tolist() for name, one in variations_of(own).items()} == {
+        "crank.B.x": [1.0, 3.0],
+        "plate.C.y": [2.0, 4.0],
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "told"),
+    [
+        ("a.csv", b"a,b\n1,2\n3,x\n", "a.csv: could not convert string 'x' in line 3, column 2; write numbers alone"),
+        ("a.csv", b"a,b\n1,2\n3\n", "a.csv: the number of columns changed from 2 to 1 in line 3"),
+        ("a.csv", b"a\n1,2\n", "a.csv: it has 1 names in its first line and 2 columns of numbers"),
+        ("a.csv", b"a,b\n", "a.csv: it has 2 names in its first line and 0 columns of numbers"),
+        ("a.csv", b"", "a.csv: it has 0 names"),
+        ("a.csv", b"a,a\n1,2\n", "a.csv: there are two columns 'a'; one for each dimension"),
+        ("a.csv", b"a\n\xff\n", "a.csv: it cannot be read: it is not UTF-8 text"),
+        ("a.csv", b"a\nnan\n", "dimensions.a: it is not finite"),
+        ("b.csv", None, "b.csv: it cannot be read: No such file or directory"),
+        ("a.parquet", b"a,b\n1,2\n", "a.parquet: it is no Parquet file"),
+        ("a.json", b"{}", "a.json: designs are not read from such a file; write a .csv or .parquet"),
+        ("a.xlsx", b"", "a table is not saved as '.xlsx'"),
+    ],
+)
+def test_what_is_no_table_of_designs_is_told(tmp_path: Path, name: str, content: bytes | None, told: str) -> None:
+    if name.endswith(".parquet"):
+        pytest.importorskip("pyarrow")
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    with pytest.raises(ck.errors.InvalidInput) as error:
+        variations_of(tmp_path / name)
+    assert told in str(error.value)
 
 
 def test_columns_of_tables_are_levels() -> None:

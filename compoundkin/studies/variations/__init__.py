@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -12,17 +13,20 @@ from compoundkin.studies.variations.around import AroundCentre
 from compoundkin.studies.variations.contract import Variation
 from compoundkin.studies.variations.distribution import Distribution
 from compoundkin.studies.variations.levels import Levels
+from compoundkin.studies.variations.table_columns import table_columns
 from compoundkin.studies.variations.value_range import ValueRange
 
 VARIATIONS: tuple[type[Variation], ...] = (ValueRange, Distribution, AroundCentre, Levels)
 _REMEDY = "give a range (40, 60), a distribution scipy.stats.norm(40, 0.1), compoundkin.around(40, 0.1), or a list"
 
 
-def variations_of(given: Mapping[str, Any]) -> dict[str, Variation]:
+def variations_of(given: Mapping[str, Any] | str | os.PathLike[str]) -> dict[str, Variation]:
     """Return what is given for some dimensions as variations.
 
-    Raises InvalidInput with all that is wrong, each with its place, as dimensions.crank.B.
+    Of a file with a table they are its columns. Raises InvalidInput with all that is wrong, each with its place, as
+    dimensions.crank.B.
     """
+    given = given if isinstance(given, Mapping) else table_columns(given)
     found: dict[str, Variation] = {}
     problems: list[Problem] = []
     for name, one in given.items():
