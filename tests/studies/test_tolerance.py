@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -23,10 +25,10 @@ def changed(mechanism: ck.Mechanism, coordinate: str, step: float) -> ck.Mechani
 
 def test_slopes_are_differences_of_solve() -> None:
     six_bar = ck.catalog.load_named("six-bar")
-    names = ["G.position", "bar.angle", "G.velocity.length"]
+    names = ["G.position", "bar.angle", "G.velocity.length", "G.x.stroke", "bar.angle.greatest"]
     tolerances = {"crank.D.x": 0.05, "plate.C": 0.05, "frame.B": 0.1}
     found = ck.tolerance(six_bar, tolerances, names, values=TURN, speed=2.0, clearance={"A": 0.02})
-    assert list(found) == ["G.position.x", "G.position.y", "bar.angle", "G.velocity.length"]
+    assert list(found) == ["G.position.x", "G.position.y", *names[1:]]
     coordinates = ["crank.D.x", "plate.C.x", "plate.C.y", "frame.B.x", "frame.B.y", "rocker.A.x", "rocker.A.y"]
     assert set(found["bar.angle"].slopes) == set(coordinates)
     for by in coordinates:
@@ -53,7 +55,8 @@ def test_a_slider_crank_has_its_closed_form() -> None:
     """Place x = r cos + sqrt(l^2 - (r sin - e)^2), with its derivatives by hand; each radius of play once."""
     r, rod, e = 50.0, 120.0, 10.0
     given = {"crank.A.x": 0.1, "rod.B.x": (-0.3, 0.1), "guide.offset": 0.2}
-    found = ck.tolerance(slider_crank(r, rod, e), given, "B.x", values=TURN, clearance={"A": 0.05, "B": 0.04}, sigmas=2)
+    loose = {"A": 0.05, "B": 0.04, "guide": 0.03}
+    found = ck.tolerance(slider_crank(r, rod, e), given, "B.x", values=TURN, clearance=loose, sigmas=2)
     place = found["B.x"]
     sine, cosine = np.sin(TURN), np.cos(TURN)
     across = r * sine - e
@@ -64,12 +67,14 @@ def test_a_slider_crank_has_its_closed_form() -> None:
     assert place.nominal == pytest.approx(r * cosine + along)
     # the middle of -0.3 and 0.1 is at -0.1
     middle = r * cosine + along - 0.1 * slopes[1]
-    worst = np.abs(slopes.T) @ halves + play.sum() * np.abs(slopes[1])
+    worst = np.abs(slopes.T) @ halves + play.sum() * np.abs(slopes[1]) + 0.03 * np.abs(slopes[2])
     assert place.worst == pytest.approx(worst)
     assert (place.high, place.low, place.mean) == tuple(map(pytest.approx, (middle + worst, middle - worst, middle)))
-    parts = [*((slopes.T * halves / 2) ** 2).T, *(play[:, None] ** 2 / 2 * slopes[1] ** 2)]
+    # at one flank of the guide or at the other
+    guide = (0.03 * slopes[2]) ** 2
+    parts = [*((slopes.T * halves / 2) ** 2).T, *(play[:, None] ** 2 / 2 * slopes[1] ** 2), guide]
     assert place.deviation == pytest.approx(np.sqrt(sum(parts)))
-    names = [*given, "clearance A", "clearance B"]
+    names = [*given, "clearance A", "clearance B", "clearance guide"]
     assert list(place.contributions) == names
     assert np.array(list(place.contributions.values())) == pytest.approx(np.array(parts) / sum(parts))
 
@@ -114,7 +119,7 @@ def test_random_designs_are_those_of_solve() -> None:
     six_bar = ck.catalog.load_named("six-bar")
     given = {"plate.C.x": stats.norm(12, 0.5), "crank.D.x": 0.3}
     asked = {"values": TURN, "speed": 2.0, "clearance": {"plate.C": 0.2}, "count": 40, "percentiles": [50]}
-    found = ck.tolerance(six_bar, given, ["bar.angle", "G.velocity.length"], **asked)
+    found = ck.tolerance(six_bar, given, ["bar.angle", "G.velocity.length", "G.x.greatest", "G.x.stroke"], **asked)
     own, errors = six_bar.links["plate"].points["C"], {one.name: one for one in found.sources}
     sample = RandomSample(40, 0).units(3, range(40))
     x = stats.norm(12, 0.5).ppf(sample[:, 0])
@@ -188,8 +193,8 @@ def test_angles_are_counted_by_the_nearest_turn() -> None:
         ({"tolerances": {}}, "tolerances: nothing has a tolerance"),
         ({"outputs": []}, "outputs: no output is named"),
         ({"outputs": "G.postion"}, "did you mean"),
-        ({"clearance": {"Q": 0.1}}, "clearance.Q: there is no such pin"),
-        ({"clearance": {"rocker.D": 0.1}}, "clearance.rocker.D: there is no such pin; did you mean"),
+        ({"clearance": {"Q": 0.1}}, "clearance.Q: there is no such pin, slot or guide"),
+        ({"clearance": {"rocker.D": 0.1}}, "clearance.rocker.D: there is no such pin, slot or guide; did you mean"),
         ({"clearance": {"block.C": 0.1}}, "clearance.block.C: another pair is at C on block.*'plate.C'"),
         ({"clearance": {"A": -1}}, "clearance.A: -1 is no clearance"),
         ({"sigmas": 0}, "sigmas: 0 is no number"),
@@ -207,6 +212,42 @@ def test_what_is_wrong_is_told(given: dict[str, object], told: str) -> None:
     right = {"mechanism": ck.catalog.load_named("six-bar"), "tolerances": {"plate.C": 0.1}, "outputs": "bar.angle"}
     with pytest.raises(ck.errors.CompoundkinError, match=told):
         ck.tolerance(**{**right, **given})
+
+
+def test_tables_of_sources_and_of_poses(tmp_path: Path) -> None:
+    names = ["rod.angle", "B.x", "B.x.stroke"]
+    found = ck.tolerance(
+        slider_crank(50.0, 120.0, 10.0),
+        {"crank.A.x": 0.1, "guide.angle": 0.01},
+        names,
+        values=TURN,
+        clearance={"A": 0.05},
+    )
+    table = found.table()
+    assert table["source"].values.tolist() == ["crank.A.x", "guide.angle", "clearance A"]
+    assert table["unit"].values.tolist() == ["mm", "rad", "mm"]
+    assert table["upper"].values.tolist() == [0.1, 0.01, 0.05]
+    for name, one in found.items():
+        pose = np.argmax(one.deviation) if one.is_course else ()
+        assert sum(table[f"{name}.worst"].values) == pytest.approx(np.asarray(one.worst)[pose])
+        assert np.linalg.norm(table[f"{name}.deviation"].values) == pytest.approx(np.asarray(one.deviation)[pose])
+        assert sum(table[f"{name}.share"].values) == pytest.approx(1)
+    for suffix in ("csv", "json", "npz", "parquet"):
+        ck.save(found, tmp_path / f"shares.{suffix}")
+    first, _, guide, _ = (tmp_path / "shares.csv").read_text().splitlines()
+    assert first.startswith(
+        "source,lower,upper,unit,rod.angle.worst [deg],rod.angle.deviation [deg],rod.angle.share,B.x"
+    )
+    assert guide.startswith(f"guide.angle,{-np.rad2deg(0.01)},{np.rad2deg(0.01)},deg,")
+    bands = found.bands()
+    assert bands.names[:4] == ("crank.value", "rod.angle", "rod.angle.low", "rod.angle.high")
+    assert np.array_equal(bands["B.x.percentile_99.865"].values, found["B.x"].sample.percentiles[2])
+    ck.save(found.bands("B.x"), tmp_path / "bands.csv")
+    assert len((tmp_path / "bands.csv").read_text().splitlines()) == 1 + len(TURN)
+    with pytest.raises(ck.errors.InvalidInput, match=r"B.x.stroke: it is one number of the whole motion"):
+        found.bands("B.x.stroke")
+    with pytest.raises(ck.errors.UnknownName, match=r"B.y: there is no such output"):
+        found.table("B.y")
 
 
 def test_pins_of_three_links_want_to_know_which_are_loose() -> None:

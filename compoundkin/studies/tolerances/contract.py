@@ -20,6 +20,7 @@ class ErrorSource(ABC):
 
     name: str
     coordinates: tuple[str, ...]
+    unit: str
 
     @property
     @abstractmethod

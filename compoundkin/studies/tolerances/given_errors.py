@@ -21,8 +21,8 @@ from compoundkin.studies.tolerances.varied_dimension import VariedDimension
 from compoundkin.studies.variations import variation_of
 from compoundkin.studies.variations.contract import Variation
 
-# A source of errors of the numbers of these names, whose dimension has this value.
-MakeSource: TypeAlias = Callable[[tuple[str, ...], Number], ErrorSource]
+# A source of errors of the numbers of these names, of the unit and the value of their dimension.
+MakeSource: TypeAlias = Callable[[tuple[str, ...], str, Number], ErrorSource]
 
 
 class GivenError(NamedTuple):
@@ -53,9 +53,9 @@ def _tolerance(name: str, given: Any, sigmas: float) -> MakeSource:
     where = f"tolerances.{name}"
     if isinstance(given, Variation) or type(given).__module__.startswith("scipy."):
         variation = variation_of(where, given)
-        return lambda numbers, own: VariedDimension.of(name, numbers, variation, own, sigmas)
+        return lambda numbers, unit, own: VariedDimension.of(name, numbers, unit, variation, own, sigmas)
     low, high = _limits(where, given)
-    return lambda numbers, own: DimensionTolerance(name, numbers, low, high, sigmas)
+    return lambda numbers, unit, own: DimensionTolerance(name, numbers, unit, low, high, sigmas)
 
 
 def _limits(where: str, given: Any) -> tuple[float, float]:
@@ -109,5 +109,5 @@ def error_sources(path: StudiedPath, given: Sequence[GivenError]) -> tuple[Error
             what = f"it has {np.size(own)} values, and tolerances are of one design"
             raise InvalidInput(Problem(f"tolerances.{one.dimension}", what, "give the mechanism one value"))
         parts = tuple(f"{dimension.name}.{axis}" for axis in AXES) if dimension.is_vector else (dimension.name,)
-        sources.append(one.source(parts, np.reshape(own, ())))
+        sources.append(one.source(parts, stated.unit(dimension), np.reshape(own, ())))
     return tuple(sources)

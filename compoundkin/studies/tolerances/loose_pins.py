@@ -1,4 +1,4 @@
-"""Which dimension the clearance of a pin changes: one of its links' own copy of the point."""
+"""Which dimension a clearance changes: of a pin one link's own copy of the point, of a slot its offset."""
 
 from __future__ import annotations
 
@@ -11,27 +11,39 @@ from compoundkin.base.display import counted, short
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.studies.tolerances.flank_clearance import FlankClearance
 from compoundkin.studies.tolerances.given_errors import GivenError
 from compoundkin.studies.tolerances.pin_clearance import PinClearance
 
+# The number of slots and guides that their clearance changes.
+OFFSET = "offset"
+
 
 def given_clearances(mechanism: Mechanism, clearances: Mapping[str, Any]) -> list[GivenError]:
-    """Return what clearances of pins are.
+    """Return what clearances of pins, slots and guides are.
 
-    They are named "C", or "plate.C" where the plate is loose on it. Raises UnknownName for what is no pin, InvalidInput
-    where it is open which link is loose, and for no clearance.
+    Pins are named "C", or "plate.C" where the plate is loose on it; slots and guides by their names. Raises UnknownName
+    for what there is not, InvalidInput where it is open which link is loose, and for no clearance.
     """
     return [_clearance(mechanism, name, given) for name, given in clearances.items()]
 
 
 def _clearance(mechanism: Mechanism, name: str, given: Any) -> GivenError:
-    radius = _radius(name, given)
-    return GivenError(
-        loose_point(mechanism, name), lambda numbers, own: PinClearance(f"clearance {name}", numbers, radius)
-    )
+    half = _half(name, given)
+    if name in _guides(mechanism):
+        return GivenError(
+            f"{name}.{OFFSET}", lambda numbers, unit, own: FlankClearance(f"clearance {name}", numbers, unit, half)
+        )
+    point = loose_point(mechanism, name)
+    return GivenError(point, lambda numbers, unit, own: PinClearance(f"clearance {name}", numbers, unit, half))
 
 
-def _radius(name: str, given: Any) -> float:
+def _guides(mechanism: Mechanism) -> list[str]:
+    """Return the names of straight guides and slots, all that have an offset."""
+    return [pair.name for pair in mechanism.real_pairs if any(key.name == OFFSET for key in pair.keys)]
+
+
+def _half(name: str, given: Any) -> float:
     where = f"clearance.{name}"
     found = real_numbers(where, given)
     if found.shape != () or not np.isfinite(found) or found < 0:
@@ -47,8 +59,8 @@ def loose_point(mechanism: Mechanism, name: str) -> str:
     where, pins = f"clearance.{name}", mechanism.real_pins
     link, _, letter = name.rpartition(".")
     if letter not in pins or (link and link not in pins[letter]):
-        known = [*pins, *(f"{one}.{pin}" for pin, links in pins.items() for one in links)]
-        raise UnknownName(Problem(where, "there is no such pin", nearest(name, known)))
+        known = [*pins, *_guides(mechanism), *(f"{one}.{pin}" for pin, links in pins.items() for one in links)]
+        raise UnknownName(Problem(where, "there is no such pin, slot or guide", nearest(name, known)))
     able = [one for one in reversed(pins[letter]) if _is_alone(mechanism, one, letter)]
     if link and link not in able:
         what = f"another pair is at {letter} on {link}, and would be moved too"

@@ -41,11 +41,12 @@ def tolerance(
     `tolerances` are by the names of dimensions, as those that `compile` frees: 0.05 to either side, of a point in each
     coordinate; deviations (-0.02, 0.05); or what the whole dimension may be, `around` a value or a distribution of
     scipy.stats. Lengths are in the mechanism's unit, angles in radians. Limits lie `sigmas` standard deviations from
-    the middle. `clearance` is half the play of pins, by their names: "C", or "plate.C" where more than two links meet,
-    for each that is loose. `outputs` are quantities at every pose, or figures of the motion ("ram.stroke"); of vectors
-    both components. Motion and modes are those of `solve`. All is found to first order from exact slopes, and beside it
-    in `count` random designs, of which `percentiles` are told. Raises UnknownName and InvalidInput for what there is
-    not, and what `solve` raises; warns UnassembledPoses of designs that cannot be assembled.
+    the middle. `clearance` is half the play of pins, slots and guides by their names; a pin of more than two links is
+    named "plate.C", for each that is loose. `outputs` are quantities at every pose, or figures of the motion
+    ("ram.stroke"), for which a pin stays at its place in the link; of vectors both components. Motion and modes are
+    those of `solve`. All is found to first order from exact slopes, and beside it in `count` random designs, of which
+    `percentiles` are told. Raises UnknownName and InvalidInput for what there is not, and what `solve` raises; warns
+    UnassembledPoses of designs that cannot be assembled.
 
     >>> from compoundkin.model.elements import drive, link
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"), unit="mm")

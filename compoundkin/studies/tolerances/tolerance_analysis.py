@@ -9,10 +9,12 @@ from typing import Any
 from compoundkin.base.display import Shows, way
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.table import Table
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.tolerances.chances import Chances
 from compoundkin.studies.tolerances.contract import ErrorSource
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
+from compoundkin.studies.tolerances.tolerance_tables import band_table, contribution_table
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -43,6 +45,23 @@ class ToleranceAnalysis(Mapping[str, OutputTolerance], Shows):
     def percentiles(self) -> tuple[float, ...]:
         """Which percentiles are told of them."""
         return self.chances.percentiles
+
+    def table(self, *names: str) -> Table:
+        """Return a row for each source, with what it contributes to outputs.
+
+        These are all outputs without names. Of a course they are those at the pose where its deviation is greatest.
+        Raises UnknownName.
+        """
+        chosen = [self[name] for name in names or self]
+        return contribution_table(self.mechanism.title, self.sources, chosen)
+
+    def bands(self, *names: str) -> Table:
+        """Return a row for each pose, with the bands of courses.
+
+        These are all courses without names. Raises UnknownName, and InvalidInput for a figure.
+        """
+        chosen = [self[name] for name in names] or [one for one in self.values() if one.is_course]
+        return band_table(self.motion, chosen)
 
     def plot(self, *names: str, **options: Any) -> Any:
         """Plot outputs with their bands; see `plots.bands`."""

@@ -34,7 +34,9 @@ class VariedDimension(ErrorSource):
     deviations: tuple[float, ...]
 
     @classmethod
-    def of(cls, name: str, numbers: tuple[str, ...], variation: Variation, value: Number, sigmas: float) -> Self:
+    def of(
+        cls, name: str, numbers: tuple[str, ...], unit: str, variation: Variation, value: Number, sigmas: float
+    ) -> Self:
         """Return it for a dimension.
 
         Raises InvalidInput for a distribution of points where that is a number, and the other way round.
@@ -52,7 +54,7 @@ class VariedDimension(ErrorSource):
         lows = np.where(np.isfinite(low), low, means - sigmas * deviations) - own
         highs = np.where(np.isfinite(high), high, means + sigmas * deviations) - own
         errors = (own, lows, highs, means - own, deviations)
-        return cls(name, numbers, variation, *(tuple(one.tolist()) for one in errors))
+        return cls(name, numbers, unit, variation, *(tuple(one.tolist()) for one in errors))
 
     @property
     def columns(self) -> int:
