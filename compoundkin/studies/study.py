@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
@@ -11,6 +12,8 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.studies.runs.folder_head import prepared
+from compoundkin.studies.runs.folder_store import FolderStore
 from compoundkin.studies.runs.memory_store import MemoryStore
 from compoundkin.studies.runs.study_run import run
 from compoundkin.studies.samples import sample_of
@@ -29,23 +32,28 @@ class Study(StudyPlan):
     @checked
     def run(
         self,
+        folder: str | os.PathLike[str] | None = None,
         *,
         on: Any = None,
         chunk: int | None = None,
         threads: int | None = None,
         progress: Callable[[int, int], Any] | None = None,
     ) -> StudyResult:
-        """Compute all rows and return them.
+        """Compute all rows, in memory or into a folder of Parquet files.
 
+        A folder has the study itself and parts that are written whole or not at all: a run that was stopped, however,
+        goes on when it is started again, and the result reads from the folder what it is asked for.
         They are computed by `threads`, as many as there are cores, or `on` other workers: any executor of
         `concurrent.futures`, or a Dask client. `chunk` is how many rows a worker computes at a time, in whole blocks.
         `progress` is called with how many rows are there, and of how many. Numbers depend on none of these.
-        Raises InvalidInput for what cannot be meant, StudyStopped where workers die.
+        Raises InvalidInput for what cannot be meant, such as the folder of another study, and StudyStopped where
+        workers die or a disk is full.
         """
         for name, value in {"chunk": chunk, "threads": threads}.items():
             if value is not None and value < 1:
                 raise InvalidInput(Problem(name, f"{value} is too few", "at least 1"))
-        return StudyResult(self, run(MemoryStore(self), on, chunk, threads, progress))
+        store = MemoryStore(self) if folder is None else FolderStore(self, *prepared(folder, self))
+        return StudyResult(self, run(store, on, chunk, threads, progress))
 
 
 @checked

@@ -73,6 +73,7 @@ class StudyPlan:
         """
         found = {
             "mechanism": plain_mechanism(self.mechanism),
+            "order": list(self.dimensions),
             "dimensions": {name: plain(one.data) for name, one in self.dimensions.items()},
             "sample": plain(self.sample.data),
         }

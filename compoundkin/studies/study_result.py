@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,6 +19,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.kinematics.table import ANGLES, ASSEMBLED, Table
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.studies.runs.opened_folder import opened
 from compoundkin.studies.runs.study_rows import StudyRows
 from compoundkin.studies.study_plan import StudyPlan
 from compoundkin.studies.study_program import AXES, StudyColumn
@@ -43,6 +45,14 @@ class StudyResult(Shows, PrintsShort):
 
     study: StudyPlan
     rows: StudyRows
+
+    @classmethod
+    def open(cls, folder: str | os.PathLike[str]) -> StudyResult:
+        """Return what a folder has, at the end of a run or before.
+
+        Raises InvalidInput where it is no folder of a study, or holds objects of a program.
+        """
+        return cls(*opened(folder))
 
     @property
     def columns(self) -> tuple[StudyColumn, ...]:

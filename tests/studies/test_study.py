@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -13,20 +14,17 @@ import compoundkin as ck
 from compoundkin.studies.study_data import differences, digest
 
 
-def six_bar(count: int = 8192, **options: Any) -> ck.results.Study:
-    ranges = {"crank.D.x": (13.0, 14.0), "plate.C.x": (11.0, 12.5)}
+@cache
+def six_bar(count: int = 8192, speed: float = 3.0) -> ck.results.Study:
+    ranges = {"crank.D.x": (13.0, 14.0), "rocker.A.x": (15.0, 30.0)}
     outputs = ["G.position", "bar.angle.stroke", "bar.angular_velocity"]
-    turn = {"values": ck.deg(np.arange(0, 360, 30)), "speed": 3.0}
-    return ck.study(ck.catalog.load_named("six-bar"), ranges, outputs, **{"count": count, "seed": 2, **turn, **options})
+    turn = ck.deg(np.arange(0, 360, 30))
+    return ck.study(ck.catalog.load_named("six-bar"), ranges, outputs, count=count, seed=2, values=turn, speed=speed)
 
 
 @pytest.fixture(scope="module")
 def result() -> ck.results.StudyResult:
     return six_bar().run(threads=1)
-
-
-def columns(found: ck.results.StudyResult) -> dict[str, Any]:
-    return {name: found[name] for name in found.names}
 
 
 def assert_same(one: ck.results.StudyResult, other: ck.results.StudyResult) -> None:
@@ -114,7 +112,7 @@ def test_wrong_questions_to_a_result_are_told(result: ck.results.StudyResult) ->
 
 
 def test_what_differs_between_two_studies_is_told() -> None:
-    one, other = six_bar(4), six_bar(8, speed=4.0)
+    one, other = six_bar(4), six_bar(8, 4.0)
     assert sorted(differences(one.data, other.data)) == ["sample.count", "speed"]
     assert (
         digest(one.data) == digest(six_bar(4).data) == pickle.loads(pickle.dumps(one)).fingerprint != other.fingerprint

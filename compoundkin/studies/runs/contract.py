@@ -36,5 +36,5 @@ class RunStore(ABC, PrintsShort):
         """Return all rows that are there, when nothing is missing any more."""
 
     @abstractmethod
-    def kept(self, done: int) -> str:
+    def kept(self) -> str:
         """Return what a stopped run leaves, in words, and what to do."""

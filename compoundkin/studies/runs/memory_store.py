@@ -39,6 +39,6 @@ class MemoryStore(RunStore):
         """Return the arrays."""
         return RowsInMemory(self.plan.columns, self.arrays)
 
-    def kept(self, done: int) -> str:
+    def kept(self) -> str:
         """Return that nothing is."""
         return "nothing of it is kept: give run() a folder, and a second run goes on where the first stopped"

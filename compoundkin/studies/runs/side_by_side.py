@@ -22,7 +22,7 @@ def answers(
     coming = iter(pieces)
     try:
         while True:
-            for piece in islice(coming, max(1, room()) - len(waiting)):
+            for piece in islice(coming, max(0, room() - len(waiting))):
                 waiting[executor.submit(work, piece)] = piece
             if not waiting:
                 return

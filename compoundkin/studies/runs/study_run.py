@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError
+from contextlib import closing
 from pickle import PicklingError
 from typing import Any, TypeAlias
 
@@ -35,33 +36,40 @@ def run(
     """
     with workers(on, threads) as computing, silence():
         missing = list(store.missing())
-        count = len(store.plan)
-        done = count - sum(map(len, missing))
-        tell = progress or (lambda done, count: None)
-        tell(done, count)
         size = piece_size(store.plan.program, computing.number(), chunk)
-        try:
-            for rows, answer in _answered(computing, store, pieces_of(missing, size)):
-                store.take(rows, answer)
+        tell = progress or (lambda done, count: None)
+        done, count = len(store.plan) - sum(map(len, missing)), len(store.plan)
+        tell(done, count)
+        with closing(_answered(computing, store, pieces_of(missing, size))) as answered:
+            for rows in _taken(store, answered):
                 done += len(rows)
                 tell(done, count)
-        except Exception as error:
-            if isinstance(error, _ENDS) or type(error).__module__.partition(".")[0] in _CARRIERS:
-                raise _stopped(store, error, done) from error
-            raise
     return store.finished()
 
 
-def _answered(computing: Workers, store: RunStore, pieces: Iterable[range]) -> Iterator[tuple[range, Any]]:
+def _taken(store: RunStore, answered: Iterable[tuple[range, Any]]) -> Iterator[range]:
+    """Yield the rows of each answer when they are kept."""
+    try:
+        for rows, answer in answered:
+            store.take(rows, answer)
+            yield rows
+    except Exception as error:
+        if isinstance(error, _ENDS) or type(error).__module__.partition(".")[0] in _CARRIERS:
+            raise _stopped(store, error) from error
+        raise
+
+
+def _answered(computing: Workers, store: RunStore, pieces: Iterable[range]) -> Generator[tuple[range, Any]]:
     task = store.task
     if computing.executor is None:
-        return ((rows, task(rows)) for rows in pieces)
-    return answers(computing.executor, task, pieces, computing.room)
+        yield from ((rows, task(rows)) for rows in pieces)
+        return
+    yield from answers(computing.executor, task, pieces, computing.room)
 
 
-def _stopped(store: RunStore, error: Exception, done: int) -> StudyStopped:
+def _stopped(store: RunStore, error: Exception) -> StudyStopped:
     """Return what is told of a run that stops."""
     what = str(error).strip() or type(error).__name__
     if isinstance(error, BrokenExecutor):
         what = f"a worker died: {what}"
-    return StudyStopped(Problem("", what, store.kept(done)))
+    return StudyStopped(Problem("", what, store.kept()))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from threading import Lock
-from typing import Any
 
+from compoundkin.base.series import Number
 from compoundkin.studies.silence import silence
 from compoundkin.studies.study_plan import StudyPlan
 from compoundkin.studies.study_program import StudyProgram
@@ -22,10 +22,15 @@ class StudyTask:
 
     plan: StudyPlan
 
-    def __call__(self, rows: range) -> dict[str, Any]:
+    def __call__(self, rows: range) -> dict[str, Number]:
         """Return some rows."""
-        with silence():
-            return kept_program(self.plan).rows(rows)
+        return computed(self.plan, rows)
+
+
+def computed(plan: StudyPlan, rows: range) -> dict[str, Number]:
+    """Return some rows of a study."""
+    with silence():
+        return kept_program(plan).rows(rows)
 
 
 def kept_program(plan: StudyPlan) -> StudyProgram:
