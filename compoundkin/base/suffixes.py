@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 
 from compoundkin.base.errors import InvalidInput, Problem
 
-Kind: TypeAlias = Literal["mechanism", "table", "picture", "plot", "animation", "page", "report", "program"]
+Kind: TypeAlias = Literal["mechanism", "table", "picture", "plot", "animation", "page", "report", "program", "study"]
 
 # Of each kind its suffixes and the form that each means; the first suffix of a form is told to people.
 SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
@@ -30,8 +30,11 @@ SUFFIXES: Mapping[Kind, Mapping[str, str]] = MappingProxyType(
             ".htm": "html",
         },
         "program": {".c": "c", ".py": "python", ".js": "javascript", ".m": "matlab"},
+        "study": {".toml": "toml", ".json": "json"},
     }
 )
+# Kinds whose files are told apart from what they are of.
+_OF_FILES: tuple[Kind, ...] = ("mechanism", "study")
 # What a name without a suffix means, where there is one form that everybody expects.
 WITHOUT: Mapping[Kind, str] = MappingProxyType({"page": "html", "report": "text"})
 
@@ -89,7 +92,7 @@ def _told(kind: Kind) -> list[str]:
 
 
 def _ends(kind: Kind) -> str:
-    plural = f"{kind} files" if kind == "mechanism" else f"{kind}s"
+    plural = f"{kind} files" if kind in _OF_FILES else f"{kind}s"
     return f"{plural} end in {', '.join(_told(kind))}"
 
 

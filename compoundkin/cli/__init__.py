@@ -27,17 +27,18 @@ VERBS = {
     "characteristics": "Stroke, dead points, time ratio, transmission, advantage, dwells.",
     "forces": "Forces in all pairs, drivers' efforts, shaking force.",
     "simulate": "How it moves under its masses and loads, in time.",
+    "study": "Many designs: what dimensions do to figures, as a study file says.",
     "export": "A function in C, Python, JavaScript or MATLAB, for programs of your own.",
     "check": "Verify a motion: a table of all findings.",
     "catalog": "List, show or copy the shipped mechanisms.",
     "atlas": "All kinematic chains, trusses and Assur groups of a size.",
     "new": "Write a commented mechanism file to start from.",
-    "schema": "The JSON Schema of mechanism files.",
+    "schema": "The JSON Schema of mechanism files and of study files.",
     "completion": "The script that completes commands in your shell.",
 }
 
 # Verbs whose file has another name, for what they ask for has a file of that name in its own room.
-_FILES = {"forces": "mechanism_forces"}
+_FILES = {"forces": "mechanism_forces", "study": "study_command"}
 
 EPILOG = """\b
 Examples:

@@ -1,4 +1,4 @@
-"""`compoundkin schema`: the JSON Schema of mechanism files."""
+"""`compoundkin schema`: the JSON Schema of mechanism files, and of study files."""
 
 from __future__ import annotations
 
@@ -6,18 +6,24 @@ import click
 
 from compoundkin.cli.shell import put
 
+KINDS = ("mechanism", "study")
+
 
 @click.command(
     epilog="""\b
-Example:
+Examples:
   compoundkin schema > mechanism.schema.json
+  compoundkin schema study > study.schema.json
 """
 )
-def command() -> int:
-    """Print the JSON Schema of mechanism files. Editors check and complete TOML and JSON with it."""
+@click.argument("kind", type=click.Choice(KINDS), default=KINDS[0])
+def command(kind: str) -> int:
+    """Print the JSON Schema of mechanism or study files. Editors check and complete TOML and JSON with it."""
     import json
 
     from compoundkin.files import schema
+    from compoundkin.studies.study_files.study_schema import study_schema
 
-    put(json.dumps(schema(), indent=2, ensure_ascii=False) + "\n")
+    made = {"mechanism": schema, "study": study_schema}[kind]()
+    put(json.dumps(made, indent=2, ensure_ascii=False) + "\n")
     return 0

@@ -48,11 +48,11 @@ def schema() -> dict[str, Any]:
         "additionalProperties": False,
         "$defs": {
             **DEFINITIONS,
-            "load_table": _table(LoadTable.keys),
+            "load_table": closed_table(LoadTable.keys),
             "law": _tagged(LAWS, "How a driven coordinate moves in time."),
-            "segment": _table(ProgramSegment.keys),
-            "turned": _table(SEGMENT),
-            "program": _table(PROGRAM),
+            "segment": closed_table(ProgramSegment.keys),
+            "turned": closed_table(SEGMENT),
+            "program": closed_table(PROGRAM),
             "path": _tagged(PATHS, "Where a point is led in time."),
             "profile": _tagged(PROFILES, "The profile of a cam or curved slot, in the coordinates of its link."),
         },
@@ -66,18 +66,19 @@ def publish(path: str | os.PathLike[str]) -> None:
 
 
 def _tables(table: doc.TableForm) -> dict[str, Any]:
-    one = _table(table.keys)
+    one = closed_table(table.keys)
     if len(kinds := LOADS.get(table.name, ())) > 1:
-        one = {"anyOf": [_table(kind.keys) for kind in kinds]}
+        one = {"anyOf": [closed_table(kind.keys) for kind in kinds]}
     if table.name == DRIVES:
         ways = [{"required": [key.name]} for key in Lead.keys if key.kind in ("law", "path")]
-        one = {"anyOf": [one, {**_table(Lead.keys), "anyOf": ways}]}
+        one = {"anyOf": [one, {**closed_table(Lead.keys), "anyOf": ways}]}
     if table.form == "array":
         return {"type": "array", "items": one, "description": table.doc}
     return {"type": "object", "additionalProperties": one, "required": [FRAME], "description": table.doc}
 
 
-def _table(keys: tuple[Key, ...]) -> dict[str, Any]:
+def closed_table(keys: tuple[Key, ...]) -> dict[str, Any]:
+    """Return the schema of a table that has these keys and no others."""
     out: dict[str, Any] = {"type": "object", "properties": {key.name: _key(key) for key in keys}}
     required = [key.name for key in keys if key.required]
     return {**out, **({"required": required} if required else {}), "additionalProperties": False}
@@ -85,7 +86,7 @@ def _table(keys: tuple[Key, ...]) -> dict[str, Any]:
 
 def _tagged(kinds: Mapping[str, type[Any]], doc: str) -> dict[str, Any]:
     """Return one table for each kind of law or profile."""
-    tables = [(name, _table(kind.keys)) for name, kind in kinds.items()]
+    tables = [(name, closed_table(kind.keys)) for name, kind in kinds.items()]
     ways = [
         {**table, "properties": {KIND: {"const": name}, **table["properties"]},
          "required": [KIND, *table.get("required", ())]}
@@ -108,8 +109,7 @@ def _ref(name: str) -> dict[str, Any]:
 
 def _closed(**properties: Any) -> dict[str, Any]:
     """Return a table that has exactly these keys."""
-    required = list(properties)
-    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
+    return {"type": "object", "properties": properties, "required": list(properties), "additionalProperties": False}
 
 
 def _pair_of(first: Any, second: Any) -> dict[str, Any]:

@@ -6,9 +6,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from compoundkin.base.errors import InvalidMechanism, Problem
+from compoundkin.base.errors import InvalidMechanism
 from compoundkin.files import document as doc
 from compoundkin.files.load_entries import tables_of, written_loads
+from compoundkin.files.parsed_document import failed
 from compoundkin.files.recovery import ALL, JOINED, LETTERS, Recovery, stands_in
 from compoundkin.files.single_values import bad, described, single, wrong
 from compoundkin.files.tagged_tables import TAGGED
@@ -38,17 +39,6 @@ def read(document: Mapping[str, Any], where: str = "") -> Mechanism:
     if log.problems:
         raise failed(log.problems, where)
     return mechanism
-
-
-def failed(problems: list[Problem], where: str) -> InvalidMechanism:
-    """Return the one error with all problems of a file.
-
-    >>> print(failed([Problem("title", "it is missing")], "a.toml"))
-    a.toml: 1 problem:
-      title: it is missing
-    """
-    count = "1 problem" if len(problems) == 1 else f"{len(problems)} problems"
-    return InvalidMechanism(problems, heading=f"{where or 'mechanism file'}: {count}")
 
 
 def default_name(pair: Pair | Cylinder) -> str:

@@ -6,10 +6,11 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import Any, ClassVar
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.suffixes import Kind
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.runs.folder_head import prepared
@@ -20,6 +21,7 @@ from compoundkin.studies.samples import sample_of
 from compoundkin.studies.samples.contract import DesignSample
 from compoundkin.studies.samples.listed_rows import TableSample
 from compoundkin.studies.silence import silence
+from compoundkin.studies.study_files.study_writer import study_text
 from compoundkin.studies.study_plan import StudyPlan
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.variations import variations_of
@@ -27,7 +29,16 @@ from compoundkin.studies.variations import variations_of
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Study(StudyPlan):
-    """A study that can be run: designs, and what is asked of each."""
+    """A study that can be run: designs, and what is asked of each. It is saved as a .toml or .json file."""
+
+    saved_as: ClassVar[Kind] = "study"
+
+    def content(self, form: str) -> bytes:
+        """Return the bytes of its file in a form, "toml" or "json".
+
+        Raises InvalidInput for outputs that are Python functions.
+        """
+        return study_text(self, form).encode("utf-8")
 
     @checked
     def run(

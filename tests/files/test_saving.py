@@ -33,6 +33,7 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "page": lambda: ck.report(motion()).page(),
     "report": lambda: ck.report(motion()),
     "program": lambda: compile(load_named("crank-rocker"), "rocker.angle"),
+    "study": lambda: ck.study(load_named("crank-rocker"), {"crank.B.x": (1.8, 2.2)}, ["rocker.angle"], count=8),
 }
 BEGINS = {
     "toml": b"format = 1", "csv": b"crank.value [deg],rocker.angle [deg],assembled\n", "npz": b"PK", "parquet": b"PAR1",
@@ -67,7 +68,7 @@ def test_a_motion_is_saved_as_its_whole_table(tmp_path: Path) -> None:
         ("table", "a.xlsx", "a table is not saved as '.xlsx'; tables end in .csv, .json, .npz, .parquet"),
         ("picture", "a", "the file has no suffix; pictures end in .svg, .png, .pdf"),
         ("mechanism", "a.md", "a mechanism is not saved as '.md', a report is; mechanism files end in .toml, .json"),
-        ("page", "a.json", "a mechanism, a table and a report are; pages end in .html"),
+        ("page", "a.json", "a mechanism, a table, a report and a study are; pages end in .html"),
         ("report", "a.csv", "a report is not saved as '.csv', a table is; reports end in .txt, .md, .json, .html"),
     ],
 )

@@ -1,0 +1,97 @@
+"""`compoundkin study`: many designs of a mechanism, as a study file says."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from compoundkin.cli.drive_options import names
+from compoundkin.cli.file_options import FORMATS, put_report
+from compoundkin.cli.shell import NOT_ASSEMBLED, say
+
+if TYPE_CHECKING:
+    from compoundkin.studies.study import Study
+    from compoundkin.studies.study_result import StudyResult
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  compoundkin study press.toml
+  compoundkin study press.toml -o press-study --workers 2
+  compoundkin study press.toml --greatest ram.stroke --best 5
+  compoundkin study press.toml -o press-study --format json > press.json
+"""
+)
+@click.argument("file", metavar="FILE", type=click.Path())
+@click.option("-o", "--to-folder", "folder", metavar="FOLDER", help="Keep all rows here, as Parquet files. Where some "
+              "are there already, the others are computed.")  # fmt: skip
+@click.option("--workers", type=click.IntRange(1), metavar="NUMBER", help="Processes instead of threads of one.")
+@click.option("--chunk", type=click.IntRange(1), metavar="ROWS", help="How many designs a worker computes at a time.")
+@click.option("--least", multiple=True, metavar="NAME", callback=lambda _c, _p, given: names(given),
+              help="List the designs with the least of a figure. Repeat it, or write commas.")  # fmt: skip
+@click.option("--greatest", multiple=True, metavar="NAME", callback=lambda _c, _p, given: names(given),
+              help="The same with the greatest.")  # fmt: skip
+@click.option("--best", type=click.IntRange(1), default=1, show_default=True, metavar="NUMBER", help="So many of each.")
+@click.option("--format", "form", type=click.Choice(FORMATS), help="Of the summary.")
+def command(
+    file: str,
+    folder: str | None,
+    least: tuple[str, ...],
+    greatest: tuple[str, ...],
+    best: int,
+    form: str | None,
+    **how: int | None,
+) -> int:
+    """Compute the designs of a study file, and sum up their figures.
+
+    Ctrl-C stops it: with -o what is written stays, and the same command goes on from there.
+    Exit code 3: no design assembles.
+    """
+    from compoundkin.studies.study_files.loaded_study import load_study
+    from compoundkin.view.report.study_report import study_report
+
+    studied = load_study(file)
+    hold_figures(studied, (*least, *greatest))
+    found = computed(studied, folder, **how)
+    put_report(study_report(found, least, greatest, best), form, None)
+    if folder is not None:
+        say(f"{len(found):,} rows are in {folder}.")
+    return 0 if found.assembled.any() else NOT_ASSEMBLED
+
+
+def hold_figures(studied: Study, asked: tuple[str, ...]) -> None:
+    """Raise UnknownName where the best are asked of what is no figure."""
+    from compoundkin.base.errors import Problem, UnknownName, nearest
+
+    known = [one.name for one in studied.columns if one.kind != "state" and not one.width]
+    for name in asked:
+        if name not in known:
+            raise UnknownName(Problem(name, "it is no figure or dimension of the study", nearest(name, known)))
+
+
+def computed(studied: Study, folder: str | None, workers: int | None, chunk: int | None) -> StudyResult:
+    """Run a study with a line of progress.
+
+    On Ctrl-C it is said what stays.
+    """
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    from compoundkin.cli.progress import counting
+
+    where: dict[str, Any] = {} if folder is None else {"folder": folder}
+    with ExitStack() as stack:
+        on = None
+        if workers is not None:
+            # processes that are made anew do not inherit locks that threads of this one hold
+            on = stack.enter_context(ProcessPoolExecutor(workers, get_context("spawn")))
+        progress = stack.enter_context(counting("computing", "designs"))
+        try:
+            return studied.run(**where, on=on, chunk=chunk, progress=progress)
+        except KeyboardInterrupt:
+            if folder is not None:
+                say(f"What is written to {folder} stays: run it again to go on.")
+            raise
