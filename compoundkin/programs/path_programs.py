@@ -22,7 +22,7 @@ from compoundkin.programs.dimensions.dimension_values import dimension_values, h
 from compoundkin.programs.dimensions.free_dimension import FreeDimension
 from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
 from compoundkin.programs.limits.approach_look import DrawnApproach
-from compoundkin.programs.limits.limit_look import LimitPrograms
+from compoundkin.programs.limits.limit_look import LimitLook, LimitPrograms
 from compoundkin.programs.limits.settled_values import settled_values
 from compoundkin.programs.limits.solved_designs import ProgramConfiguration, solved_designs
 from compoundkin.programs.path_values import PathValues
@@ -182,7 +182,7 @@ class PathPrograms(PrintsShort):
         """Return outputs as they are found, made certain near limits."""
         look = self.limits.doubtful(numbers, least)
         failed = settled_values(numbers, self.names, arrays, look, self.solved)
-        return self.shown(numbers, arrays, failed)
+        return self.shown(numbers, arrays, failed, look=look)
 
     def shown(
         self,
@@ -190,11 +190,12 @@ class PathPrograms(PrintsShort):
         arrays: list[Number],
         failed: Number | None,
         shape: tuple[int, ...] | None = None,
+        look: LimitLook | None = None,
     ) -> PathValues:
         """Return certain outputs; angles are unwrapped along the motion in place."""
         for k in self._wrapped:
             arrays[k][...] = self.outputs[k].continuous(arrays[k])
-        return PathValues(numbers, dict(zip(self.names, arrays, strict=True)), failed, self.solved, shape)
+        return PathValues(numbers, dict(zip(self.names, arrays, strict=True)), failed, self.solved, shape, look)
 
     @cached_property
     def _wrapped(self) -> tuple[int, ...]:

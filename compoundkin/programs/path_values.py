@@ -15,6 +15,7 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.lost_digits import Told
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
+from compoundkin.programs.limits.limit_look import LimitLook
 
 
 class PathValues(Mapping[str, Any]):
@@ -22,7 +23,7 @@ class PathValues(Mapping[str, Any]):
 
     They are arrays of the call's `shape`, the last axis the motion. Points are complex, angles unwrapped along the
     motion. `failed` (designs, poses) is the index of the first group that does not close plus one, else 0; None where
-    all close.
+    all close. `look` is what was found of designs near limits, if any came near one.
 
     >>> import compoundkin as ck
     >>> found = ck.compile(ck.catalog.load_named("slider-crank"), ["B", "B.x"])([0.0, 1.0])
@@ -30,7 +31,7 @@ class PathValues(Mapping[str, Any]):
     (PathValues(B, B.x at (2,) poses), ['B', 'B.x'], (2,))
     """
 
-    __slots__ = ("_numbers", "_solving", "failed", "found", "shape")
+    __slots__ = ("_numbers", "_solving", "failed", "found", "look", "shape")
 
     def __init__(
         self,
@@ -39,8 +40,9 @@ class PathValues(Mapping[str, Any]):
         failed: Number | None,
         solving: Callable[[CallNumbers], Told],
         shape: tuple[int, ...] | None = None,
+        look: LimitLook | None = None,
     ) -> None:
-        self._numbers, self.found, self.failed, self._solving = numbers, found, failed, solving
+        self._numbers, self.found, self.failed, self._solving, self.look = numbers, found, failed, solving, look
         self.shape = self.numbers.shape if shape is None else shape
 
     @property

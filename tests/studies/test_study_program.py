@@ -41,3 +41,27 @@ def test_columns_tell_units_kinds_and_widths(program: StudyProgram) -> None:
     assert [found[name].width for name in ("assembled", "bar.angle.stroke")] == [None, None]
     rows = program.rows(range(5))
     assert rows["G.position.x"].shape == (5, len(TURN))
+
+
+def test_designs_are_lost_between_the_poses_as_grashof_tells() -> None:
+    """A crank that turns fully has the longest distance to cover at 184 degrees, between two poses."""
+    turned = np.deg2rad(4.0)
+    four_bar = ck.Mechanism(
+        "Four-bar", ck.link("frame", A=0, D=5.0 * np.exp(1j * turned)), ck.link("crank", A=0, B=2),
+        ck.link("coupler", B=0, C=5), ck.link("rocker", D=0, C=4), ck.drive("crank"), ck.mode(-1, "rocker"),
+    )  # fmt: skip
+    ranges = {"crank.B.x": (1.5, 4.5), "coupler.C.x": (3.0, 6.0), "rocker.C.x": (2.5, 5.0)}
+    variations = {name: variation_of(name, given) for name, given in ranges.items()}
+    path, responses = studied_path(four_bar, list(ranges), ["C.position"], TURN)
+    rows = StudyProgram(variations, sample_of("sobol", 2**13, 1), path, responses).rows(range(2**13))
+    crank, coupler, rocker = (rows[name] for name in ranges)
+    longest, shortest = crank + 5.0 <= coupler + rocker, abs(5.0 - crank) >= abs(coupler - rocker)
+    assert np.array_equal(rows["assembled"], longest & shortest)
+    told = rows["reason"][~rows["assembled"]]
+    assert all(text.startswith("RRR(coupler) cannot be assembled ") for text in told)
+    assert "RRR(coupler) cannot be assembled between crank 180 and 190 deg" in told
+    assert "RRR(coupler) cannot be assembled at crank 180 to 190 deg" in told
+    assert set(rows["circuit"][~rows["assembled"]]) == {"RRR(coupler)+-"}
+    assert set(rows["circuit"][rows["assembled"]]) == set(rows["branch"]) == {"RRR(coupler)-"}
+    assert not rows["order_defect"].any()
+    assert all(text is None for text in rows["reason"][rows["assembled"]])

@@ -38,11 +38,12 @@ class LimitLook(PrintsShort):
     """What is found at designs near limits.
 
     `failed` (designs, poses) is the index of the first group that does not close plus one, else 0; `handed` are the
-    designs, by index, that only solving can tell.
+    designs, by index, that only solving can tell, `near` those that were looked at.
     """
 
     failed: Number
     handed: Number
+    near: Number
 
     @property
     def lost(self) -> Number:
@@ -112,7 +113,7 @@ class LimitPrograms(PrintsShort):
             look = self.look(picked(numbers, designs))
             failed[designs] = look.failed
             handed[designs[look.handed]] = True
-        return LimitLook(failed, np.flatnonzero(handed))
+        return LimitLook(failed, np.flatnonzero(handed), designs)
 
     def look(self, numbers: CallNumbers) -> LimitLook:
         """Look at all designs of some numbers."""
@@ -121,7 +122,15 @@ class LimitPrograms(PrintsShort):
         parts = [picked(numbers, np.arange(d, min(d + high, designs))) for d in range(0, designs, high)]
         found = [self._block(part) for part in parts]
         failed, handed = (np.concatenate(each) for each in zip(*found, strict=True))
-        return LimitLook(failed, np.flatnonzero(handed))
+        return LimitLook(failed, np.flatnonzero(handed), np.arange(designs))
+
+    def at_poses(self, numbers: CallNumbers) -> tuple[Number, Number]:
+        """Return which group fails at each pose, and the least margin.
+
+        It is the index plus one, else 0.
+        """
+        failed, margin, _ = self._computed(self._poses, numbers)
+        return failed.astype(np.int32), margin
 
     def _block(self, numbers: CallNumbers) -> tuple[Number, Number]:
         failed, margin, clear = self._computed(self._poses, numbers)
@@ -197,6 +206,10 @@ def _driven(numbers: CallNumbers, values: Mapping[str, Number], speeds: Mapping[
 
 def _may_touch(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Number:
     """Tell where a function with these values and slopes at the ends of a unit interval may touch zero between."""
+    lesser = np.minimum(y0, y1)
+    # few intervals are so: all others are done with
+    found = (slope0 < 0.0) & (slope1 > 0.0) & (lesser >= 0.0) & (lesser < NEAR)
+    y0, slope0, y1, slope1, lesser = (each[found] for each in (y0, slope0, y1, slope1, lesser))
     rise = y1 - y0
     # the slope of the cubic is slope0 + b t + a t^2
     a, b = 3.0 * (slope0 + slope1 - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * slope0 - slope1)
@@ -205,5 +218,5 @@ def _may_touch(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Number
         t = np.where(b > 0.0, -2.0 * slope0 / (b + root), (root - b) / (2.0 * a))
         t = np.clip(np.nan_to_num(t, nan=0.5), 0.0, 1.0)
         least = y0 + t * (slope0 + t * (0.5 * b + t * a / 3.0))
-        lesser = np.minimum(y0, y1)
-        return (slope0 < 0.0) & (slope1 > 0.0) & (lesser >= 0.0) & (lesser < NEAR) & (least < FALL * lesser)
+        found[found] = least < FALL * lesser
+    return found

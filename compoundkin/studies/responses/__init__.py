@@ -73,7 +73,7 @@ def studied_path(
     if compiled.programs.variant(frozenset()).seeds:
         # between its poses a motion of which something is found by search is solved
         responses = tuple(_between_solved(reference, one) for one in responses)
-    return StudiedPath(compiled, reference), responses
+    return StudiedPath(compiled, reference, (values, rates)), responses
 
 
 def _between_solved(reference: Motion, one: Response) -> Response:

@@ -12,6 +12,7 @@ from compoundkin.base.series import Number
 from compoundkin.kinematics.extremes.extreme_search import MOST_ADDED, POLE
 from compoundkin.kinematics.extremes.measures import ROUNDING
 from compoundkin.kinematics.extremes.windows import AT_FINE, FINE, FIT, INNER, SAMPLES, TRUSTED, vertices
+from compoundkin.studies.responses.assembled_range import assembled_range
 from compoundkin.studies.responses.designs import Designs
 
 # A window is narrowed so often at most: at a kink to 1e-10 of it.
@@ -28,7 +29,7 @@ AT_ENDS = chebyshev.chebvander(np.array([-1.0, 1.0]), INNER - 1).T
 class CourseExtreme(PrintsShort):
     """The greatest value of a course of each design, and its place.
 
-    With the sign -1 it is the least. Both are (designs,), NaN where a design is not assembled at all poses.
+    With the sign -1 it is the least. Both are (designs,), NaN where a design is not assembled over the whole motion.
     """
 
     value: Number
@@ -55,7 +56,7 @@ class CourseSearch(PrintsShort):
             best = course.argmax(axis=1)
             offers = CourseOffers(course[np.arange(len(course)), best], best.astype(float))
             self._search(course, offers)
-        value = np.where(np.isnan(course).any(axis=1), np.nan, self.sign * offers.value)
+        value = np.where(assembled_range(self.designs).assembled, self.sign * offers.value, np.nan)
         return CourseExtreme(value, np.where(np.isnan(value), np.nan, offers.place))
 
     @property

@@ -12,11 +12,12 @@ import numpy as np
 from compoundkin.base.arrays import whole_turns
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.kinematics.extremes.inputs_between import inputs_between, interval
+from compoundkin.kinematics.extremes.inputs_between import inputs_between, interval, times_between
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
-from compoundkin.model.attributes import RADIANS
+from compoundkin.model.attributes import RADIANS, RATES, TIME
+from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.path_values import PathValues
@@ -28,11 +29,13 @@ Found = TypeVar("Found")
 class StudiedPath(PrintsShort):
     """A compiled path over one motion: `reference` says what its drivers do.
 
+    `given` are the values and rates that it was solved with.
     `coordinates` are the names that slopes are by, two of a free point.
     """
 
     compiled: CompiledPath
     reference: Motion
+    given: tuple[Any, Mapping[str, Any]] = (None, {})
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -57,25 +60,31 @@ class StudiedPath(PrintsShort):
         return float(np.max(own)) or (self.reference.size if is_length else 1.0)
 
     @property
+    def has_ends(self) -> bool:
+        """Whether guides have ends, at which its motion may stop."""
+        return bool(self.reference.solving_order.guide_ends.pairs)
+
+    @property
     def order(self) -> int:
         """The highest derivative that is asked for."""
         return self.compiled.programs.order
 
     def designs(self, dimensions: Mapping[str, Number]) -> Designs:
         """Return designs by the values of free dimensions, (designs,) each, over the whole motion."""
-        return Designs(self, dimensions, self.reference.inputs)
+        return Designs(self, dimensions, self.reference.inputs, self.reference.time)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Designs(PrintsShort):
     """Designs by their free dimensions, (designs,) each; `inputs` tell what the drivers do.
 
-    Poses are the last axis. What is computed of them is computed once.
+    Poses are the last axis; `times` are those of a motion in time. What is computed of them is computed once.
     """
 
     path: StudiedPath
     dimensions: Mapping[str, Number]
     inputs: Inputs
+    times: Number | None = None
     _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False)
 
     @property
@@ -91,27 +100,38 @@ class Designs(PrintsShort):
     @cached_property
     def found(self) -> PathValues:
         """The outputs of the path, (designs, poses)."""
-        return self.path.compiled(self._drive(0), self._columns, **self._rates)
+        values, more = self._drive
+        return self.path.compiled(values, self._columns, **more)
 
     @cached_property
     def slopes(self) -> PathSensitivities:
         """The outputs with their slopes by all free numbers and drivers."""
-        return self.path.compiled.derivatives(self._drive(0), self._columns, **self._rates)
+        values, more = self._drive
+        return self.path.compiled.derivatives(values, self._columns, **more)
+
+    @cached_property
+    def numbers(self) -> CallNumbers:
+        """The numbers of the call that finds them."""
+        values, more = self._drive
+        speed, acceleration, jerk = (more.get(name) for name in RATES)
+        programs = self.path.compiled.programs
+        return programs.numbers(values, self._columns, speed, acceleration, jerk, more.get(TIME))
 
     @cached_property
     def motion(self) -> Motion:
         """All of them solved by `solve`, to all orders."""
-        mechanism = self.path.compiled.mechanism(self._columns)
-        rates = self._rates
-        return solve(mechanism, self._drive(0), modes=self.path.compiled.modes, **rates)
+        values, more = self._drive
+        return solve(self.path.compiled.mechanism(self._columns), values, modes=self.path.compiled.modes, **more)
 
     def at(self, inputs: Inputs) -> Designs:
         """Return the same designs with drivers elsewhere, as between the poses."""
-        return replace(self, inputs=inputs)
+        return replace(self, inputs=inputs, times=None)
 
     def picked(self, rows: Number) -> Designs:
         """Return some of them, by index."""
-        return replace(self, dimensions={name: value[rows] for name, value in self.dimensions.items()})
+        drives = {name: tuple(_of(value, rows) for value in rates) for name, rates in self.inputs.drives.items()}
+        dimensions = {name: value[rows] for name, value in self.dimensions.items()}
+        return replace(self, dimensions=dimensions, inputs=self.inputs.driven(drives))
 
     def kept(self, key: Hashable, make: Callable[[], Found]) -> Found:
         """Return what is made once, under a key."""
@@ -132,20 +152,25 @@ class Designs(PrintsShort):
         linearly from pose to pose.
         """
         flat, at = np.repeat(rows, places.shape[1]), places.ravel()
-        reference = self.path.reference
-        if reference.time is None or self.inputs is not reference.inputs:
-            part = self.inputs.pick(flat if self.inputs.designs > 1 else np.zeros_like(flat), at)
+        reference, one = self.path.reference, np.zeros_like(flat)
+        if self.times is None:
+            part, times = self.inputs.pick(flat, at), None
         else:
-            part = inputs_between(reference, np.zeros_like(flat), at, self.path.order)
+            part = inputs_between(reference, one, at, self.path.order)
+            times = times_between(reference, one, at).reshape(places.shape)
         drives = {name: tuple(_laid(value, places.shape) for value in rates) for name, rates in part.drives.items()}
-        return self.picked(rows).at(replace(part, shape=places.shape, drives=drives))
+        inputs = replace(part, shape=places.shape, drives=drives)
+        return replace(self.picked(rows), inputs=inputs, times=times)
 
     def values_at(self, name: str, rows: Number, places: Number, is_angle: bool = False) -> Number:
         """Return an output of some of them at places, (rows, places).
 
         Angles are in the turn of the poses beside.
         """
-        found = np.broadcast_to(self.between(rows, places).found[name], places.shape)
+        there = self.between(rows, places).numbers
+        # a design that stays in its mode needs no look at limits between its poses
+        programs = self.path.compiled.programs
+        found = np.broadcast_to(programs.program(there).run(there)[name], places.shape)
         if not is_angle:
             return found
         k, weight = interval(self.inputs, places)
@@ -162,12 +187,19 @@ class Designs(PrintsShort):
     def _columns(self) -> dict[str, Number]:
         return {name: np.reshape(value, (-1, 1)) for name, value in self.dimensions.items()}
 
-    def _drive(self, order: int) -> dict[str, Any]:
-        return {name: rates[order] for name, rates in self.inputs.drives.items()}
-
     @cached_property
-    def _rates(self) -> dict[str, Any]:
-        return {"speed": self._drive(1), "acceleration": self._drive(2), "jerk": self._drive(3)}
+    def _drive(self) -> tuple[Any, dict[str, Any]]:
+        """The drivers' values, and their rates, or where laws are free what was given and the times."""
+        if self.times is not None and self.path.compiled.programs.law_numbers:
+            values, more = self.path.given
+            return values, {**more, TIME: self.times}
+        values, *rates = ({name: each[k] for name, each in self.inputs.drives.items()} for k in range(len(RATES) + 1))
+        return values, dict(zip(RATES, rates, strict=True))
+
+
+def _of(value: Number, rows: Number) -> Number:
+    """Return a driver's numbers of some designs."""
+    return value[rows] if np.ndim(value) and value.shape[0] > 1 else value
 
 
 def _laid(value: Number, shape: tuple[int, ...]) -> Number:

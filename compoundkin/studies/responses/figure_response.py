@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.series import Number
+from compoundkin.kinematics.extremes import extremes
 from compoundkin.model.attributes import GREATEST, LEAST, RADIANS, STROKE
+from compoundkin.studies.responses.assembled_range import assembled_range
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.course_extremes import CourseExtreme, CourseSearch
 from compoundkin.studies.responses.designs import Designs
@@ -44,5 +46,15 @@ class FigureResponse(Response):
 
     def extreme(self, designs: Designs, sign: float) -> CourseExtreme:
         """Return the greatest values, with the sign -1 the least. They are searched once."""
-        search = CourseSearch(designs, self.of, sign, self.unit == RADIANS, self.squared)
-        return designs.kept((self.of, sign), search.found)
+        return designs.kept((self.of, sign), lambda: self._found(designs, sign))
+
+    def _found(self, designs: Designs, sign: float) -> CourseExtreme:
+        """Search them; what passes change points, where a mode ends, is solved."""
+        found = CourseSearch(designs, self.of, sign, self.unit == RADIANS, self.squared).found()
+        handed = assembled_range(designs).handed
+        handed = handed[~np.isnan(found.value[handed])]
+        if len(handed):
+            (solved,) = extremes(designs.picked(handed).motion, self.of)
+            end = solved.greatest if sign > 0 else solved.least
+            found.value[handed], found.place[handed] = end.value, end.at.place
+        return found

@@ -1,0 +1,121 @@
+"""Over which part of a motion designs are assembled, between the poses too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compoundkin.base.display import PrintsShort
+from compoundkin.base.series import Number
+from compoundkin.kinematics.approach import SPACING
+from compoundkin.studies.responses.designs import Designs
+
+# Margins are looked at so many times as densely as `solve` looks for change points.
+FINER = 5
+# Where the least margin may be below that of a sample, between its neighbours, so many samples follow, so often: to
+# 1e-6 of a sample's spacing.
+PARTS, ROUNDS = 33, 5
+# Margins (squared sines) below this are rounding.
+ROUNDING = 1e-12
+# So many poses are looked at together.
+MOST_POSES = 2**19
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AssembledRange(PrintsShort):
+    """Where designs are not assembled.
+
+    `failed` (designs, poses) is the index of the first group that does not close plus one, else 0. `between` (designs,)
+    is the same of those that are lost between two poses only, after the pose `after`. `handed` are the designs, by
+    index, that were solved.
+    """
+
+    failed: Number
+    between: Number
+    after: Number
+    handed: Number
+
+    @property
+    def assembled(self) -> Number:
+        """Which designs are assembled over the whole motion, (designs,)."""
+        return ~self.failed.any(axis=1) & (self.between == 0)
+
+
+def assembled_range(designs: Designs) -> AssembledRange:
+    """Return where designs are not assembled; it is looked at once."""
+    return designs.kept(AssembledRange, lambda: _found(designs))
+
+
+def _found(designs: Designs) -> AssembledRange:
+    shape = designs.number, designs.poses
+    values = designs.found
+    failed = np.zeros(shape, dtype=np.int32) if values.failed is None else np.broadcast_to(values.failed, shape)
+    between, after = np.zeros(shape[0], dtype=np.int32), np.zeros(shape[0], dtype=int)
+    none: Number = np.empty(0, dtype=int)
+    programs = designs.path.compiled.programs
+    if values.look is None and not designs.path.has_ends:
+        return AssembledRange(failed, between, after, none)
+    near, handed = (np.arange(shape[0]), none) if values.look is None else (values.look.near, values.look.handed)
+    near = np.arange(shape[0]) if designs.path.has_ends else near
+    near = np.union1d(near, handed)
+    near = near[~failed[near].any(axis=1)]
+    if len(near) and shape[1] > 1 and not programs.variant(frozenset()).seeds:
+        between[near], after[near] = _between(designs.picked(near))
+    return AssembledRange(failed, between, after, handed)
+
+
+def _between(designs: Designs) -> tuple[Number, Number]:
+    """Return which group of each design fails between its poses plus one, else 0, and after which pose."""
+    parts = _parts(designs)
+    places = np.linspace(0.0, designs.poses - 1.0, (designs.poses - 1) * parts + 1)
+    step = max(1, MOST_POSES // len(places))
+    found = [_sampled(designs.picked(np.arange(k, min(k + step, designs.number))), places)
+             for k in range(0, designs.number, step)]  # fmt: skip
+    failed, place = (np.concatenate(each) for each in zip(*found, strict=True))
+    return failed, np.minimum(place.astype(int), designs.poses - 2)
+
+
+def _parts(designs: Designs) -> int:
+    """Return into how many parts the way between two poses is divided."""
+    order, longest = designs.path.reference.solving_order, 0.0
+    for name, (value, *_) in designs.inputs.drives.items():
+        if np.ndim(value) and value.shape[1] > 1:
+            longest = max(longest, float(np.abs(np.diff(value, axis=1)).max()) / order.unit(name))
+    return max(1, int(np.ceil(FINER * longest / SPACING)))
+
+
+def _sampled(designs: Designs, places: Number) -> tuple[Number, Number]:
+    """Return which group fails at samples or between them, and where."""
+    every = np.arange(designs.number)
+    failed, margin = _margins(designs, every, np.broadcast_to(places, (len(every), len(places))))
+    group, place = _first(failed, np.broadcast_to(places, failed.shape))
+    with np.errstate(invalid="ignore"):
+        bend = np.abs(np.diff(margin, 2, axis=1)).max(axis=1) if margin.shape[1] > 2 else np.full(len(every), np.inf)
+        inner = margin[:, 1:-1]
+        dips = (inner <= margin[:, :-2]) & (inner <= margin[:, 2:]) & (inner < bend[:, None]) & (group == 0)[:, None]
+    rows, k = np.nonzero(dips)
+    low, high = places[k], places[k + 2]
+    for _ in range(ROUNDS if len(rows) else 0):
+        parts = np.linspace(low, high, PARTS, axis=1)
+        failed, margin = _margins(designs, rows, parts)
+        lost, at = _first(failed, parts)
+        group[rows[lost > 0]], place[rows[lost > 0]] = lost[lost > 0], at[lost > 0]
+        index = np.arange(len(rows))
+        least = np.clip(np.argmin(margin, axis=1), 1, PARTS - 2)
+        low, high = parts[index, least - 1], parts[index, least + 1]
+    return group, place
+
+
+def _margins(designs: Designs, rows: Number, places: Number) -> tuple[Number, Number]:
+    """Return which group fails at places plus one, else 0, and the least margins, (rows, places)."""
+    numbers = designs.between(rows, places).numbers
+    failed, margin = designs.path.compiled.programs.limits.at_poses(numbers)
+    # through a change point a motion goes on
+    return np.where(np.abs(margin) < ROUNDING, 0, failed), margin
+
+
+def _first(failed: Number, places: Number) -> tuple[Number, Number]:
+    """Return the first failure of each row, 0 where there is none, and its place."""
+    index, k = np.arange(len(failed)), np.argmax(failed != 0, axis=1)
+    return failed[index, k].copy(), places[index, k].copy()
