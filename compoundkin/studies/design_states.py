@@ -47,6 +47,8 @@ def _turns_back(designs: Designs) -> Number:
 
 def _circuits(designs: Designs, found: AssembledRange, branch: str) -> Number:
     """Return the branch of each design, with both signs for groups that meet their limit on the way."""
+    if found.assembled.all():
+        return np.full(designs.number, branch, dtype=object)
     groups = 1 + np.arange(len(designs.path.reference.structure.groups))
     meets = np.array([(found.failed == k).any(axis=1) | (found.between == k) for k in groups])
     kinds, which = np.unique(meets, axis=1, return_inverse=True)
