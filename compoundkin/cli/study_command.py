@@ -79,6 +79,7 @@ def computed(studied: Study, folder: str | None, workers: int | None, chunk: int
     """
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
+    from signal import SIG_IGN, SIGINT, signal
 
     from compoundkin.cli.progress import counting
 
@@ -87,11 +88,13 @@ def computed(studied: Study, folder: str | None, workers: int | None, chunk: int
         on = None
         if workers is not None:
             # processes that are made anew do not inherit locks that threads of this one hold
-            on = stack.enter_context(ProcessPoolExecutor(workers, get_context("spawn")))
+            # and Ctrl-C is heard by this one alone, which lets them finish what they are at
+            hear = signal, (SIGINT, SIG_IGN)
+            on = stack.enter_context(ProcessPoolExecutor(workers, get_context("spawn"), *hear))
         progress = stack.enter_context(counting("computing", "designs"))
         try:
             return studied.run(**where, on=on, chunk=chunk, progress=progress)
         except KeyboardInterrupt:
             if folder is not None:
-                say(f"What is written to {folder} stays: run it again to go on.")
+                say(f"What is written stays in {folder}: run it again to go on.")
             raise

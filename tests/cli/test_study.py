@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import signal
+import subprocess
+import sys
+import time
 import tomllib
 from pathlib import Path
 
@@ -16,7 +21,8 @@ import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.studies import load_study, study_schema
 
-PAGE = (Path(__file__).parents[2] / "docs" / "study-files.md").read_text("utf-8")
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "study-files.md").read_text("utf-8")
 TEXT = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)[0].replace("count = 1024", "count = 128")
 NAME = "six-bar-study.toml"
 
@@ -80,6 +86,56 @@ def test_no_design_that_assembles_is_its_own_exit_code() -> None:
     found = run(NAME)
     assert found.exit_code == 3
     assert "What does not assemble" in found.stdout
+
+
+BIG = """
+format = 1
+mechanism = "six-bar"
+outputs = ["G.x.stroke", "bar.angle.least"]
+sample = "random"
+count = 16384
+[dimensions]
+"crank.D" = { centre = [13.5, 0], within = 0.5 }
+[drives.crank]
+values = { from = 0, to = 360, step = 4 }
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="no signals")
+def test_ctrl_c_leaves_what_is_written_and_a_second_run_goes_on() -> None:
+    pytest.importorskip("pyarrow")
+    Path(NAME).write_text(BIG, "utf-8")
+    args = [sys.executable, "-m", "compoundkin", "study", NAME, "-o", "rows", "--chunk", "4096"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        stopped = subprocess.Popen(args, stderr=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    until = time.monotonic() + 60
+    while not list(Path("rows").glob("*.parquet")) and time.monotonic() < until:
+        time.sleep(0.01)
+    stopped.send_signal(signal.SIGINT)
+    out, told = stopped.communicate(timeout=60)
+    assert (stopped.returncode, out) == (130, b"")
+    # what click writes before it tells of Ctrl-C is an empty line
+    assert told.decode().split("\n") == [
+        "What is written stays in rows: run it again to go on.",
+        "",
+        "Interrupted.",
+        "",
+    ]
+    written = {path.name: path.stat().st_mtime_ns for path in Path("rows").glob("*.parquet")}
+    assert 0 < len(written) < 4
+    found = run(NAME, "-o", "rows", "--chunk", "4096")
+    assert found.exit_code == 0
+    assert "16,384 rows are in rows." in found.stderr
+    # what was there has not been computed again
+    assert all(Path("rows", name).stat().st_mtime_ns == when for name, when in written.items())
+    again = ck.results.StudyResult.open("rows")
+    assert again["row"].tolist() == list(range(16384))
+    alone = ck.quantity(again.motion(16383), "bar.angle.least").values
+    assert again["bar.angle.least"][-1] == pytest.approx(np.ravel(alone)[0], abs=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -203,6 +203,42 @@ def test_all_problems_are_told_at_once() -> None:
     assert [re.split("[:]", one)[0] for one in found] == ["format", "count", "modes.plate"]
 
 
+@pytest.mark.parametrize(
+    ("sample", "dimensions"),
+    [
+        ('"random"\ncount = 10\nseed = 3', "low = 1, high = 2"),
+        ('"grid"\ncount = 25', "low = 1, high = 2"),
+        ('{ "crank.D.x" = 3, "crank.D.y" = 4 }', "low = 1, high = 2"),
+        ('"table"', "values = [1, 2.5, 3]"),
+        ('"sobol"\ncount = 8', "centre = 1, within = 0.5"),
+    ],
+)
+def test_every_sample_is_written_and_read(sample: str, dimensions: str) -> None:
+    head = f'format = 1\nmechanism = "six-bar"\noutputs = ["G"]\nsample = {sample}\n[dimensions]\n'
+    text = head + "".join(f'"crank.D.{part}" = {{ {dimensions} }}\n' for part in "xy")
+    VALIDATOR.validate(tomllib.loads(text))
+    own = said_of(read(text))
+    again = said_of(read(study_text(own, "toml")))
+    assert again.sample.data == own.sample.data
+    rows = (one.sample.designs(one.dimensions, range(own.sample.count)) for one in (own, again))
+    first, second = rows
+    assert all(np.array_equal(first[name], second[name]) for name in first)
+
+
+def test_dimensions_may_be_the_columns_of_a_table(tmp_path: Path) -> None:
+    (tmp_path / "designs.csv").write_text("crank.D.x,slot.angle [deg]\n13,-1\n14,2\n", "utf-8")
+    text = 'format = 1\nmechanism = "six-bar"\noutputs = ["G"]\nsample = "table"\ndimensions = "designs.csv"'
+    VALIDATOR.validate(tomllib.loads(text))
+    own = said_of(read(text, tmp_path))
+    found = own.sample.designs(own.dimensions, range(2))
+    assert found["crank.D.x"].tolist() == [13.0, 14.0]
+    assert np.allclose(found["slot.angle"], np.deg2rad([-1.0, 2.0]), rtol=1e-15)
+    with pytest.raises(InvalidInput, match='sample: the dimensions are the columns of a table; write sample = "table"'):
+        read(text.replace('sample = "table"', ""), tmp_path)
+    with pytest.raises(InvalidInput, match=r"other\.csv"):
+        read(text.replace("designs.csv", "other.csv"), tmp_path)
+
+
 def test_functions_are_no_outputs_of_files() -> None:
     own = said_of(read(TEXT))
     with pytest.raises(InvalidInput, match="a Python function cannot be written"):

@@ -22,7 +22,8 @@ HEAD = (
 # What is read by rules of its own.
 OTHERS = {
     MECHANISM: "The path of its file, seen from this one; the name of a shipped mechanism; or its whole document.",
-    DIMENSIONS: 'What each dimension may be, by its name in quotes: "crank.B" = { low = 40, high = 60 }.',
+    DIMENSIONS: 'What each dimension may be, by its name in quotes: "crank.B" = { low = 40, high = 60 }; '
+    "or the path of a CSV or Parquet table of designs.",
     DRIVES: "What drivers do, by name; the mechanism's own motion where they are left out.",
     MODES: "The assembly modes by links, 1 or -1; or the name of a configuration.",
     SAMPLE: f"Which designs: {', '.join(SAMPLES)}; or the number of levels of each dimension.",

@@ -15,10 +15,11 @@ from compoundkin.files.shipped_mechanisms import resolve
 from compoundkin.files.single_values import bad, described, wrong
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import decompose
+from compoundkin.studies.samples.listed_rows import TableSample
 from compoundkin.studies.study_files import study_keys as keys
 from compoundkin.studies.study_files.dimension_units import is_angle_dimension
 from compoundkin.studies.study_files.variation_entries import variation_data
-from compoundkin.studies.variations import variation_from
+from compoundkin.studies.variations import variation_from, variations_of
 
 # Tables of a single number.
 _UNITS = {"rad", "polar"}
@@ -38,7 +39,7 @@ def study_arguments(document: Mapping[str, Any], folder: Path, where: str = "") 
     angles = decompose(mechanism).driven_angles if mechanism else {}
     found = {
         keys.MECHANISM: mechanism,
-        keys.DIMENSIONS: _dimensions(given, mechanism, angles, log),
+        keys.DIMENSIONS: _dimensions(given, mechanism, angles, folder, log),
         **head,
         **_driven(given, mechanism, angles, log),
         **_whole(given, keys.MODES, "an assembly mode", log),
@@ -75,9 +76,12 @@ def _mechanism(given: Mapping[str, Any], folder: Path, log: Recovery) -> Mechani
 
 
 def _dimensions(
-    given: Mapping[str, Any], mechanism: Mechanism | None, angles: Mapping[str, bool], log: Recovery
+    given: Mapping[str, Any], mechanism: Mechanism | None, angles: Mapping[str, bool], folder: Path, log: Recovery
 ) -> dict[str, Any]:
+    """Return what dimensions may be, by name; those of a table are its columns."""
     found: dict[str, Any] = {}
+    if isinstance(path := given.get(keys.DIMENSIONS), str) and path:
+        return _columns(folder / path, given, log)
     for name, raw in _table(given, keys.DIMENSIONS, log).items():
         where = f"{keys.DIMENSIONS}.{name}"
         if whole := _unquoted(raw):
@@ -90,6 +94,17 @@ def _dimensions(
         except InvalidInput as error:
             log.problems += error.problems
     return found
+
+
+def _columns(path: Path, given: Mapping[str, Any], log: Recovery) -> dict[str, Any]:
+    if given.get(keys.SAMPLE) != TableSample.word:
+        how = f'write {keys.SAMPLE} = "{TableSample.word}"'
+        log.report(bad(keys.SAMPLE, "the dimensions are the columns of a table", how))
+    try:
+        return variations_of(path)
+    except InvalidInput as error:
+        log.problems += error.problems
+        return {}
 
 
 def _unquoted(raw: Any) -> str:

@@ -42,7 +42,7 @@ def study_schema() -> dict[str, Any]:
 def _forms() -> dict[str, Any]:
     return {
         keys.MECHANISM: {"anyOf": [FRAGMENTS["name"], {"$ref": f"#/$defs/{keys.MECHANISM}"}]},
-        keys.DIMENSIONS: _by_name({"anyOf": [_variation(*one) for one in _VARIATIONS]}),
+        keys.DIMENSIONS: {"anyOf": [_by_name({"anyOf": [_variation(*one) for one in _VARIATIONS]}), FRAGMENTS["name"]]},
         keys.SAMPLE: {"anyOf": [{"enum": list(SAMPLES)}, _WHOLE]},
         keys.MODES: {"anyOf": [FRAGMENTS["name"], _WHOLE]},
         keys.DRIVES: _by_name(closed_table(keys.DRIVEN)),
