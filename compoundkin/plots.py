@@ -1,4 +1,4 @@
-"""Plots beside `plot`: phase and polar plots, hodographs, bearing loads, coupler curves, centrodes, circuits, timing.
+"""Plots beside `plot`: phase, polar, bearing loads, paths, centrodes, circuits, timing; studies and tolerances.
 
 >>> import compoundkin as ck
 >>> motion = ck.solve(ck.catalog.load_named("crank-rocker"))
@@ -9,25 +9,35 @@ True
 from __future__ import annotations
 
 from compoundkin.view.plot import (
+    bands,
     bearing_loads,
     centrodes,
     circuits,
+    contributions,
+    histogram,
     hodograph,
+    pareto,
     paths,
     phase,
     polar,
+    scatter_matrix,
     timing_chart,
     workspace,
 )
 
 __all__ = [
+    "bands",
     "bearing_loads",
     "centrodes",
     "circuits",
+    "contributions",
+    "histogram",
     "hodograph",
+    "pareto",
     "paths",
     "phase",
     "polar",
+    "scatter_matrix",
     "timing_chart",
     "workspace",
 ]

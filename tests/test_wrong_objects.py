@@ -36,6 +36,8 @@ def at_hand() -> dict[str, Any]:
         "region": ck.performance.workspace(arm, "P", cells=8),
         "bar": bar,
         "structure": ck.decompose(bar),
+        "studied": ck.study(bar, {"crank.B.x": (0.9, 1.1)}, "rocker.angle.stroke", count=4).run(),
+        "tolerances": ck.tolerance(arm, {"fore.P.x": 0.1}, "P.x", values={"upper": 0.1, "fore": [1.0, 1.1]}, count=800),
         "motion": rocker,
         "timed": ck.solve(loaded("five-bar-led"), time=[0.0, 0.1, 0.2]),
         "cam": ck.solve(cam),
@@ -255,6 +257,14 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
                         "title": None, "size": None},
         "plots.polar": {"motion": motion, "around": None, "designs": (), "title": None, "size": None},
         "plots.workspace": {"found": h["region"], "colour": None, "singular": True, "title": None, "size": None},
+        "plots.scatter_matrix": {"result": h["studied"], "colour": None, "title": None, "size": None},
+        "plots.pareto": {"result": h["studied"], "first": "crank.B.x", "second": "rocker.angle.stroke", "greatest": (),
+                         "colour": None, "title": None, "size": None},
+        "plots.bands": {"found": h["tolerances"], "percentiles": (5.0, 95.0), "relative": True, "title": None,
+                        "size": None},
+        "plots.contributions": {"found": h["tolerances"], "name": "P.x", "pose": 0, "title": None, "size": None},
+        "plots.histogram": {"found": h["tolerances"], "name": "P.x", "pose": 0, "percentiles": None, "title": None,
+                            "size": None},
         "plots.timing_chart": {"what": m, "over": None, "title": None, "size": None},
         "profiles.DoubleCam": {"first": ck.profiles.synthesise(h["wave"], base=20.0),
                                "second": ck.profiles.synthesise(h["wave"], base=20.0)},
@@ -284,6 +294,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
 MORE = {
     "Mechanism": "items", "link": "letters", "mode": "links", "plot": "names", "chains.mechanism_from": "drivers",
     "laws.program": "segments", "laws.synchronised": "programs", "plots.circuits": "names",
+    "plots.scatter_matrix": "names", "plots.bands": "names",
     "plots.bearing_loads": "pairs", "plots.hodograph": "names", "plots.paths": "points", "plots.polar": "names",
 }  # fmt: skip
 

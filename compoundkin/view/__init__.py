@@ -6,6 +6,7 @@ display.register(
     html="compoundkin.view.notebook:html_of",
     svg="compoundkin.view.notebook:svg_of",
     plot="compoundkin.view.plot:plot",
+    study_plot="compoundkin.view.plot.study_plot:study_plot",
     workspace="compoundkin.view.plot:workspace",
     animation="compoundkin.view.animation:animate",
 )

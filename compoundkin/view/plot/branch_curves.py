@@ -34,8 +34,6 @@ from compoundkin.view.plot.point_labels import PointLabel
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1, 1.2)))
 # The circuit on which solving begins is a wide line on which the others can be seen where they coincide.
 OWN, OTHER, ALONE = 2.8, 1.3, 1.6
-# More circuits than there are colours are grey, but for the one on which solving begins.
-FAINT = "#a8a8a8"
 # A place nearer to the end of a turn than this (degrees) is there.
 AT_END = 1e-6
 # More limit positions than this in a panel, and the names beside them would be a crowd.
@@ -100,7 +98,8 @@ class BranchDrawing:
     def colour(self, circuit: Circuit) -> str:
         """Return the colour of a circuit."""
         if self.is_crowd:
-            return plot_style.COLOURS[0] if circuit.number == self.own else FAINT
+            # grey, but for the one on which solving begins
+            return plot_style.COLOURS[0] if circuit.number == self.own else plot_style.FAINT
         return plot_style.COLOURS[circuit.number - 1]
 
     def panel(self, axes: Any, quantity: Plotted, labels: list[PointLabel]) -> None:

@@ -26,6 +26,8 @@ DEGREES = (1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720)
 ACROSS, UPWARDS = 9, 6
 # Characters that the height of a panel and of a whole figure have room for.
 PANEL, WHOLE = 24, 60
+# The width of a letter in a legend, inches, and how many letters a handle is wide.
+LETTER, HANDLE = 0.078, 7
 # How poses next to limit positions are marked.
 RING: Mapping[str, Any] = MappingProxyType(
     {"linestyle": "none", "marker": "o", "markersize": 5.5, "markerfacecolor": "white", "markeredgewidth": 1.2}
@@ -101,6 +103,12 @@ def steady(values: Number, scale: float) -> tuple[float, float] | None:
     return middle - half, middle + half
 
 
+def blank(axes: Any) -> None:
+    """Say that there is nothing to draw, instead of ticks that mean nothing."""
+    axes.text(0.5, 0.5, "no values", transform=axes.transAxes, ha="center", va="center", color=GREY)
+    axes.set_yticks([])
+
+
 def plane(axes: Any, x: str, y: str) -> None:
     """Draw the axes of a plane: equal scales."""
     axes.set_aspect("equal", adjustable="datalim")
@@ -150,8 +158,15 @@ def events_legend(figure: Any, gaps: bool, limits: bool, changes: bool, marks: s
         handles.append(ring_handle("next to a gap"))
     if changes:
         handles.append(Line2D([], [], color=GREY, linestyle="--", linewidth=1.0, label="change point"))
+    legend_below(figure, handles)
+
+
+def legend_below(figure: Any, handles: Sequence[Any]) -> None:
+    """Draw the legend of a whole figure below it. A long one has two rows."""
     if handles:
-        figure.legend(handles=handles, loc="outside lower right", ncols=len(handles))
+        letters = sum(len(one.get_label()) + HANDLE for one in handles)
+        rows = 1 if letters * LETTER <= figure.get_figwidth() else 2
+        figure.legend(handles=handles, loc="outside lower right", ncols=-(-len(handles) // rows))
 
 
 def ring_handle(label: str) -> Any:

@@ -19,6 +19,8 @@ INK, GREY, SHADE = "#222222", "#767676", "#dcdcdc"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 # Even in lightness and safe for the colour-blind; its light end would be lost on white.
 FAMILY, LIGHTEST = "viridis", 0.88
+# What is many and not meant: further circuits, designs that cannot be assembled.
+FAINT = "#a8a8a8"
 
 SMALL_PRINT = 8.5
 
