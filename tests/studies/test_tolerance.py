@@ -79,6 +79,34 @@ def test_a_slider_crank_has_its_closed_form() -> None:
     assert np.array(list(place.contributions.values())) == pytest.approx(np.array(parts) / sum(parts))
 
 
+def test_a_four_bar_has_the_mechanical_error_of_the_textbooks() -> None:
+    """By its loop, differentiated: R. S. Hartenberg, J. Denavit, Kinematic Synthesis of Linkages, 1964, on mechanical
+    errors; R. E. Garrett, A. S. Hall, Trans. ASME J. Eng. Ind. 91 (1969) 198-202.
+
+    a cos(theta - psi) da + db = cos(psi) dd + cos(phi - psi) dc - c sin(phi - psi) dphi. A play at any of the pins
+    shifts an end of the coupler, and counts along it.
+    """
+    a, b, c, d = 2.0, 5.0, 4.0, 5.5
+    four_bar = ck.Mechanism(
+        "Four-bar", ck.link("frame", A=0, D=d), ck.link("crank", A=0, B=a), ck.link("coupler", B=0, C=b),
+        ck.link("rocker", D=0, C=c), ck.drive("crank"), ck.mode(-1, "rocker"),
+    )  # fmt: skip
+    play, names = 0.004, ["crank.B.x", "coupler.C.x", "rocker.C.x", "frame.D.x"]
+    given = dict(zip(names, (0.01, 0.02, 0.03, 0.04), strict=True))
+    found = ck.tolerance(four_bar, given, "rocker.angle", values=TURN, clearance=dict.fromkeys("ABCD", play))
+    motion = ck.solve(four_bar, TURN)
+    psi, phi = (motion.links[link].angle for link in ("coupler", "rocker"))
+    transmission = c * np.sin(phi - psi)
+    slopes = np.array([-np.cos(TURN - psi), -np.ones_like(psi), np.cos(phi - psi), np.cos(psi)]) / transmission
+    one = found["rocker.angle"]
+    assert np.array([one.slopes[name] for name in names]) == pytest.approx(slopes)
+    for pin in "ABCD":
+        assert one.worst_parts[f"clearance {pin}"] == pytest.approx(play / np.abs(transmission))
+    halves = np.array(list(given.values()))
+    assert one.worst == pytest.approx(halves @ np.abs(slopes) + 4 * play / np.abs(transmission))
+    assert one.deviation**2 == pytest.approx((halves / 3) ** 2 @ slopes**2 + 2 * (play / transmission) ** 2)
+
+
 def test_a_play_is_the_same_on_either_link() -> None:
     """What two links are off at their pin depends on neither, but for the axes that it is told in."""
     six_bar = ck.catalog.load_named("six-bar")
@@ -172,6 +200,17 @@ def test_designs_that_cannot_be_assembled_are_counted() -> None:
     told = pytest.raises(ck.errors.NotAssembled, match="values: 3 poses of the mechanism itself cannot be assembled")
     with told, pytest.warns(ck.errors.UnassembledPoses):
         ck.tolerance(bar.replace(ck.link("rocker", D=0, C=1.9)), {"crank.B.x": 0.06}, "rocker.angle", values=TURN)
+
+
+def test_slopes_that_there_are_not_are_told() -> None:
+    """A parallelogram at its change point: the rocker may turn either way."""
+    bar = ck.Mechanism(
+        "Parallelogram", ck.link("frame", A=0, D=4), ck.link("crank", A=0, B=1), ck.link("coupler", B=0, C=4),
+        ck.link("rocker", D=0, C=1), ck.drive("crank"), ck.drawn(A=0, B=1j, C=4 + 1j, D=4),
+    )  # fmt: skip
+    with pytest.warns(ck.errors.FewDigits, match=r"rocker.angle has no slopes at 1 of 3 poses"):
+        found = ck.tolerance(bar, {"frame.A.y": 1e-6}, "rocker.angle", values=ck.deg([160.0, 180.0, 200.0]), count=800)
+    assert np.isnan(found["rocker.angle"].deviation).tolist() == [False, True, False]
 
 
 def test_angles_are_counted_by_the_nearest_turn() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from compoundkin.base.display import counted
-from compoundkin.base.errors import NotAssembled, Problem, UnassembledPoses, warn
+from compoundkin.base.errors import FewDigits, NotAssembled, Problem, UnassembledPoses, warn
 from compoundkin.base.series import Number
 from compoundkin.model.attributes import PARTS, RADIANS
 from compoundkin.studies.responses import Response
@@ -33,6 +33,7 @@ def found_outputs(
     for response in responses:
         for one in _outputs(designs, response, values[response.name][assembled], percents):
             outputs[one.name] = one
+            _tell_slopes(one)
     return outputs, int(np.count_nonzero(~assembled))
 
 
@@ -63,6 +64,14 @@ def _near(name: str, values: Number, nominal: Number, unit: str) -> Number:
         raise NotAssembled(Problem(f"outputs.{name}", what, "give closer tolerances, or leave it out"))
     values = values if has.all() else values[has]
     return values - 2.0 * np.pi * np.round((values - nominal) / (2.0 * np.pi)) if unit == RADIANS else values
+
+
+def _tell_slopes(one: OutputTolerance) -> None:
+    lacking = np.isnan(one.deviation) & ~np.isnan(one.nominal)
+    if lacking.any():
+        where = f" at {np.count_nonzero(lacking)} of {lacking.size} poses" if one.is_course else ""
+        told = f"{one.name} has no slopes{where}, at a limit or a change point; only the random designs tell there"
+        warn(told, FewDigits)
 
 
 def _hold_nominal(designs: TolerancedDesigns) -> None:
