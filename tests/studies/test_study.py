@@ -15,16 +15,22 @@ from compoundkin.studies.study_data import differences, digest
 
 
 @cache
-def six_bar(count: int = 8192, speed: float = 3.0) -> ck.results.Study:
+def six_bar(count: int = 8192, speed: float = 3.0, more: str = "") -> ck.results.Study:
+    """Some of its designs do not assemble everywhere."""
     ranges = {"crank.D.x": (13.0, 14.0), "rocker.A.x": (15.0, 30.0)}
-    outputs = ["G.position", "bar.angle.stroke", "bar.angular_velocity"]
-    turn = ck.deg(np.arange(0, 360, 30))
+    outputs = ["G.position", "bar.angular_velocity", *more.split()]
+    turn = ck.deg(np.arange(0, 360, 60))
     return ck.study(ck.catalog.load_named("six-bar"), ranges, outputs, count=count, seed=2, values=turn, speed=speed)
 
 
 @pytest.fixture(scope="module")
 def result() -> ck.results.StudyResult:
     return six_bar().run(threads=1)
+
+
+@pytest.fixture(scope="module")
+def figures() -> ck.results.StudyResult:
+    return six_bar(256, more="bar.angle.stroke").run(threads=1)
 
 
 def assert_same(one: ck.results.StudyResult, other: ck.results.StudyResult) -> None:
@@ -44,7 +50,7 @@ def test_a_row_is_what_solving_its_mechanism_finds(result: ck.results.StudyResul
         for name in ("G.position", "bar.angular_velocity"):
             expected = ck.quantity(motion, name).values
             assert np.allclose(result[name][row], expected, rtol=1e-10, atol=0), name
-    assert result["G.position"].shape == (8192, 12)
+    assert result["G.position"].shape == (8192, 6)
 
 
 def test_numbers_depend_neither_on_chunks_nor_on_workers(result: ck.results.StudyResult) -> None:
@@ -55,26 +61,26 @@ def test_numbers_depend_neither_on_chunks_nor_on_workers(result: ck.results.Stud
         assert_same(result, pickle.loads(pickle.dumps(six_bar())).run(on=pool))
 
 
-def test_the_best_are_rows_that_assemble(result: ck.results.StudyResult) -> None:
+def test_the_best_are_rows_that_assemble(figures: ck.results.StudyResult) -> None:
     name = "bar.angle.stroke"
-    best = result.best(name, 3)
-    values = np.sort(result[name][result.assembled])
+    best = figures.best(name, 3)
+    values = np.sort(figures[name][figures.assembled])
     assert [row[name] for row in best] == values[:3].tolist()
-    (most,) = result.best(name, greatest=True)
+    (most,) = figures.best(name, greatest=True)
     assert most[name] == values[-1]
-    again = {key: result[key][most["row"]] for key in ("crank.D.x", "G.position")}
+    again = {key: figures[key][most["row"]] for key in ("crank.D.x", "G.position")}
     assert most["crank.D.x"] == again["crank.D.x"]
     assert (most["G.position"] == again["G.position"]).all()
 
 
-def test_tables_and_frames_have_the_columns(result: ck.results.StudyResult) -> None:
-    table = result.table()
-    assert len(table) == 8192
-    assert table.names == tuple(n for n in result.names if result[n].ndim == 1)
+def test_tables_and_frames_have_the_columns(figures: ck.results.StudyResult) -> None:
+    table = figures.table()
+    assert len(table) == 256
+    assert table.names == tuple(n for n in figures.names if figures[n].ndim == 1)
     assert table.units["bar.angle.stroke"] == "rad"
-    frame = result.to_pandas()
-    assert tuple(frame.columns) == result.names
-    assert (frame["G.position.x"][5] == result["G.position"][5].real).all()
+    frame = figures.to_pandas()
+    assert tuple(frame.columns) == figures.names
+    assert (frame["G.position.x"][5] == figures["G.position"][5].real).all()
     assert frame.attrs["angles"] == "radians"
 
 
@@ -97,13 +103,13 @@ def test_what_cannot_be_meant_is_told_before_anything_runs(options: dict[str, An
         ck.study(ck.catalog.load_named("six-bar"), **given)
 
 
-def test_wrong_questions_to_a_result_are_told(result: ck.results.StudyResult) -> None:
+def test_wrong_questions_to_a_result_are_told(figures: ck.results.StudyResult) -> None:
     for call, told in {
-        (lambda: result["bar.angle.strok"]): "did you mean 'bar.angle.stroke'",
-        (lambda: result.best("G.position")): "one number",
-        (lambda: result.best("bar.angle.stroke", 0)): "count",
-        (lambda: result.mechanism(8192)): "rows 0 to 8191",
-        (lambda: result.table("G.position")): "every pose",
+        (lambda: figures["bar.angle.strok"]): "did you mean 'bar.angle.stroke'",
+        (lambda: figures.best("G.position")): "one number",
+        (lambda: figures.best("bar.angle.stroke", 0)): "count",
+        (lambda: figures.mechanism(256)): "rows 0 to 255",
+        (lambda: figures.table("G.position")): "every pose",
         (lambda: six_bar(4).run(on=3)): "on: 3 computes nothing",
         (lambda: six_bar(4).run(threads=0)): "threads",
     }.items():

@@ -60,8 +60,8 @@ def test_a_folder_has_the_rows_and_the_study(whole: ck.results.StudyResult, tmp_
     assert_same(opened, whole)
     assert opened.is_complete
     assert opened.study.data == result.study.data
-    row = opened.best("bar.angle.stroke", 40)[-1]
-    for name, value in whole.best("bar.angle.stroke", 40)[-1].items():
+    row = opened.best("rocker.A.x", 40)[-1]
+    for name, value in whole.best("rocker.A.x", 40)[-1].items():
         assert np.array_equal(row[name], value), name
     again = [ck.quantity(one.motion(9000), "G.position").values for one in (opened, whole)]
     assert np.array_equal(*again)
