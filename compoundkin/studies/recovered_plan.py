@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.studies.samples import sample_of
+from compoundkin.studies.samples import sample_from
 from compoundkin.studies.study_data import CALLED, mechanism_from
 from compoundkin.studies.study_plan import RATES, StudyPlan
 from compoundkin.studies.variations import variation_from
@@ -22,7 +22,7 @@ def plan_from(data: Mapping[str, Any]) -> StudyPlan:
         raise InvalidInput(Problem(f"study.{untold[0]}", "it is an object of a program, which no file holds", remedy))
     named = {name: data["dimensions"][name] for name in data["order"]}
     dimensions = {name: variation_from(f"dimensions.{name}", one) for name, one in named.items()}
-    sample = sample_of(**data["sample"], variations=dimensions)
+    sample = sample_from(data["sample"])
     rest: dict[str, Any] = {name: data.get(name) for name in ("values", *RATES, "modes", "given")}
     return StudyPlan(mechanism_from(data["mechanism"]), dimensions, tuple(data["outputs"]), sample, **rest)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import counted
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.motion import Motion
@@ -55,9 +55,12 @@ class StudyPlan:
         """What computes its rows."""
         rates = {name: getattr(self, name) for name in RATES}
         outputs: Any = self.outputs
-        path, responses = studied_path(
-            self.mechanism, list(self.dimensions), outputs, self.values, modes=self.modes, **rates
-        )
+        try:
+            path, responses = studied_path(
+                self.mechanism, list(self.dimensions), outputs, self.values, modes=self.modes, **rates
+            )
+        except CompoundkinError as error:
+            raise type(error)(map(_placed, error.problems), error.heading) from None
         return StudyProgram(self.dimensions, self.sample, path, responses)
 
     @property
@@ -135,3 +138,9 @@ class StudyPlan:
 
     def __hash__(self) -> int:
         return hash(self.key)
+
+
+def _placed(problem: Problem) -> Problem:
+    """Return a problem of compilation in the words of a study, whose free dimensions are its dimensions."""
+    free, dot, name = problem.where.partition(".")
+    return replace(problem, where=f"dimensions.{name}") if dot and free == "free" else problem

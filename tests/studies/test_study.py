@@ -87,7 +87,7 @@ def test_tables_and_frames_have_the_columns(figures: ck.results.StudyResult) -> 
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        ({"dimensions": {"crnk.D.x": (1, 2)}}, "crnk"),
+        ({"dimensions": {"crnk.D.x": (1, 2)}}, "dimensions.crnk.D.x: "),
         ({"dimensions": {}}, "dimensions: there is none"),
         ({"outputs": []}, "outputs: there is none"),
         ({"outputs": ["bar.angel"]}, "bar.angle"),
