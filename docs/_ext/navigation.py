@@ -16,7 +16,7 @@ CONTENTS: dict[str, tuple[str, ...]] = {
     ),
     "Use it": (
         *("pairs", "cams", "laws", "circuits", "composing", "pictures", "animation", "plots", "page"),
-        *("cli", "file-format", "study-files", "clusters", "compiled", "programs_in_other_languages"),
+        *("cli", "file-format", "study-files", "clusters", "compiled", "tolerances", "programs_in_other_languages"),
     ),
     "Understand it": ("theory", "friction", "notation"),
     "Examples": ("gallery/index", "catalog"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -287,6 +288,15 @@ def test_tables_of_sources_and_of_poses(tmp_path: Path) -> None:
         found.bands("B.x.stroke")
     with pytest.raises(ck.errors.UnknownName, match=r"B.y: there is no such output"):
         found.table("B.y")
+
+
+def test_the_page_prints_what_it_shows(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (Path(__file__).parents[2] / "docs" / "tolerances.md").read_text("utf-8")
+    exec("\n".join(re.findall(r"```python\n(.*?)```", page, re.DOTALL)), {})
+    assert capsys.readouterr().out == "".join(re.findall(r"```text\n(.*?)```", page, re.DOTALL))
 
 
 def test_pins_of_three_links_want_to_know_which_are_loose() -> None:
