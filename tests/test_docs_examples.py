@@ -61,6 +61,19 @@ def test_the_page_on_compiled_programs_is_true(tmp_path: Path) -> None:
         assert float(angles[0] - angles[1]) / 2e-4 == pytest.approx(float(slope[at]), rel=1e-7)
 
 
+@pytest.mark.parametrize("page", ["studies.md"])
+def test_the_pages_on_many_designs_print_what_they_show(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    text = (DOCS / page).read_text("utf-8")
+    for code, shown in re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", text, re.DOTALL):
+        exec(code, names)
+        printed = capsys.readouterr().out
+        assert shown in ("", printed)
+
+
 def test_the_words_for_profiles_are_named_with_their_module() -> None:
     for page in DOCS.glob("*.md"):
         bare = re.findall(r"`(?:disc|profile|formula|synthesise|cam_analysis)`", page.read_text("utf-8"))

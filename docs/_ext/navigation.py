@@ -16,7 +16,8 @@ CONTENTS: dict[str, tuple[str, ...]] = {
     ),
     "Use it": (
         *("pairs", "cams", "laws", "circuits", "composing", "pictures", "animation", "plots", "page"),
-        *("cli", "file-format", "study-files", "clusters", "compiled", "tolerances", "programs_in_other_languages"),
+        *("studies", "clusters", "tolerances", "compiled"),
+        *("cli", "file-format", "study-files", "programs_in_other_languages"),
     ),
     "Understand it": ("theory", "friction", "notation"),
     "Examples": ("gallery/index", "catalog"),
