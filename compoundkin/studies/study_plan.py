@@ -57,7 +57,7 @@ class StudyPlan:
         outputs: Any = self.outputs
         try:
             path, responses = studied_path(
-                self.mechanism, list(self.dimensions), outputs, self.values, modes=self.modes, **rates
+                self.mechanism, list(self.dimensions), outputs, self.values, given=self.given, modes=self.modes, **rates
             )
         except CompoundkinError as error:
             raise type(error)(map(_placed, error.problems), error.heading) from None

@@ -23,12 +23,11 @@ from compoundkin.programs.calls.call_numbers import CallNumbers, picked
 from compoundkin.programs.graph.input_kinds import DIMENSION, DRIVE, HOLDS
 from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.limits.approach_look import DrawnApproach
+from compoundkin.programs.limits.touched_zeros import may_touch
 from compoundkin.programs.ready_program import ReadyProgram
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, recorded
 
-# Between two poses a discriminant may touch zero where the cubic through both falls below this part of the lesser.
-FALL = 0.25
 # So many poses are looked at together.
 BLOCK = 1 << 19
 
@@ -152,7 +151,7 @@ class LimitPrograms(PrintsShort):
         one, two = (self._computed(squares, _driven(numbers, end, ahead)) for end in ends)
         found: Number = np.zeros(numbers.extent[0], dtype=bool)
         for k in range(0, len(one), 2):
-            found |= np.any(_may_touch(one[k], one[k + 1], two[k], two[k + 1]), axis=1)
+            found |= np.any(may_touch(one[k], one[k + 1], two[k], two[k + 1]), axis=1)
         return found
 
     @cached_property
@@ -202,21 +201,3 @@ def _driven(numbers: CallNumbers, values: Mapping[str, Number], speeds: Mapping[
         given[InputNumber(DRIVE, name, "1")] = np.broadcast_to(speeds[name], value.shape)
     poses = max(value.shape[1] for value in values.values())
     return replace(numbers, given=given, shape=(numbers.extent[0], poses))
-
-
-def _may_touch(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Number:
-    """Tell where a function with these values and slopes at the ends of a unit interval may touch zero between."""
-    lesser = np.minimum(y0, y1)
-    # few intervals are so: all others are done with
-    found = (slope0 < 0.0) & (slope1 > 0.0) & (lesser >= 0.0) & (lesser < NEAR)
-    y0, slope0, y1, slope1, lesser = (each[found] for each in (y0, slope0, y1, slope1, lesser))
-    rise = y1 - y0
-    # the slope of the cubic is slope0 + b t + a t^2
-    a, b = 3.0 * (slope0 + slope1 - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * slope0 - slope1)
-    with np.errstate(all="ignore"):
-        root = np.sqrt(np.maximum(b * b - 4.0 * a * slope0, 0.0))
-        t = np.where(b > 0.0, -2.0 * slope0 / (b + root), (root - b) / (2.0 * a))
-        t = np.clip(np.nan_to_num(t, nan=0.5), 0.0, 1.0)
-        least = y0 + t * (slope0 + t * (0.5 * b + t * a / 3.0))
-        found[found] = least < FALL * lesser
-    return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from compoundkin.base.errors import InvalidInput
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.extremes.measures import measure_of
 from compoundkin.kinematics.motion import Motion
@@ -20,6 +20,7 @@ from compoundkin.studies.responses.course_response import CourseResponse
 from compoundkin.studies.responses.designs import Designs, StudiedPath
 from compoundkin.studies.responses.figure_response import PARTS_OF, FigureResponse
 from compoundkin.studies.responses.solved_response import SolvedResponse
+from compoundkin.studies.responses.summed_response import SummedResponse, summed_response
 
 __all__ = ["Designs", "Response", "StudiedPath", "response_of", "studied_path"]
 
@@ -55,18 +56,21 @@ def _is_computed(motion: Motion, name: str) -> bool:
 def studied_path(
     mechanism: Mechanism,
     free: Sequence[str],
-    outputs: Sequence[str],
+    outputs: Sequence[str] | Mapping[str, Any],
     values: Any = None,
     *,
+    given: Mapping[str, Any] | None = None,
     modes: Mapping[str, int] | str | Configuration | None = None,
     **rates: Any,
 ) -> tuple[StudiedPath, tuple[Response, ...]]:
     """Return the compiled path over one motion for what is asked, and the responses.
 
-    `values` and rates (`speed`, `acceleration`, `jerk`, `time`) are those of `solve`.
+    `outputs` are names, or functions of a pose by names of their own, summed over the motion; these read what is
+    `given` besides. `values` and rates (`speed`, `acceleration`, `jerk`, `time`) are those of `solve`. Raises
+    UnknownName for what there is not, and for what is given and not read.
     """
     reference = solve(mechanism, values, modes=modes, **rates)
-    responses = tuple(response_of(reference, name) for name in outputs)
+    responses = _responses(reference, outputs, given or {})
     needs = tuple(dict.fromkeys(need for one in responses for need in one.needs))
     driver = f"{next(iter(reference.drives))}.{VALUE}"
     compiled = compile(mechanism, needs or driver, free=free, values=values, modes=modes)
@@ -76,5 +80,21 @@ def studied_path(
     return StudiedPath(compiled, reference, (values, rates)), responses
 
 
+def _responses(
+    motion: Motion, outputs: Sequence[str] | Mapping[str, Any], given: Mapping[str, Any]
+) -> tuple[Response, ...]:
+    functions = outputs if isinstance(outputs, Mapping) else dict.fromkeys(outputs)
+    found = tuple(
+        response_of(motion, name) if function is None else summed_response(motion, name, function, given)
+        for name, function in functions.items()
+    )
+    read = {one for response in found if isinstance(response, SummedResponse) for one in response.given}
+    unread = [name for name in given if name not in read]
+    if unread:
+        what, remedy = "no function of a pose reads it", "leave it out"
+        raise UnknownName([Problem(f"given.{name}", what, remedy) for name in unread])
+    return found
+
+
 def _between_solved(reference: Motion, one: Response) -> Response:
-    return _solved(quantity(reference, one.name), False) if course_figure(one.name)[1] else one
+    return _solved(quantity(reference, one.name), False) if isinstance(one, FigureResponse) else one

@@ -12,15 +12,17 @@ import numpy as np
 from compoundkin.base.arrays import whole_turns
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.kinematics.extremes.inputs_between import inputs_between, interval, times_between
+from compoundkin.kinematics.extremes.inputs_between import interval
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.attributes import RADIANS, RATES, TIME
 from compoundkin.programs.calls.call_numbers import CallNumbers
 from compoundkin.programs.compiled_path import CompiledPath
+from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
 from compoundkin.programs.path_values import PathValues
+from compoundkin.studies.responses.driver_inputs import inputs_at, inputs_in_time, inputs_of
 
 Found = TypeVar("Found")
 
@@ -36,6 +38,7 @@ class StudiedPath(PrintsShort):
     compiled: CompiledPath
     reference: Motion
     given: tuple[Any, Mapping[str, Any]] = (None, {})
+    _objectives: dict[Any, PathObjective] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -59,15 +62,16 @@ class StudiedPath(PrintsShort):
         is_length = programs.stated.unit(one) not in ("", RADIANS)
         return float(np.max(own)) or (self.reference.size if is_length else 1.0)
 
+    def objective(self, function: Callable[[Any], Any]) -> PathObjective:
+        """Return a function of each pose, summed over them. It is recorded once."""
+        if function not in self._objectives:
+            self._objectives[function] = self.compiled.objective(function)
+        return self._objectives[function]
+
     @property
     def has_ends(self) -> bool:
         """Whether guides have ends, at which its motion may stop."""
         return bool(self.reference.solving_order.guide_ends.pairs)
-
-    @property
-    def order(self) -> int:
-        """The highest derivative that is asked for."""
-        return self.compiled.programs.order
 
     def designs(self, dimensions: Mapping[str, Number]) -> Designs:
         """Return designs by the values of free dimensions, (designs,) each, over the whole motion."""
@@ -100,28 +104,28 @@ class Designs(PrintsShort):
     @cached_property
     def found(self) -> PathValues:
         """The outputs of the path, (designs, poses)."""
-        values, more = self._drive
-        return self.path.compiled(values, self._columns, **more)
+        values, dimensions, more = self.call
+        return self.path.compiled(values, dimensions, **more)
 
     @cached_property
     def slopes(self) -> PathSensitivities:
         """The outputs with their slopes by all free numbers and drivers."""
-        values, more = self._drive
-        return self.path.compiled.derivatives(values, self._columns, **more)
+        values, dimensions, more = self.call
+        return self.path.compiled.derivatives(values, dimensions, **more)
 
     @cached_property
     def numbers(self) -> CallNumbers:
         """The numbers of the call that finds them."""
-        values, more = self._drive
+        values, dimensions, more = self.call
         speed, acceleration, jerk = (more.get(name) for name in RATES)
         programs = self.path.compiled.programs
-        return programs.numbers(values, self._columns, speed, acceleration, jerk, more.get(TIME))
+        return programs.numbers(values, dimensions, speed, acceleration, jerk, more.get(TIME))
 
     @cached_property
     def motion(self) -> Motion:
         """All of them solved by `solve`, to all orders."""
-        values, more = self._drive
-        return solve(self.path.compiled.mechanism(self._columns), values, modes=self.path.compiled.modes, **more)
+        values, dimensions, more = self.call
+        return solve(self.path.compiled.mechanism(dimensions), values, modes=self.path.compiled.modes, **more)
 
     def at(self, inputs: Inputs) -> Designs:
         """Return the same designs with drivers elsewhere, as between the poses."""
@@ -129,9 +133,8 @@ class Designs(PrintsShort):
 
     def picked(self, rows: Number) -> Designs:
         """Return some of them, by index."""
-        drives = {name: tuple(_of(value, rows) for value in rates) for name, rates in self.inputs.drives.items()}
         dimensions = {name: value[rows] for name, value in self.dimensions.items()}
-        return replace(self, dimensions=dimensions, inputs=self.inputs.driven(drives))
+        return replace(self, dimensions=dimensions, inputs=inputs_of(self.inputs, rows))
 
     def kept(self, key: Hashable, make: Callable[[], Found]) -> Found:
         """Return what is made once, under a key."""
@@ -151,15 +154,9 @@ class Designs(PrintsShort):
         Those are numbers of poses, fractional ones between them. Drivers are there where their laws take them, else
         linearly from pose to pose.
         """
-        flat, at = np.repeat(rows, places.shape[1]), places.ravel()
-        reference, one = self.path.reference, np.zeros_like(flat)
         if self.times is None:
-            part, times = self.inputs.pick(flat, at), None
-        else:
-            part = inputs_between(reference, one, at, self.path.order)
-            times = times_between(reference, one, at).reshape(places.shape)
-        drives = {name: tuple(_laid(value, places.shape) for value in rates) for name, rates in part.drives.items()}
-        inputs = replace(part, shape=places.shape, drives=drives)
+            return replace(self.picked(rows), inputs=inputs_at(self.inputs, rows, places))
+        inputs, times = inputs_in_time(self.path.reference, self.path.compiled.programs.order, places)
         return replace(self.picked(rows), inputs=inputs, times=times)
 
     def values_at(self, name: str, rows: Number, places: Number, is_angle: bool = False) -> Number:
@@ -184,26 +181,14 @@ class Designs(PrintsShort):
         return np.array([slopes[name, by] for by in self.path.coordinates])
 
     @cached_property
-    def _columns(self) -> dict[str, Number]:
-        return {name: np.reshape(value, (-1, 1)) for name, value in self.dimensions.items()}
+    def call(self) -> tuple[Any, Mapping[str, Number], dict[str, Any]]:
+        """The arguments of a call of the path: drivers' values, dimensions, rates.
 
-    @cached_property
-    def _drive(self) -> tuple[Any, dict[str, Any]]:
-        """The drivers' values, and their rates, or where laws are free what was given and the times."""
+        Where laws have free numbers they are what was given, and the times.
+        """
+        columns = {name: np.reshape(value, (-1, 1)) for name, value in self.dimensions.items()}
         if self.times is not None and self.path.compiled.programs.law_numbers:
             values, more = self.path.given
-            return values, {**more, TIME: self.times}
+            return values, columns, {**more, TIME: self.times}
         values, *rates = ({name: each[k] for name, each in self.inputs.drives.items()} for k in range(len(RATES) + 1))
-        return values, dict(zip(RATES, rates, strict=True))
-
-
-def _of(value: Number, rows: Number) -> Number:
-    """Return a driver's numbers of some designs."""
-    return value[rows] if np.ndim(value) and value.shape[0] > 1 else value
-
-
-def _laid(value: Number, shape: tuple[int, ...]) -> Number:
-    """Return a column of numbers in another shape; one that all share stays a number."""
-    if not np.ndim(value):
-        return value
-    return value.reshape(shape) if value.size == np.prod(shape) else float(value.item())
+        return values, columns, dict(zip(RATES, rates, strict=True))
