@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -78,6 +79,18 @@ def test_a_slider_crank_has_its_closed_form() -> None:
     names = [*given, "clearance A", "clearance B", "clearance guide"]
     assert list(place.contributions) == names
     assert np.array(list(place.contributions.values())) == pytest.approx(np.array(parts) / sum(parts))
+
+
+def test_a_guide_through_a_point_has_an_offset_of_none() -> None:
+    """It is not written, and may be off all the same: as by the offset that is written."""
+    shaper = ck.catalog.load_named("crank-shaper")
+    for asked in ({"clearance": {"slot": 0.03}}, {"tolerances": {"slot.offset": 0.03}}):
+        found = ck.tolerance(shaper, **{"tolerances": {}, **asked}, outputs="ram.value", count=800)["ram.value"]
+        slot = next(pair for pair in shaper.written_pairs if pair.name == "slot")
+        fore, back = (ck.solve(shaper.replace(replace(slot, offset=sign * STEP))) for sign in (1, -1))
+        slope = (fore.pairs["ram"].value - back.pairs["ram"].value) / (2 * STEP)
+        assert found.worst == pytest.approx(0.03 * np.abs(slope), rel=1e-6, abs=1e-9)
+    assert "ram.value" in ck.tolerance(shaper, {"crank.A": 0.1}, "ram.value", count=800)
 
 
 def test_a_four_bar_has_the_mechanical_error_of_the_textbooks() -> None:
@@ -240,6 +253,7 @@ def test_angles_are_counted_by_the_nearest_turn() -> None:
         ({"sigmas": 0}, "sigmas: 0 is no number"),
         ({"count": 700}, "count: 700 random designs are too few for percentile 0.135 or 99.865; count=741 or more"),
         ({"percentiles": (0, 50)}, "percentiles: .* are no percentiles"),
+        ({"values": [[0.1], [0.2]]}, r"values: they are of several motions, \(2, 1\)"),
         ({"seed": -1}, "seed: -1 is no seed"),
         (
             {"tolerances": {"plate.C": stats.norm(12, 1)}},

@@ -96,11 +96,18 @@ def told_of(argument: str) -> Iterator[None]:
         raise type(error)(told, error.heading) from None
 
 
+def _hold_one_motion(path: StudiedPath) -> None:
+    if len(path.reference.shape) > 1:
+        what = f"they are of several motions, {path.reference.shape}, and tolerances are of one"
+        raise InvalidInput(Problem("values", what, "give one value for each pose"))
+
+
 def error_sources(path: StudiedPath, given: Sequence[GivenError]) -> tuple[ErrorSource, ...]:
     """Return the sources of errors of a path.
 
-    Raises InvalidInput where a dimension has several values.
+    Raises InvalidInput where a dimension has several values, or the drivers have.
     """
+    _hold_one_motion(path)
     stated, sources = path.compiled.programs.stated, []
     for one in given:
         dimension = stated.known[one.dimension]

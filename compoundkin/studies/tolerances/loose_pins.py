@@ -14,9 +14,7 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.tolerances.flank_clearance import FlankClearance
 from compoundkin.studies.tolerances.given_errors import GivenError
 from compoundkin.studies.tolerances.pin_clearance import PinClearance
-
-# The number of slots and guides that their clearance changes.
-OFFSET = "offset"
+from compoundkin.studies.tolerances.stated_offsets import OFFSET, guides_of
 
 
 def given_clearances(mechanism: Mechanism, clearances: Mapping[str, Any]) -> list[GivenError]:
@@ -30,17 +28,12 @@ def given_clearances(mechanism: Mechanism, clearances: Mapping[str, Any]) -> lis
 
 def _clearance(mechanism: Mechanism, name: str, given: Any) -> GivenError:
     half = _half(name, given)
-    if name in _guides(mechanism):
+    if name in guides_of(mechanism):
         return GivenError(
             f"{name}.{OFFSET}", lambda numbers, unit, own: FlankClearance(f"clearance {name}", numbers, unit, half)
         )
     point = loose_point(mechanism, name)
     return GivenError(point, lambda numbers, unit, own: PinClearance(f"clearance {name}", numbers, unit, half))
-
-
-def _guides(mechanism: Mechanism) -> list[str]:
-    """Return the names of straight guides and slots, all that have an offset."""
-    return [pair.name for pair in mechanism.real_pairs if any(key.name == OFFSET for key in pair.keys)]
 
 
 def _half(name: str, given: Any) -> float:
@@ -59,7 +52,7 @@ def loose_point(mechanism: Mechanism, name: str) -> str:
     where, pins = f"clearance.{name}", mechanism.real_pins
     link, _, letter = name.rpartition(".")
     if letter not in pins or (link and link not in pins[letter]):
-        known = [*pins, *_guides(mechanism), *(f"{one}.{pin}" for pin, links in pins.items() for one in links)]
+        known = [*pins, *guides_of(mechanism), *(f"{one}.{pin}" for pin, links in pins.items() for one in links)]
         raise UnknownName(Problem(where, "there is no such pin, slot or guide", nearest(name, known)))
     able = [one for one in reversed(pins[letter]) if _is_alone(mechanism, one, letter)]
     if link and link not in able:

@@ -12,8 +12,15 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.responses import studied_path
 from compoundkin.studies.tolerances.chances import Chances
 from compoundkin.studies.tolerances.found_outputs import found_outputs
-from compoundkin.studies.tolerances.given_errors import GivenError, error_sources, freed, given_tolerances, told_of
+from compoundkin.studies.tolerances.given_errors import (
+    GivenError,
+    error_sources,
+    freed,
+    given_tolerances,
+    told_of,
+)
 from compoundkin.studies.tolerances.loose_pins import given_clearances
+from compoundkin.studies.tolerances.stated_offsets import with_offsets
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.studies.tolerances.toleranced_designs import TolerancedDesigns
 
@@ -63,7 +70,7 @@ def tolerance(
     rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time}
     with told_of("tolerances"):
         free = freed([one.dimension for one in given])
-        path, responses = studied_path(mechanism, free, names, values, modes=modes, **rates)
+        path, responses = studied_path(with_offsets(mechanism, free), free, names, values, modes=modes, **rates)
         sources = error_sources(path, given)
     designs = TolerancedDesigns(path, sources, chances.sample)
     found, left_out = found_outputs(designs, responses, chances.percentiles)

@@ -73,6 +73,9 @@ class ToleranceAnalysis(Mapping[str, OutputTolerance], Shows):
             raise UnknownName(Problem(str(name), "there is no such output", nearest(str(name), list(self.outputs))))
         return self.outputs[name]
 
+    def __contains__(self, name: object) -> bool:
+        return name in self.outputs
+
     def __iter__(self) -> Iterator[str]:
         return iter(self.outputs)
 
