@@ -70,6 +70,38 @@ class DesignTrial(PrintsShort):
             self._elsewhere[key] = replace(self, designs=self.designs.at(elsewhere))
         return self._elsewhere[key]
 
+    def apart(self, driver: str, values: Number) -> PosesApart:
+        """Return the same designs at values of one driver, each by itself.
+
+        They are (designs, poses). No motion leads from one to the next: limits between them are not looked for, and angles not counted on.
+        """
+        rows = np.repeat(np.arange(self.number), values.shape[1])
+        whole = replace(self, designs=self.designs.picked(rows))
+        return PosesApart(whole.at(driver, values.reshape(-1, 1)), values.shape)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PosesApart(PrintsShort):
+    """Poses of designs that no motion joins.
+
+    Each is a design of one pose in `single`.
+    """
+
+    single: DesignTrial
+    shape: tuple[int, int]
+
+    def values(self, name: str) -> Number:
+        """Return a course, (designs, poses)."""
+        return self.single.values(name).reshape(self.shape)
+
+    def slopes(self, name: str) -> Number:
+        """Return its slopes by the coordinates, the last axis."""
+        return self.single.slopes(name).reshape(*self.shape, -1)
+
+    def driver_slopes(self, name: str, driver: str) -> Number:
+        """Return its slopes by a driver's value, (designs, poses)."""
+        return self.single.driver_slopes(name, driver).reshape(self.shape)
+
 
 def _first(rate: Number) -> Number:
     return rate[..., :1] if np.ndim(rate) else rate

@@ -11,7 +11,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.studies.goals.contract import Goal, GoalUnknown
-from compoundkin.studies.goals.design_trial import DesignTrial
+from compoundkin.studies.goals.design_trial import DesignTrial, PosesApart
 from compoundkin.studies.goals.driver_schedule import DriverSchedule, driver_schedule
 from compoundkin.studies.goals.path_goal import places_of
 from compoundkin.studies.goals.wanted_places import WantedPlaces
@@ -70,14 +70,17 @@ class TraceGoal(Goal):
 
     def residuals(self, trial: DesignTrial) -> Number:
         """Return what is off in x at all places, in y, in the angle."""
-        schedule = self._schedule(trial.designs.path.reference)
-        off = self.wanted.off(trial.at(schedule.driver, schedule.values(trial.unknowns)))
+        off = self.wanted.off(self._there(trial))
         return off.reshape(len(off), -1)
+
+    def _there(self, trial: DesignTrial) -> PosesApart:
+        schedule = self._schedule(trial.designs.path.reference)
+        return trial.apart(schedule.driver, schedule.values(trial.unknowns))
 
     def slopes(self, trial: DesignTrial) -> Number:
         """Return the slopes of those."""
         schedule = self._schedule(trial.designs.path.reference)
-        there = trial.at(schedule.driver, schedule.values(trial.unknowns))
+        there = self._there(trial)
         by_driver = self.wanted.off_slopes(there, schedule.driver)
         own = by_driver * schedule.slopes(trial.unknowns)[:, None]
         found = np.concatenate([self.wanted.off_slopes(there), own], axis=-1)

@@ -11,7 +11,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import ANGLE, POSITION
-from compoundkin.studies.goals.design_trial import DesignTrial
+from compoundkin.studies.goals.design_trial import DesignTrial, PosesApart
 from compoundkin.studies.goals.path_goal import places_of
 
 
@@ -48,7 +48,7 @@ class WantedPlaces:
             what, remedy = f"there are {places} places, and {poses} poses", "values=... of the driver, one for each"
             raise InvalidInput(Problem(where, what, remedy))
 
-    def off(self, trial: DesignTrial) -> Number:
+    def off(self, trial: DesignTrial | PosesApart) -> Number:
         """Return what is off at each pose, (designs, numbers, poses).
 
         The numbers are x, y and the angle.
@@ -59,7 +59,7 @@ class WantedPlaces:
             parts.append(self.arm * wrapped(trial.values(self.outputs[1]) - self.angles))
         return np.stack(parts, axis=1)
 
-    def off_slopes(self, trial: DesignTrial, driver: str = "") -> Number:
+    def off_slopes(self, trial: DesignTrial | PosesApart, driver: str = "") -> Number:
         """Return the slopes of that by the coordinates, or by a driver.
 
         They are (designs, numbers, poses, coordinates).
