@@ -73,7 +73,8 @@ class DesignTrial(PrintsShort):
     def apart(self, driver: str, values: Number) -> PosesApart:
         """Return the same designs at values of one driver, each by itself.
 
-        They are (designs, poses). No motion leads from one to the next: limits between them are not looked for, and angles not counted on.
+        They are (designs, poses). No motion leads from one to the next: limits between them are not looked for, and
+        angles not counted on.
         """
         rows = np.repeat(np.arange(self.number), values.shape[1])
         whole = replace(self, designs=self.designs.picked(rows))
