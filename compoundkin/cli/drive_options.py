@@ -28,6 +28,8 @@ DESIGN = click.option("--design", default=0, show_default=True, metavar="INDEX",
 AT = click.option("--at", "at", multiple=True, metavar="[NAME=]VALUE",
                   help="The pose: a driver's value, degrees or length; the first of its range "
                   "if left out.")  # fmt: skip
+ORDER = click.option("--order", type=click.IntRange(0, 3), help="0 position, 1 velocity, 2 acceleration, 3 jerk; "
+                     "otherwise what the outputs need, at least 2.")  # fmt: skip
 # How the options are called on the command line, by the names of their values.
 OPTIONS: tuple[Any, ...] = (
     click.option("--at", "at", metavar="VALUES", help="Solve at these values of the only driver: 35 or 0,35,60."),
@@ -41,8 +43,6 @@ OPTIONS: tuple[Any, ...] = (
                  "from their value by their speed and acceleration."),
     SPEED,
     SECOND_RATE,
-    click.option("--order", type=click.IntRange(0, 3), help="0 position, 1 velocity, 2 acceleration, 3 jerk; "
-                 "otherwise what the outputs need, at least 2."),
     MODE,
     click.option("--output", "outputs", multiple=True, metavar="QUANTITY", callback=lambda _c, _p, given: names(given),
                  help="Such as G.velocity, G.speed, bar.angle, slot.rate; repeat it, or write commas."),
@@ -54,6 +54,11 @@ LABELS = click.option("--labels/--no-labels", default=True, help="Letters at poi
 
 def drive_options(command: F) -> F:
     """Add the options of a command that solves a mechanism. Values are degrees or lengths."""
+    return motion_options(ORDER(command))
+
+
+def motion_options(command: F) -> F:
+    """Add the same options but for the order, where that follows from what is asked."""
     for option in reversed(OPTIONS):
         command = option(command)
     return command

@@ -81,6 +81,11 @@ def test_the_summary_is_that_of_python() -> None:
     assert alone == pytest.approx(stroke.max(), rel=5e-3)
 
 
+def test_workers_are_processes_and_numbers_do_not_depend_on_them() -> None:
+    asked = NAME, "--least", "G.x.stroke", "--format", "json"
+    assert run(*asked, "--workers", "1", "--chunk", "64").stdout == run(*asked).stdout
+
+
 def test_no_design_that_assembles_is_its_own_exit_code() -> None:
     Path(NAME).write_text(TEXT.replace("low = 20, high = 29", "low = 2, high = 3"), "utf-8")
     found = run(NAME)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import copy
+import datetime
 import json
+import random
 import re
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -237,6 +241,33 @@ def test_dimensions_may_be_the_columns_of_a_table(tmp_path: Path) -> None:
         read(text.replace('sample = "table"', ""), tmp_path)
     with pytest.raises(InvalidInput, match=r"other\.csv"):
         read(text.replace("designs.csv", "other.csv"), tmp_path)
+
+
+def places(value: Any, at: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, one in inner:
+        yield (*at, key)
+        yield from places(one, (*at, key))
+
+
+def test_whatever_is_wrong_is_told_in_one_error() -> None:
+    wrong = [True, -7.5, "x y", "", [], {}, None, [[1], 2], [{}], {"rad": "x"}, {"polar": [[1, 2], 3]}, float("inf"),
+             10**400, datetime.date(2026, 1, 1), "\ud800", ["x", 1], "0:1:0"]  # fmt: skip
+    whole = tomllib.loads(TEXT)
+    pairs = [(place, value) for place in places(whole) for value in wrong]
+    for place, value in random.Random(1).sample(pairs, 40):
+        document = copy.deepcopy(whole)
+        inner: Any = document
+        for key in place[:-1]:
+            inner = inner[key]
+        inner[place[-1]] = value
+        told = ""
+        try:
+            assert study_arguments(document, Path(), "a.toml")
+        except InvalidInput as error:
+            told = str(error)
+        # nothing else is raised, and the place is told
+        assert not told or str(place[0]) in told, (place, value)
 
 
 def test_functions_are_no_outputs_of_files() -> None:

@@ -132,8 +132,8 @@ def _driven(
 def _whole(given: Mapping[str, Any], key: str, what: str, log: Recovery) -> dict[str, Any]:
     """Return what is a text, or whole numbers by names."""
     said = given.get(key)
-    if said is None or isinstance(said, str):
-        return {} if said is None else {key: said}
+    if key not in given or (isinstance(said, str) and said):
+        return {key: said} if said else {}
     found = _table(given, key, log)
     for name, number in found.items():
         if isinstance(number, bool) or not isinstance(number, int):

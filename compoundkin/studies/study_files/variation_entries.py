@@ -10,8 +10,8 @@ import numpy as np
 from compoundkin.base.errors import InvalidMechanism
 from compoundkin.files import exact_numbers
 from compoundkin.files.recovery import Recovery
-from compoundkin.files.single_values import wrong
-from compoundkin.files.written_quantities import coordinate, point
+from compoundkin.files.single_values import numbers, wrong
+from compoundkin.files.written_quantities import coordinate, place
 from compoundkin.studies.study_files.study_keys import WITH_UNIT
 
 _HOW = "write { low = 40, high = 60 }, { centre = 50, within = 0.1 } or { values = [40, 50, 60] }"
@@ -45,14 +45,13 @@ def variation_entry(data: Mapping[str, Any], is_angle: bool) -> dict[str, Any]:
 
 
 def _plain(value: Any, where: str, is_angle: bool | None) -> Any:
-    """Return numbers and points as plain lists; what is neither is left to the variation to judge."""
+    """Return numbers and points as plain lists."""
     if isinstance(value, dict) and "polar" in value:
-        place = complex(point(value, where))
-        return [place.real, place.imag]
+        found = place(value, where)
+        return [found.real, found.imag]
     if isinstance(value, list) and any(isinstance(one, dict) for one in value):
-        return [_plain(one, f"{where}[{index}]", is_angle) for index, one in enumerate(value)]
-    if is_angle is False and not isinstance(value, dict):
-        return value
+        whole = [_plain(one, f"{where}[{index}]", is_angle) for index, one in enumerate(value)]
+        return np.asarray(numbers(whole, where)).tolist()
     return np.asarray(coordinate(value, where, is_angle)).tolist()
 
 
