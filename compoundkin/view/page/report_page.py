@@ -21,6 +21,7 @@ from compoundkin.view.page.html_blocks import ABOUT, Blocks
 from compoundkin.view.page.html_document import Document, asset, vendored
 from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.markup import data_script, element, safe
+from compoundkin.view.page.study_pictures import study_pictures
 from compoundkin.view.page.viewer import Viewer, viewer_of
 from compoundkin.view.report.outputs_section import outputs_at_poses, outputs_table
 from compoundkin.view.report.report_data import Outcome, Section, TableBlock
@@ -164,6 +165,7 @@ def page_of(
     subject: Structure | Motion | None = None,
     outputs: Sequence[str] = (),
     design: int = 0,
+    studied: object = None,
 ) -> Page:
     """Return any report as a page. It has pictures of its subject, and the moving sketch of a motion."""
     motion = subject if isinstance(subject, Motion) else None
@@ -171,7 +173,8 @@ def page_of(
     poses: dict[str, Sequence[int]] = {}
     if motion is not None:
         sections, poses[OUTPUTS] = all_poses(sections, motion, outputs, design)
-    blocks = Blocks(names_of(known), figures(sections, subject), poses)
+    pictures = figures(sections, subject) | study_pictures(studied)
+    blocks = Blocks(names_of(known), pictures, poses)
     document = _document(title, sections, outcome, blocks)
     moving = None if motion is None else viewer_of(motion, design, outputs)
     if moving is not None:

@@ -163,6 +163,7 @@ class Report(Shows, Savable):
     """The report of a mechanism, in the order in which it is read.
 
     `subject` is what it is about, for the pictures of its page, and `outputs` and `design` are those it was made with.
+    `studied` is the study, tolerance analysis or search that it reports.
     """
 
     saved_as: ClassVar[Kind] = "report"
@@ -173,6 +174,7 @@ class Report(Shows, Savable):
     subject: Subject | None = field(default=None, repr=False, compare=False)
     outputs: Sequence[str] = field(default=(), repr=False, compare=False)
     design: int = field(default=0, repr=False, compare=False)
+    studied: object = field(default=None, repr=False, compare=False)
 
     def section(self, key: str) -> Section | None:
         """Return the section of a key; None where the report has none."""
@@ -204,7 +206,8 @@ class Report(Shows, Savable):
         """Return it as a page, which can be saved and opened in the browser."""
         from compoundkin.view.page.report_page import page_of
 
-        return page_of(self.title, self.sections, self.outcome, self.subject, self.outputs, self.design)
+        asked = self.outputs, self.design, self.studied
+        return page_of(self.title, self.sections, self.outcome, self.subject, *asked)
 
     def content(self, form: str) -> bytes:
         """Return the bytes of a file in the form "text", "markdown", "json" or "html"."""

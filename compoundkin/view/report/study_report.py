@@ -32,13 +32,16 @@ def study_report(found: StudyResult, least: Sequence[str] = (), greatest: Sequen
     asked = [*((name, False) for name in least), *((name, True) for name in greatest)]
     tables = [block for name, is_greatest in asked for block in _best(found, name, best, is_greatest)]
     sections = [
-        Section("study", "", tuple(_about(found, closed))),
+        Section("study", "Study", tuple(_about(found, closed))),
         Section("figures", "Figures", (_figures(found),)) if closed else None,
         Section("states", "States", tuple(_states(found))),
         Section("best", "Best designs", tuple(tables)) if tables else None,
     ]
-    outcome = Outcome(True, len(found), closed, 0, 0, 0, 0)
-    return Report(found.study.mechanism.title, tuple(one for one in sections if one and one.blocks), outcome)
+    reference = found.reference
+    poses, courses = int(reference.failed.size), tuple(one.name for one in found.columns if one.width)
+    outcome = Outcome(True, poses, int(np.count_nonzero(reference.failed == 0)), 0, 0, 0, 0)
+    shown = tuple(one for one in sections if one and one.blocks)
+    return Report(found.study.mechanism.title, shown, outcome, reference, courses, studied=found)
 
 
 def _about(found: StudyResult, closed: int) -> Iterator[Block]:

@@ -1,20 +1,22 @@
-"""`report` and `page`: everything there is to say about a mechanism, a structure or a motion."""
+"""`report` and `page`: everything there is to say of a mechanism, a motion, a study, a tolerance analysis."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
 from math import prod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, UnassembledPoses
+from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses
 from compoundkin.base.given_numbers import hold_design
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.one_design import motion_of_design, shape_of
 from compoundkin.model.design_numbers import mechanism_of_design
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
+from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.report_data import Outcome
 from compoundkin.view.report.report_forms import Report, Subject
@@ -24,19 +26,29 @@ from compoundkin.view.report.structure_sections import (
     faults_section,
     structure_in_short,
 )
+from compoundkin.view.report.study_report import study_report
+from compoundkin.view.report.tolerance_report import tolerance_report
 
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
 
+Studied: TypeAlias = StudyResult | ToleranceAnalysis
+Reported: TypeAlias = Mechanism | Structure | Motion | Studied
+# So many rows with the least values of a figure are listed, and as many with the greatest.
+BEST = 3
+
 
 @checked
-def report(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), design: int = 0) -> Report:
-    """Report a motion, a structure before it is solved, or a mechanism.
+def report(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Report:
+    """Report a motion, a structure before it is solved, a mechanism or a study.
 
     A mechanism is solved over its drivers' own ranges first; of one that has none, or that is not determined, its
     structure is reported, faults included. `outputs` are quantities such as "G.velocity"; without any, those that the
     mechanism names. Of a motion with several designs one is reported, by its index in the order of the motion's axes
     before the last: what is reported and checked is that design by itself, however many there are.
+
+    Of a study the rows with the least and the greatest values of `outputs` are listed, of a tolerance analysis those
+    outputs are reported.
 
     Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
 
@@ -48,6 +60,8 @@ def report(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), de
     >>> print(report(crank).text().splitlines()[0])
     Crank
     """
+    if isinstance(what, Studied):
+        return _of_study(what, outputs, design)
     subject, among = _picked(what, design)
     if isinstance(subject, Structure):
         return _of_structure(subject)
@@ -58,7 +72,7 @@ def report(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), de
 
 
 @checked
-def page(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), design: int = 0) -> Page:
+def page(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Page:
     """Return the report as a page with the moving sketch. The arguments are those of `report`.
 
     Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
@@ -69,6 +83,15 @@ def page(what: Mechanism | Structure | Motion, outputs: Sequence[str] = (), desi
     '<!DOCTYPE html>'
     """
     return report(what, outputs, design).page()
+
+
+def _of_study(what: Studied, outputs: Sequence[str], design: int) -> Report:
+    """Report a study or the like as a whole."""
+    if design:
+        raise InvalidInput(Problem("design", "a study is reported as a whole", "report the motion of that design"))
+    if isinstance(what, ToleranceAnalysis):
+        return tolerance_report(what, outputs)
+    return study_report(what, outputs, outputs, BEST)
 
 
 def _picked(what: Mechanism | Subject, design: int) -> tuple[Subject, int]:
