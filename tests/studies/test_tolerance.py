@@ -277,6 +277,8 @@ def test_tables_of_sources_and_of_poses(tmp_path: Path) -> None:
         values=TURN,
         clearance={"A": 0.05},
     )
+    told = "('rod.angle', 'B.x', 'B.x.stroke') by ('crank.A.x', 'guide.angle', 'clearance A')"
+    assert repr(found) == f"ToleranceAnalysis('Slider-crank': {told})"
     table = found.table()
     assert table["source"].values.tolist() == ["crank.A.x", "guide.angle", "clearance A"]
     assert table["unit"].values.tolist() == ["mm", "rad", "mm"]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from compoundkin.base.display import Shows, way
+from compoundkin.base.display import Shows, short, way
 from compoundkin.base.errors import Problem, UnknownName, nearest
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.table import Table
@@ -83,5 +83,5 @@ class ToleranceAnalysis(Mapping[str, OutputTolerance], Shows):
         return len(self.outputs)
 
     def __repr__(self) -> str:
-        title, sources = self.mechanism.title, ", ".join(one.name for one in self.sources)
-        return f"ToleranceAnalysis({title!r}: {', '.join(self.outputs)} by {sources})"
+        outputs, sources = short(tuple(self.outputs)), short(tuple(one.name for one in self.sources))
+        return f"ToleranceAnalysis({self.mechanism.title!r}: {outputs} by {sources})"
