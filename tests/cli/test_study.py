@@ -99,13 +99,13 @@ def test_no_design_that_assembles_is_its_own_exit_code() -> None:
 BIG = """
 format = 1
 mechanism = "six-bar"
-outputs = ["G.x.stroke", "bar.angle.least"]
+outputs = ["bar.angle.least"]
 sample = "random"
-count = 16384
+count = 32768
 [dimensions]
 "crank.D" = { centre = [13.5, 0], within = 0.5 }
 [drives.crank]
-values = { from = 0, to = 360, step = 4 }
+values = { from = 0, to = 360, step = 10 }
 """
 
 
@@ -134,15 +134,15 @@ def test_ctrl_c_leaves_what_is_written_and_a_second_run_goes_on() -> None:
         "",
     ]
     written = {path.name: path.stat().st_mtime_ns for path in Path("rows").glob("*.parquet")}
-    assert 0 < len(written) < 4
+    assert 0 < len(written) < 8
     found = run(NAME, "-o", "rows", "--chunk", "4096")
     assert found.exit_code == 0
-    assert "16,384 rows are in rows." in found.stderr
+    assert "32,768 rows are in rows." in found.stderr
     # what was there has not been computed again
     assert all(Path("rows", name).stat().st_mtime_ns == when for name, when in written.items())
     again = ck.results.StudyResult.open("rows")
-    assert again["row"].tolist() == list(range(16384))
-    alone = ck.quantity(again.motion(16383), "bar.angle.least").values
+    assert again["row"].tolist() == list(range(32768))
+    alone = ck.quantity(again.motion(32767), "bar.angle.least").values
     assert again["bar.angle.least"][-1] == pytest.approx(np.ravel(alone)[0], abs=1e-3)
 
 
