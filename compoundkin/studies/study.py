@@ -102,6 +102,8 @@ def study(
     asked = (outputs,) if isinstance(outputs, str) else outputs if isinstance(outputs, Mapping) else tuple(outputs)
     if not asked:
         raise InvalidInput(Problem("outputs", "there is none", 'name some: ["G.position", "bar.angle.stroke"]'))
+    if given is not None and not isinstance(outputs, Mapping):
+        raise InvalidInput(Problem("given", "no output reads it", "it is for outputs that are functions"))
     free = variations_of(dimensions)
     if not isinstance(dimensions, Mapping) and sample != TableSample.word:
         raise InvalidInput(Problem("sample", "the dimensions are the columns of a table", f"{TableSample.word!r}"))

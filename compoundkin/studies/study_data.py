@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.files.mechanism_files import dumps, loads
-from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.configuration import SIGNS, Configuration
 from compoundkin.model.mechanism import Mechanism
 
 # What stands in the data for things that cannot be written: what they are called and what tells them from others.
@@ -39,9 +39,11 @@ def plain(value: Any) -> Any:
     return _told(value)
 
 
-def _told(value: Any) -> dict[str, str]:
+def _told(value: Any) -> Any:
     """Say of what cannot be written how it is called, and by what it differs from others."""
     if isinstance(value, Configuration):
+        if set(value.modes.values()) <= set(SIGNS.values()):
+            return value.name
         places = {link: plain((pose.z.c[0], pose.u.c[0])) for link, pose in value.poses.items()}
         return {CALLED: value.name, CONTENT: digest(places)}
     return {CALLED: getattr(value, "__qualname__", type(value).__name__), CONTENT: digest(_content(value))}

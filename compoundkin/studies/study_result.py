@@ -47,6 +47,7 @@ class StudyResult(Shows, PrintsShort):
     rows: StudyRows
 
     @classmethod
+    @checked
     def open(cls, folder: str | os.PathLike[str]) -> StudyResult:
         """Return what a folder has, at the end of a run or before.
 

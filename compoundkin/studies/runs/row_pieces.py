@@ -8,7 +8,7 @@ from math import ceil
 from compoundkin.studies.study_program import StudyProgram
 
 # So many rows are a piece at most, and so many bytes: what each worker has in memory at a time, a few times over.
-MOST_ROWS, MOST_BYTES = 65_536, 2**26
+MOST_ROWS, MOST_BYTES = 65_536, 2**23
 # So many pieces for each worker, so that all are at work until near the end.
 PIECES_EACH = 4
 _BYTES = 8

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from itertools import islice
 from typing import TypeVar
+
+from compoundkin.base.errors import InvalidInput, Problem
 
 Piece = TypeVar("Piece")
 Answer = TypeVar("Answer")
@@ -23,7 +25,7 @@ def answers(
     try:
         while True:
             for piece in islice(coming, max(0, room() - len(waiting))):
-                waiting[executor.submit(work, piece)] = piece
+                waiting[_submitted(executor, work, piece)] = piece
             if not waiting:
                 return
             for done in wait(waiting, return_when=FIRST_COMPLETED).done:
@@ -31,3 +33,13 @@ def answers(
     finally:
         for future in waiting:
             future.cancel()
+
+
+def _submitted(executor: Executor, work: Callable[[Piece], Answer], piece: Piece) -> Future[Answer]:
+    try:
+        return executor.submit(work, piece)
+    except BrokenExecutor:
+        raise
+    except RuntimeError as error:
+        # what executors say that have been shut down
+        raise InvalidInput(Problem("on", f"it takes no work: {error}", "give one that is open")) from None
