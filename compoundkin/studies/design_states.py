@@ -29,11 +29,16 @@ def design_states(designs: Designs) -> dict[str, Number]:
     defect = np.broadcast_to(_turns_back(designs), designs.number)
     return {
         ASSEMBLED: found.assembled,
-        BRANCH: np.full(designs.number, branch, dtype=object),
+        BRANCH: _everywhere(branch, designs),
         CIRCUIT: _circuits(designs, found, branch),
         ORDER_DEFECT: defect.copy(),
         REASON: _reasons(designs, found),
     }
+
+
+def _everywhere(text: str, designs: Designs) -> Number:
+    """Return one text for all designs: the same object, not a million equal ones."""
+    return np.repeat(np.array([text], dtype=object), designs.number)
 
 
 def _turns_back(designs: Designs) -> Number:
@@ -48,7 +53,7 @@ def _turns_back(designs: Designs) -> Number:
 def _circuits(designs: Designs, found: AssembledRange, branch: str) -> Number:
     """Return the branch of each design, with both signs for groups that meet their limit on the way."""
     if found.assembled.all():
-        return np.full(designs.number, branch, dtype=object)
+        return _everywhere(branch, designs)
     groups = 1 + np.arange(len(designs.path.reference.structure.groups))
     meets = np.array([(found.failed == k).any(axis=1) | (found.between == k) for k in groups])
     kinds, which = np.unique(meets, axis=1, return_inverse=True)

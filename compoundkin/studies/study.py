@@ -71,7 +71,7 @@ class Study(StudyPlan):
 def study(
     mechanism: Mechanism,
     dimensions: Mapping[str, Any] | str | PathLike[str],
-    outputs: str | Sequence[str] | Mapping[str, Callable[..., Any]],
+    outputs: str | Sequence[str] | Mapping[str, Callable[..., Any] | None],
     *,
     sample: str | Mapping[str, int] | DesignSample = "sobol",
     count: int | None = None,
@@ -88,8 +88,9 @@ def study(
 
     `dimensions` are free dimensions by name and what each may be: a range (40, 60), a frozen distribution of
     scipy.stats, levels, `around(centre, within)`; or the path of a CSV or Parquet table of one's own designs, with
-    sample="table". `outputs` are quantities and figures by name, `sample` says which
-    designs, `count` how many. Drivers move as in `solve`, in the same `modes`.
+    sample="table". `outputs` are quantities and figures by name; or {"error": function, "G.x.stroke": None}, where
+    functions of a pose, as `CompiledPath.objective` takes them, are summed over the motion and read what is `given`.
+    `sample` says which designs, `count` how many. Drivers move as in `solve`, in the same `modes`.
     Raises InvalidInput and UnknownName for what cannot be computed, before anything is.
 
     >>> import compoundkin as ck

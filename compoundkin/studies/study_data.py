@@ -59,8 +59,14 @@ def _content(function: Any) -> Any:
 
 
 def _instructions(code: CodeType) -> Any:
-    constants = [_instructions(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts]
-    return [code.co_code.hex(), list(code.co_names), constants]
+    return [code.co_code.hex(), list(code.co_names), [_constant(one) for one in code.co_consts]]
+
+
+def _constant(value: Any) -> Any:
+    if isinstance(value, CodeType):
+        return _instructions(value)
+    # the order of a set is another in every process
+    return sorted(map(repr, value)) if isinstance(value, frozenset) else repr(value)
 
 
 def plain_mechanism(mechanism: Mechanism) -> Any:

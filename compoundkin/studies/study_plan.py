@@ -25,7 +25,7 @@ from compoundkin.studies.study_program import ROW, StudyColumn, StudyProgram
 from compoundkin.studies.variations import hold_kinds
 from compoundkin.studies.variations.contract import Variation
 
-Outputs: TypeAlias = tuple[str, ...] | Mapping[str, Callable[..., Any]]
+Outputs: TypeAlias = tuple[str, ...] | Mapping[str, Callable[..., Any] | None]
 RATES = ("speed", "acceleration", "jerk", "time")
 
 

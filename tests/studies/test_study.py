@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -123,3 +124,23 @@ def test_what_differs_between_two_studies_is_told() -> None:
     assert (
         digest(one.data) == digest(six_bar(4).data) == pickle.loads(pickle.dumps(one)).fingerprint != other.fingerprint
     )
+
+
+def test_functions_of_a_pose_are_outputs_in_folders_too(tmp_path: Path) -> None:
+    def away(target: complex) -> ck.results.Study:
+        outputs = {"error": lambda at: abs(at["C.position"] - at["target"]) ** 2 - target.imag}
+        free, turn = {"crank.B.x": (0.9, 1.1)}, ck.deg(np.arange(0, 360, 60))
+        given = {"target": target}
+        return ck.study(ck.catalog.load_named("crank-rocker"), free, outputs, count=4, values=turn, given=given)
+
+    result = away(5 + 2j).run(tmp_path)
+    places = ck.quantity(result.motion(3), "C.position").values
+    assert result["error"][3] == pytest.approx(sum(abs(places - 5 - 2j) ** 2 - 2.0))
+    # the function is told by what it does and the values that it holds, and so known again
+    assert_same(away(5 + 2j).run(tmp_path), result)
+    with pytest.raises(ck.errors.InvalidInput, match=r"differs in outputs\.error\.content, given\.target"):
+        away(5 + 3j).run(tmp_path)
+    with pytest.raises(ck.errors.InvalidInput, match=r"outputs\.error: it is an object of a program"):
+        ck.results.StudyResult.open(tmp_path)
+    with pytest.raises(ck.errors.InvalidInput, match="no output reads it"):
+        ck.study(result.study.mechanism, {"crank.B.x": (0.9, 1.1)}, "C", count=4, given={"target": 0})
