@@ -59,6 +59,14 @@ def test_figures_are_found_between_the_poses_with_their_slopes(name: str) -> Non
     hold_slopes(designs, response, 1e-6)
 
 
+@pytest.mark.parametrize("name", ["bar.angle.time_ratio", "G.x.imbalance_angle"])
+def test_ratios_of_strokes_follow_the_places_of_the_extremes(name: str) -> None:
+    designs, response = given(name, ck.deg(np.array([*np.arange(0, 200, 10.0), *np.arange(200, 361, 5.0)])))
+    assert np.abs(response.values(designs) - of_solve(designs, name)).max() < 1e-7
+    assert response.has_slopes
+    hold_slopes(designs, response, 1e-6, 1e-3)
+
+
 def test_figures_with_kinks_and_zeros_are_found() -> None:
     designs, response = given("plate.transmission_angle.greatest")
     assert np.abs(response.values(designs) - np.pi / 2).max() < 1e-9

@@ -11,7 +11,7 @@ from compoundkin.kinematics.extremes.measures import measure_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.kinematics.solution import solve
-from compoundkin.model.attributes import VALUE, course_figure
+from compoundkin.model.attributes import STROKE, VALUE, course_figure
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.compilation import compile
 from compoundkin.programs.recording.recorded_outputs import output_of
@@ -20,6 +20,7 @@ from compoundkin.studies.responses.course_response import CourseResponse
 from compoundkin.studies.responses.designs import Designs, StudiedPath
 from compoundkin.studies.responses.figure_response import PARTS_OF, FigureResponse
 from compoundkin.studies.responses.solved_response import SolvedResponse
+from compoundkin.studies.responses.stroke_ratio import StrokeRatioResponse
 from compoundkin.studies.responses.summed_response import SummedResponse, summed_response
 
 __all__ = ["Designs", "Response", "StudiedPath", "response_of", "studied_path"]
@@ -29,12 +30,16 @@ def response_of(motion: Motion, name: str) -> Response:
     """Return what a name asks of every design. Raises UnknownName with the nearest there is."""
     found = quantity(motion, name)
     of, figure = course_figure(name)
-    if not _is_computed(motion, of) or (figure and figure not in PARTS_OF):
+    if not _is_computed(motion, of):
         return _solved(found, not figure)
     if not figure:
         return CourseResponse(name, (name,), found.unit, found.dimension, is_vector=found.is_vector)
-    squared = measure_of(motion, of).squared
-    return FigureResponse(name, (of,), found.unit, found.dimension, of=of, figure=figure, squared=squared)
+    measure = measure_of(motion, of)
+    told = measure.unit, measure.dimension
+    if figure in PARTS_OF:
+        return FigureResponse(name, (of,), *told, of=of, figure=figure, squared=measure.squared)
+    stroke = FigureResponse(f"{of}.{STROKE}", (of,), *told, of=of, figure=STROKE, squared=measure.squared)
+    return StrokeRatioResponse(name, (of,), found.unit, found.dimension, stroke=stroke, figure=figure)
 
 
 def _solved(found: Quantity, is_course: bool) -> Response:
@@ -97,4 +102,6 @@ def _responses(
 
 
 def _between_solved(reference: Motion, one: Response) -> Response:
-    return _solved(quantity(reference, one.name), False) if isinstance(one, FigureResponse) else one
+    return (
+        _solved(quantity(reference, one.name), False) if isinstance(one, FigureResponse | StrokeRatioResponse) else one
+    )

@@ -29,6 +29,11 @@ class FigureResponse(Response):
     figure: str = ""
     squared: bool = False
 
+    @property
+    def is_angle(self) -> bool:
+        """Whether the quantity is an angle."""
+        return self.unit == RADIANS
+
     def values(self, designs: Designs) -> Number:
         """Return the figure of each design."""
         return np.asarray(sum(weight * self.extreme(designs, sign).value for sign, weight in PARTS_OF[self.figure]))
@@ -50,7 +55,7 @@ class FigureResponse(Response):
 
     def _found(self, designs: Designs, sign: float) -> CourseExtreme:
         """Search them; what passes change points, where a mode ends, is solved."""
-        found = CourseSearch(designs, self.of, sign, self.unit == RADIANS, self.squared).found()
+        found = CourseSearch(designs, self.of, sign, self.is_angle, self.squared).found()
         handed = assembled_range(designs).handed
         handed = handed[~np.isnan(found.value[handed])]
         if len(handed):
