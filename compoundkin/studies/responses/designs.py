@@ -101,29 +101,41 @@ class Designs(PrintsShort):
         """How many poses each has."""
         return self.inputs.poses
 
-    @cached_property
+    @property
     def found(self) -> PathValues:
         """The outputs of the path, (designs, poses)."""
+        return self.kept("found", self._found)
+
+    def _found(self) -> PathValues:
         values, dimensions, more = self.call
         return self.path.compiled(values, dimensions, **more)
 
-    @cached_property
+    @property
     def slopes(self) -> PathSensitivities:
         """The outputs with their slopes by all free numbers and drivers."""
+        return self.kept("slopes", self._slopes)
+
+    def _slopes(self) -> PathSensitivities:
         values, dimensions, more = self.call
         return self.path.compiled.derivatives(values, dimensions, **more)
 
-    @cached_property
+    @property
     def numbers(self) -> CallNumbers:
         """The numbers of the call that finds them."""
+        return self.kept("numbers", self._numbers)
+
+    def _numbers(self) -> CallNumbers:
         values, dimensions, more = self.call
         speed, acceleration, jerk = (more.get(name) for name in RATES)
         programs = self.path.compiled.programs
         return programs.numbers(values, dimensions, speed, acceleration, jerk, more.get(TIME))
 
-    @cached_property
+    @property
     def motion(self) -> Motion:
         """All of them solved by `solve`, to all orders."""
+        return self.kept("motion", self._motion)
+
+    def _motion(self) -> Motion:
         values, dimensions, more = self.call
         return solve(self.path.compiled.mechanism(dimensions), values, modes=self.path.compiled.modes, **more)
 
@@ -138,6 +150,7 @@ class Designs(PrintsShort):
 
     def kept(self, key: Hashable, make: Callable[[], Found]) -> Found:
         """Return what is made once, under a key."""
+        # `cached_property` would let one thread compute at a time, whatever the designs: its lock is that of the class
         if key not in self._kept:
             self._kept[key] = make()
         found: Found = self._kept[key]
