@@ -28,6 +28,7 @@ VERBS = {
     "forces": "Forces in all pairs, drivers' efforts, shaking force.",
     "simulate": "How it moves under its masses and loads, in time.",
     "study": "Many designs: what dimensions do to figures, as a study file says.",
+    "tolerance": "What tolerances and loose pins do to outputs: worst case, deviation, shares.",
     "export": "A function in C, Python, JavaScript or MATLAB, for programs of your own.",
     "check": "Verify a motion: a table of all findings.",
     "catalog": "List, show or copy the shipped mechanisms.",
@@ -38,7 +39,7 @@ VERBS = {
 }
 
 # Verbs whose file has another name, for what they ask for has a file of that name in its own room.
-_FILES = {"forces": "mechanism_forces", "study": "study_command"}
+_FILES = {"forces": "mechanism_forces", "study": "study_command", "tolerance": "tolerance_command"}
 
 EPILOG = """\b
 Examples:

@@ -58,7 +58,7 @@ def drive_options(command: F) -> F:
 
 
 def motion_options(command: F) -> F:
-    """Add the same options but for the order, where that follows from what is asked."""
+    """Add the same options without the order, which follows from what is asked."""
     for option in reversed(OPTIONS):
         command = option(command)
     return command
