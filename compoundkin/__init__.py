@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from compoundkin import equations as equations
     from compoundkin import equivalents as equivalents
     from compoundkin import errors as errors
+    from compoundkin import goals as goals
     from compoundkin import laws as laws
     from compoundkin import machine as machine
     from compoundkin import performance as performance
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
     from compoundkin.programs.compilation import compile
     from compoundkin.structure import decompose
     from compoundkin.structure.redundancy import mobility_analysis
+    from compoundkin.studies.optimisation.better_dimensions import optimise
     from compoundkin.studies.study import study
     from compoundkin.studies.tolerances.tolerance import tolerance
     from compoundkin.studies.variations.around import around
@@ -72,7 +74,7 @@ __all__ = [
     "Mechanism", "alternatives", "animate", "arc", "around", "belt", "cam", "characteristics", "circuits",
     "compile", "configurations", "cylinder", "damper", "decompose", "deg", "draw", "drawn", "drive", "effort",
     "expect", "face", "force", "force_analysis", "friction", "gaps", "gear", "gravity", "instant_centres", "link",
-    "load", "loop_equations", "mass", "mobility_analysis", "mode", "page", "plot", "polar", "pretension",
+    "load", "loop_equations", "mass", "mobility_analysis", "mode", "optimise", "page", "plot", "polar", "pretension",
     "quantity", "rack", "report", "roll", "roll_around", "save", "simulate", "slide", "slot", "solve", "spring",
     "study", "tolerance", "torque", "verify", "with_driver", "with_frame",
 ]  # fmt: skip
@@ -99,6 +101,7 @@ _LATE = {
     "load": "files",
     "loop_equations": "analysis.equations.loop_equations",
     "mobility_analysis": "structure.redundancy.mobility_analysis",
+    "optimise": "studies.optimisation.better_dimensions",
     "page": "view.report",
     "plot": "view.plot",
     "quantity": "kinematics.quantities",
@@ -116,7 +119,7 @@ _LATE = {
 # The modules that hold all other public names: no rooms, each a list of what rooms have.
 _MODULES = (
     *("advantage", "cams", "catalog", "chains", "composing", "coupler", "dyads"),
-    *("equations", "equivalents", "errors", "laws", "machine", "performance", "plots", "profiles", "results"),
+    *("equations", "equivalents", "errors", "goals", "laws", "machine", "performance", "plots", "profiles", "results"),
 )
 
 

@@ -21,11 +21,12 @@ from compoundkin.base.errors import (
     StudyStopped,
     UnassembledPoses,
     UnknownName,
+    UnmetConstraints,
     WedgedPoses,
 )
 
 __all__ = [
     "ChangePointWarning", "CompoundkinError", "DrawnBeyondEnd", "FewDigits", "InvalidInput", "InvalidMechanism",
     "LikelySlip", "NotAssembled", "NotDetermined", "Problem", "StudyStopped", "UnassembledPoses",
-    "UnknownName", "WedgedPoses",
+    "UnknownName", "UnmetConstraints", "WedgedPoses",
 ]  # fmt: skip

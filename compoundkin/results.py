@@ -47,6 +47,7 @@ from compoundkin.programs.jax_path import JaxPath
 from compoundkin.programs.path_values import PathValues
 from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis
+from compoundkin.studies.optimisation.optimum import ChangedDimension, HeldConstraint, LocalMinimum, Optimum
 from compoundkin.studies.study import Study
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
@@ -63,6 +64,7 @@ __all__ = [
     "Animation",
     "AroundCentre",
     "Centres",
+    "ChangedDimension",
     "Characteristics",
     "Check",
     "Circuits",
@@ -77,6 +79,7 @@ __all__ = [
     "Gap",
     "Group",
     "GroupMode",
+    "HeldConstraint",
     "HoldingEffort",
     "Jacobian",
     "JaxPath",
@@ -85,10 +88,12 @@ __all__ = [
     "LinkForces",
     "LinkMotion",
     "LinkWrench",
+    "LocalMinimum",
     "LoopEquations",
     "MobilityAnalysis",
     "Motion",
     "ObjectivePose",
+    "Optimum",
     "OutputTolerance",
     "Page",
     "PairForce",

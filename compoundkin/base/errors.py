@@ -107,6 +107,10 @@ class LikelySlip(UserWarning):
     """A value that can be meant but is most often a slip."""
 
 
+class UnmetConstraints(UserWarning):
+    """A search found no design at which all its constraints hold."""
+
+
 def warn(text: str, category: type[Warning]) -> None:
     """Warn at the line of the user's program that called the package."""
     import inspect

@@ -68,7 +68,7 @@ def places_of(where: str, given: object) -> Number:
     try:
         found = np.asarray(given)
         found = found[:, 0] + 1j * found[:, 1] if found.ndim == 2 and found.shape[1] == 2 else found + 0j
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         found = np.empty((0, 0))
     if found.ndim != 1 or not found.size or not np.isfinite(found).all():
         raise InvalidInput(Problem(where, "these are no points", "give a list of (x, y) or of complex numbers"))

@@ -1,0 +1,176 @@
+"""The answer of a search: the mechanism with better dimensions, what changed, what binds, and how sure one can be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.analysis.checks import Check, verify
+from compoundkin.base.display import PrintsShort, Shows, counted
+from compoundkin.base.series import Number
+from compoundkin.kinematics.configuration import Configuration
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solution import solve
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.programs.compiled_path import CompiledPath
+from compoundkin.studies.goals.contract import Goal
+from compoundkin.studies.optimisation.kept_modes import with_modes
+from compoundkin.studies.silence import silence
+
+
+@dataclass(frozen=True)
+class ChangedDimension:
+    """A free number before and after, and its bounds.
+
+    `binds` is "low" or "high" where it ended at one; what does not matter changes nothing that is asked, and is kept.
+    """
+
+    name: str
+    unit: str
+    before: float
+    after: float
+    low: float
+    high: float
+    binds: str = ""
+    matters: bool = True
+
+
+@dataclass(frozen=True)
+class HeldConstraint:
+    """A constraint at the design that was found.
+
+    `margin` is the least that it has, in its unit.
+    """
+
+    told: str
+    margin: float
+    unit: str
+    is_held: bool
+    binds: bool
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LocalMinimum(PrintsShort):
+    """A design at which searches ended: its objective, its dimensions, and which searches."""
+
+    value: float
+    dimensions: Mapping[str, Any]
+    searches: tuple[int, ...]
+    is_held: bool
+    _path: CompiledPath
+    _moved: Mapping[str, Any]
+
+    @cached_property
+    def motion(self) -> Motion:
+        """Its motion, in the configuration that the search kept to."""
+        with silence():
+            return solve(self._designed, **self._told)
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism with its dimensions, which moves as it did in the search."""
+        with silence():
+            return with_modes(self._designed, self.motion, self._told)
+
+    @property
+    def modes(self) -> str | Configuration:
+        """The configuration that the search kept to."""
+        return self._path.modes
+
+    @property
+    def _told(self) -> dict[str, Any]:
+        return {**self._moved, "modes": self._path.modes}
+
+    @property
+    def _designed(self) -> Mechanism:
+        return self._path.mechanism(self.dimensions)
+
+    def __repr__(self) -> str:
+        return f"LocalMinimum({self.value:.6g}, at which {counted(len(self.searches), 'search', 'searches')} ended)"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Optimum(Shows, PrintsShort):
+    """The best design that was found.
+
+    `value` is its objective, `value_before` that of the mechanism as it stood (NaN where it is not assembled), `goals`
+    say what it is; `changes` tell what became of the free numbers, `constraints` how they hold, `unknowns` what goals
+    found beside the dimensions. Of `screened` designs `assembled` were; searches began at the best of them: `begun` are
+    the objectives there, `ended` those where they ended. `minima` are all those designs, the best first. `evaluations`
+    designs were looked at in all, in so many `seconds`, by a `method` of SciPy.
+    """
+
+    value: float
+    value_before: float
+    changes: tuple[ChangedDimension, ...]
+    constraints: tuple[HeldConstraint, ...]
+    unknowns: Mapping[str, float]
+    goals: tuple[Goal, ...]
+    minima: tuple[LocalMinimum, ...]
+    begun: Number
+    ended: Number
+    screened: int
+    assembled: int
+    evaluations: int
+    seconds: float
+    method: str
+    before: Motion
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism with the best dimensions."""
+        return self.minima[0].mechanism
+
+    @property
+    def motion(self) -> Motion:
+        """Its motion; `before` is that of the mechanism as it stood."""
+        return self.minima[0].motion
+
+    @cached_property
+    def check(self) -> Check:
+        """The verification of its motion."""
+        with silence():
+            return verify(self.motion)
+
+    @property
+    def dimensions(self) -> Mapping[str, Any]:
+        """The best free dimensions by name, points complex."""
+        return self.minima[0].dimensions
+
+    @property
+    def starts(self) -> int:
+        """How many searches there were."""
+        return len(self.begun)
+
+    @property
+    def agreed(self) -> int:
+        """How many searches ended at an objective as good, here or elsewhere."""
+        return int(np.count_nonzero(self.ended - self.value <= AGREED * abs(self.value) + NOTHING * self._size))
+
+    @property
+    def binding(self) -> tuple[str, ...]:
+        """What keeps it from being better: bounds and constraints, in words."""
+        bounds = [f"{one.name} at its {one.binds} bound" for one in self.changes if one.binds]
+        return (*bounds, *(one.told for one in self.constraints if one.binds))
+
+    @property
+    def is_held(self) -> bool:
+        """Whether all constraints hold."""
+        return all(one.is_held for one in self.constraints)
+
+    @property
+    def _size(self) -> float:
+        return float(np.median(np.abs(self.begun)))
+
+    def __repr__(self) -> str:
+        bound = f", bound by {', '.join(self.binding)}" if self.binding else ""
+        searches = f"{self.agreed} of {counted(self.starts, 'search', 'searches')} agree"
+        return f"Optimum({self.value_before:.6g} -> {self.value:.6g}, {searches}{bound})"
+
+
+# Searches agree where their objectives do to so many parts; of objectives that become nothing, of those at the start.
+AGREED, NOTHING = 1e-4, 1e-12
