@@ -32,10 +32,10 @@ def test_the_page_on_clusters_runs_though_a_worker_is_killed(
     names: dict[str, Any] = {"__name__": "__main__", "kill": kill}
     exec(text.replace("on=client)", "on=client, progress=kill)"), names)
     # nobody's rows were lost, and nobody's are there twice
-    assert told == list(range(0, 2**15 + 1, 4096))
+    assert told == list(range(0, 2**14 + 1, 4096))
     assert_same(names["again"], names["study"].run())
     assert capsys.readouterr().out.startswith(f"{names['result']!r}\n")
-    assert len(list(Path("six-bar-study").iterdir())) == 9
+    assert len(list(Path("six-bar-study").iterdir())) == 5
 
 
 def test_who_cannot_compute_is_told(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,7 @@ class PartTask:
         return None
 
 
+@lru_cache(16)
 def is_seen(place: Path, token: str) -> bool:
     """Return whether a folder is there.
 

@@ -14,7 +14,8 @@ from compoundkin.base.errors import InvalidInput, Problem
 
 # So many pieces are under way for each worker: one that it computes, and one that waits for it.
 AT_A_TIME = 2
-# How many workers a foreign executor is thought to have: it does not say.
+# How many workers a foreign executor is thought to have: it does not say; and a cluster at least: it may be just
+# starting, and one that adapts itself grows with the work that waits.
 UNTOLD = 16
 
 
@@ -67,4 +68,4 @@ def _given(on: Any) -> Workers:
         raise InvalidInput(Problem("on", f"{short(on)} computes nothing", remedy))
     if getattr(on, "asynchronous", False):
         raise InvalidInput(Problem("on", "the client is asynchronous", "distributed.Client(..., asynchronous=False)"))
-    return Workers(made(pure=False), lambda: max(1, sum(counts().values())))
+    return Workers(made(pure=False), lambda: max(UNTOLD, sum(counts().values())))
