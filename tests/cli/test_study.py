@@ -94,6 +94,11 @@ def test_no_design_that_assembles_is_its_own_exit_code() -> None:
     found = run(NAME)
     assert found.exit_code == 3
     assert "What does not assemble" in found.stdout
+    # partly: each is counted once, by the group that fails
+    Path(NAME).write_text(TEXT.replace("low = 20, high = 29", "low = 14, high = 20"), "utf-8")
+    told = json.loads(run(NAME, "--format", "json").stdout)["sections"]["states"]["blocks"]
+    result = load_study(NAME).run()
+    assert [row[:2] for row in told[1]["rows"]] == [[(~result.assembled).sum(), "RRR(plate) cannot be assembled"]]
 
 
 BIG = """

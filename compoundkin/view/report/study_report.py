@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from compoundkin.base.arrays import degrees
 from compoundkin.model.attributes import DEGREES, GREATEST, LEAST, PARTS, RADIANS
-from compoundkin.studies.design_states import BRANCH, CIRCUIT, ORDER_DEFECT, REASON
+from compoundkin.studies.design_states import CIRCUIT, ORDER_DEFECT, REASON
 from compoundkin.studies.study_program import ROW, StudyColumn
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.view.report.report_data import Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
@@ -18,8 +19,10 @@ from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted, listed, number
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
-# Of more reasons and circuits than these the rest is counted.
+# Of more reasons and circuits only so many are told, the most frequent ones.
 MOST_STATES = 12
+# Before where in the motion it is that a design does not assemble.
+_PLACE = re.compile(" (at|between) ")
 
 
 def study_report(found: StudyResult, least: Sequence[str] = (), greatest: Sequence[str] = (), best: int = 1) -> Report:
@@ -73,29 +76,30 @@ def _figures(found: StudyResult) -> TableBlock:
 
 def _states(found: StudyResult) -> Iterator[Block]:
     """Yield why designs do not assemble, and on how many circuits the others are."""
-    why = Counter(one for one in found[REASON] if one)
-    if why:
+    reasons = Counter(one for one in found[REASON] if one)
+    if reasons:
         yield Paragraph("What does not assemble:")
-        yield _counts("why", why)
-    circuits = Counter(f"{branch} {circuit}".strip() for branch, circuit in _ways(found))
+        yield _whys(reasons)
+    circuits = Counter(found[CIRCUIT][found.assembled])
     if len(circuits) > 1:
-        yield Paragraph("The others are in these modes, on these circuits:")
-        yield _counts("on", circuits)
+        yield Paragraph("The others are on these circuits:")
+        rows = tuple((count, text) for text, count in circuits.most_common(MOST_STATES))
+        yield TableBlock((Column("designs", style="each"), Column("on")), rows)
     wrong = int(np.count_nonzero(found[ORDER_DEFECT]))
     if wrong:
         yield Paragraph(f"{counted(wrong, 'design')} with the poses not in one sense.")
 
 
-def _ways(found: StudyResult) -> Iterator[tuple[Any, Any]]:
-    closed = found.assembled
-    return zip(found[BRANCH][closed], found[CIRCUIT][closed], strict=True)
-
-
-def _counts(word: str, counts: Counter[str]) -> TableBlock:
-    most = counts.most_common(MOST_STATES)
-    rest = sum(counts.values()) - sum(count for _, count in most)
-    rows = (*((count, text) for text, count in most), *([(rest, "others")] if rest else []))
-    return TableBlock((Column("designs", style="each"), Column(word)), tuple(rows))
+def _whys(reasons: Counter[str]) -> TableBlock:
+    """Return how many designs fail by what, wherever in the motion, and where most of these do."""
+    counts: Counter[str] = Counter()
+    most: dict[str, str] = {}
+    for text, count in reasons.most_common():
+        what, *place = _PLACE.split(text, maxsplit=1)
+        counts[what] += count
+        most.setdefault(what, " ".join(place))
+    rows = tuple((count, what, most[what]) for what, count in counts.most_common(MOST_STATES))
+    return TableBlock((Column("designs", style="each"), Column("why"), Column("most often")), rows)
 
 
 def _best(found: StudyResult, name: str, count: int, is_greatest: bool) -> Iterator[Block]:
