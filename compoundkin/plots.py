@@ -1,4 +1,4 @@
-"""Plots beside `plot`: phase, polar, bearing loads, paths, centrodes, circuits, timing; studies and tolerances.
+"""Plots beside `plot`: phase, polar, bearing loads, paths, centrodes, circuits, timing; studies, tolerances, searches.
 
 >>> import compoundkin as ck
 >>> motion = ck.solve(ck.catalog.load_named("crank-rocker"))
@@ -16,11 +16,13 @@ from compoundkin.view.plot import (
     contributions,
     histogram,
     hodograph,
+    improvement,
     pareto,
     paths,
     phase,
     polar,
     scatter_matrix,
+    starts,
     timing_chart,
     workspace,
 )
@@ -33,11 +35,13 @@ __all__ = [
     "contributions",
     "histogram",
     "hodograph",
+    "improvement",
     "pareto",
     "paths",
     "phase",
     "polar",
     "scatter_matrix",
+    "starts",
     "timing_chart",
     "workspace",
 ]

@@ -37,6 +37,7 @@ def at_hand() -> dict[str, Any]:
         "bar": bar,
         "structure": ck.decompose(bar),
         "studied": ck.study(bar, {"crank.B.x": (0.9, 1.1)}, "rocker.angle.stroke", count=4).run(),
+        "optimum": ck.optimise(bar, {"rocker.C.x": (3.5, 4.5)}, "rocker.angle.stroke", starts=1),
         "tolerances": ck.tolerance(arm, {"fore.P.x": 0.1}, "P.x", values={"upper": 0.1, "fore": [1.0, 1.1]}, count=800),
         "motion": rocker,
         "timed": ck.solve(loaded("five-bar-led"), time=[0.0, 0.1, 0.2]),
@@ -271,6 +272,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "plots.contributions": {"found": h["tolerances"], "name": "P.x", "pose": 0, "title": None, "size": None},
         "plots.histogram": {"found": h["tolerances"], "name": "P.x", "pose": 0, "percentiles": None, "title": None,
                             "size": None},
+        "plots.improvement": {"optimum": h["optimum"], "title": None, "size": None},
+        "plots.starts": {"optimum": h["optimum"], "title": None, "size": None},
         "plots.timing_chart": {"what": m, "over": None, "title": None, "size": None},
         "profiles.DoubleCam": {"first": ck.profiles.synthesise(h["wave"], base=20.0),
                                "second": ck.profiles.synthesise(h["wave"], base=20.0)},
@@ -300,7 +303,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
 MORE = {
     "Mechanism": "items", "link": "letters", "mode": "links", "plot": "names", "chains.mechanism_from": "drivers",
     "laws.program": "segments", "laws.synchronised": "programs", "plots.circuits": "names",
-    "plots.scatter_matrix": "names", "plots.bands": "names",
+    "plots.scatter_matrix": "names", "plots.bands": "names", "plots.improvement": "names",
     "plots.bearing_loads": "pairs", "plots.hodograph": "names", "plots.paths": "points", "plots.polar": "names",
 }  # fmt: skip
 

@@ -20,8 +20,6 @@ from compoundkin.kinematics.configuration_arrays import Configurations
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose, roman
 from compoundkin.structure.redundancy import MobilityAnalysis
-from compoundkin.studies.study_result import StudyResult
-from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.page.force_blocks import forces_html
 from compoundkin.view.page.html_blocks import plain_block, plain_figure, plain_sections, plain_table
 from compoundkin.view.page.markup import safe
@@ -34,7 +32,7 @@ from compoundkin.view.report.report_data import Alert, Cell, Column, Paragraph, 
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.report.structure_sections import links_section
-from compoundkin.view.report.whole_report import report
+from compoundkin.view.report.whole_report import Studied, report
 from compoundkin.view.report.wording import counted, listed
 from compoundkin.view.sketch import draw
 
@@ -211,7 +209,7 @@ def _(what: CamAnalysis) -> Iterator[str]:
 
 
 @_parts.register
-def _(what: StudyResult | ToleranceAnalysis) -> Iterator[str]:
+def _(what: Studied) -> Iterator[str]:
     yield from plain_sections(report(what).sections)
 
 

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.arguments import checked
+from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import GREATEST, LEAST, TRANSMISSION_ANGLE, course_figure
+from compoundkin.model.attributes import GREATEST, LEAST, TRANSMISSION_ANGLE, course_figure, is_angle_word
 from compoundkin.studies.goals.contract import DesignConstraint
 from compoundkin.studies.goals.design_trial import DesignTrial
 
@@ -27,7 +28,9 @@ class FigureBound:
     @property
     def told(self) -> str:
         """What is bounded, and how."""
-        return f"{self.name} at {'least' if self.sign > 0 else 'most'} {self.value:g}"
+        is_angle = is_angle_word(course_figure(self.name)[0].rpartition(".")[2])
+        value = f"{degrees(self.value):g} deg" if is_angle else f"{self.value:g}"
+        return f"{self.name} at {'least' if self.sign > 0 else 'most'} {value}"
 
     @property
     def figure(self) -> str:

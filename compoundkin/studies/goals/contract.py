@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -93,6 +94,11 @@ class Goal(Term):
     @abstractmethod
     def residuals(self, trial: DesignTrial) -> Number:
         """Return what is summed, (designs, residuals); NaN where a design is not assembled."""
+
+    @property
+    def places(self) -> Mapping[str, Number]:
+        """Places that points are to be at, by the points."""
+        return {}
 
     @property
     def parts(self) -> tuple[tuple[float, Goal], ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,11 @@ class PathGoal(Goal):
     def told(self) -> str:
         """The point and how many places."""
         return f"{self.point} through {len(self.through)} points with timing"
+
+    @property
+    def places(self) -> Mapping[str, Number]:
+        """The places of the point."""
+        return {self.point: self.through}
 
     @property
     def _output(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from compoundkin.base.arguments import checked
@@ -23,6 +24,11 @@ class PoseGoal(Goal):
     def told(self) -> str:
         """What is to be where."""
         return f"{self.wanted.told} with timing"
+
+    @property
+    def places(self) -> Mapping[str, Number]:
+        """The places of the point."""
+        return {self.wanted.point: self.wanted.places}
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
         """Return what is compared.

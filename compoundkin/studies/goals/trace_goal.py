@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,6 +32,11 @@ class TraceGoal(Goal):
     def told(self) -> str:
         """What is to be where."""
         return f"{self.wanted.told}{'' if self.is_ordered else ' in any order'}"
+
+    @property
+    def places(self) -> Mapping[str, Number]:
+        """The places of the point."""
+        return {self.wanted.point: self.wanted.places}
 
     @property
     def has_own_poses(self) -> bool:

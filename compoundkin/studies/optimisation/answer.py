@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.series import Number
+from compoundkin.kinematics.quantities import quantity
+from compoundkin.studies.goals.contract import Term
 from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns
 from compoundkin.studies.optimisation.design_search import DesignSearch
 from compoundkin.studies.optimisation.local_minima import EndedSearch
@@ -92,5 +94,12 @@ def _held(problem: DesignProblem, best: SearchedDesigns, scales: Number) -> tupl
         place += len(margins)
         least = int(np.argmin(parts))
         is_held, binds = bool(parts[least] >= -HELD), bool(abs(parts[least]) < AT_END)
-        found.append(HeldConstraint(one.term.told, float(margins[least]), one.term.unit, is_held, binds))
+        found.append(HeldConstraint(one.term.told, float(margins[least]), _unit(problem, one.term), is_held, binds))
     return tuple(found)
+
+
+def _unit(problem: DesignProblem, term: Term) -> str:
+    """Return the unit of a term: its own, or that of what it asks."""
+    reference = problem.path.reference
+    units = {quantity(reference, name).unit for name in term.outputs(reference)}
+    return term.unit or (units.pop() if len(units) == 1 else "")

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.analysis.checks import Check, verify
-from compoundkin.base.display import PrintsShort, Shows, counted
+from compoundkin.base.display import PrintsShort, Shows, counted, way
 from compoundkin.base.series import Number
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.motion import Motion
@@ -161,6 +161,10 @@ class Optimum(Shows, PrintsShort):
     def is_held(self) -> bool:
         """Whether all constraints hold."""
         return all(one.is_held for one in self.constraints)
+
+    def plot(self, *names: str, **options: Any) -> Any:
+        """Plot what became better; see `plots.improvement`."""
+        return way("study_plot")(self, *names, **options)
 
     @property
     def _size(self) -> float:

@@ -8,10 +8,11 @@ from functools import singledispatch
 from importlib.util import find_spec
 from typing import TypeAlias
 
+from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.page.markup import element, safe
-from compoundkin.view.plot import Plot, bands, contributions, scatter_matrix
+from compoundkin.view.plot import Plot, bands, contributions, improvement, scatter_matrix, starts
 
 # More outputs than these are no page: the tables have all.
 MOST = 6
@@ -60,3 +61,9 @@ def _(found: ToleranceAnalysis) -> Iterator[SectionPlot]:
     for one in outputs:
         said = f"What contributes to the error of {one.name}."
         yield "contributions", contributions(found, one.name, title=""), said
+
+
+@_plots.register
+def _(found: Optimum) -> Iterator[SectionPlot]:
+    yield "optimum", improvement(found, title=""), "What became better: the mechanism as it stood, and the best one."
+    yield "minima", starts(found, title=""), "Where the searches began and ended."

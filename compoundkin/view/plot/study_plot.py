@@ -5,10 +5,12 @@ from __future__ import annotations
 from functools import singledispatch
 from typing import Any
 
+from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot.contribution_bars import contributions
 from compoundkin.view.plot.figure_histogram import histogram
+from compoundkin.view.plot.improvement_plot import improvement
 from compoundkin.view.plot.percentile_bands import bands
 from compoundkin.view.plot.plot_style import Plot
 from compoundkin.view.plot.scatter_matrix import scatter_matrix
@@ -38,3 +40,9 @@ def _(found: ToleranceAnalysis, *names: str, **options: Any) -> Plot:
     if len(shown) == 1 and not shown[0].is_course:
         return contributions(found, shown[0].name, **options)
     return bands(found, *names, **options)
+
+
+@study_plot.register
+def _(found: Optimum, *names: str, **options: Any) -> Plot:
+    """What became better."""
+    return improvement(found, *names, **options)

@@ -15,9 +15,11 @@ from compoundkin.kinematics.one_design import motion_of_design, shape_of
 from compoundkin.model.design_numbers import mechanism_of_design
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
+from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.report.groups_section import drivers_section, solving_section
+from compoundkin.view.report.optimum_report import optimum_report
 from compoundkin.view.report.report_data import Outcome
 from compoundkin.view.report.report_forms import Report, Subject
 from compoundkin.view.report.structure_sections import (
@@ -32,7 +34,7 @@ from compoundkin.view.report.tolerance_report import tolerance_report
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
 
-Studied: TypeAlias = StudyResult | ToleranceAnalysis
+Studied: TypeAlias = StudyResult | ToleranceAnalysis | Optimum
 Reported: TypeAlias = Mechanism | Structure | Motion | Studied
 # So many rows with the least values of a figure are listed, and as many with the greatest.
 BEST = 3
@@ -48,7 +50,7 @@ def report(what: Reported, outputs: Sequence[str] = (), design: int = 0) -> Repo
     before the last: what is reported and checked is that design by itself, however many there are.
 
     Of a study the rows with the least and the greatest values of `outputs` are listed, of a tolerance analysis those
-    outputs are reported.
+    outputs are reported, and of an optimum its page plots them.
 
     Raises UnknownName for an output the mechanism does not have, InvalidInput for a design it does not have.
 
@@ -91,6 +93,8 @@ def _of_study(what: Studied, outputs: Sequence[str], design: int) -> Report:
         raise InvalidInput(Problem("design", "a study is reported as a whole", "report the motion of that design"))
     if isinstance(what, ToleranceAnalysis):
         return tolerance_report(what, outputs)
+    if isinstance(what, Optimum):
+        return optimum_report(what, outputs)
     return study_report(what, outputs, outputs, BEST)
 
 
