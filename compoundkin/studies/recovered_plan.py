@@ -7,7 +7,7 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.studies.samples import sample_from
-from compoundkin.studies.study_data import CALLED, mechanism_from
+from compoundkin.studies.study_data import CALLED, ORDER, mechanism_from
 from compoundkin.studies.study_plan import RATES, StudyPlan
 from compoundkin.studies.variations import variation_from
 
@@ -20,7 +20,7 @@ def plan_from(data: Mapping[str, Any]) -> StudyPlan:
     if untold := list(_untold(data, "")):
         remedy = "run the study into this folder: what is there is not computed again"
         raise InvalidInput(Problem(f"study.{untold[0]}", "it is an object of a program, which no file holds", remedy))
-    named = {name: data["dimensions"][name] for name in data["order"]}
+    named = {name: data["dimensions"][name] for name in data[ORDER]}
     dimensions = {name: variation_from(f"dimensions.{name}", one) for name, one in named.items()}
     sample = sample_from(data["sample"])
     rest: dict[str, Any] = {name: data.get(name) for name in ("values", *RATES, "modes", "given")}

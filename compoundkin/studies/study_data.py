@@ -16,6 +16,8 @@ from compoundkin.model.mechanism import Mechanism
 
 # What stands in the data for things that cannot be written: what they are called and what tells them from others.
 CALLED, CONTENT = "called", "content"
+# Samples give their columns to the dimensions in order, which tables of JSON do not keep for certain.
+ORDER = "order of dimensions"
 
 
 def plain(value: Any) -> Any:

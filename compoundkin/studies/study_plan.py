@@ -20,7 +20,7 @@ from compoundkin.kinematics.solution import solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.responses import studied_path
 from compoundkin.studies.samples.contract import DesignSample
-from compoundkin.studies.study_data import digest, plain, plain_mechanism
+from compoundkin.studies.study_data import ORDER, digest, plain, plain_mechanism
 from compoundkin.studies.study_program import ROW, StudyColumn, StudyProgram
 from compoundkin.studies.variations import hold_kinds
 from compoundkin.studies.variations.contract import Variation
@@ -76,7 +76,7 @@ class StudyPlan:
         """
         found = {
             "mechanism": plain_mechanism(self.mechanism),
-            "order": list(self.dimensions),
+            ORDER: list(self.dimensions),
             "dimensions": {name: plain(one.data) for name, one in self.dimensions.items()},
             "sample": plain(self.sample.data),
         }

@@ -127,10 +127,11 @@ class StudyResult(Shows, PrintsShort):
 
     def _rows(self, places: Number) -> tuple[dict[str, Any], ...]:
         found = self.rows.picked(places)
+        # a vector stands where its first part does
+        shown = {name.removesuffix(_X) if name.removesuffix(_X) in self._vectors else name: column
+                 for name, column in found.items() if name.removesuffix(_Y) not in self._vectors}  # fmt: skip
         for name in self._vectors:
-            found[name] = found[name + _X] + 1j * found[name + _Y]
-        hidden = {name + part for name in self._vectors for part in (_X, _Y)}
-        shown = {name: column for name, column in found.items() if name not in hidden}
+            shown[name] = found[name + _X] + 1j * found[name + _Y]
         return tuple({name: _single(column[k]) for name, column in shown.items()} for k in range(len(places)))
 
     @checked

@@ -71,6 +71,7 @@ def test_the_best_are_rows_that_assemble(figures: ck.results.StudyResult) -> Non
     assert [row[name] for row in best] == values[:3].tolist()
     (most,) = figures.best(name, greatest=True)
     assert most[name] == values[-1]
+    assert list(most)[:4] == ["row", "crank.D.x", "rocker.A.x", "G.position"]
     again = {key: figures[key][most["row"]] for key in ("crank.D.x", "G.position")}
     assert most["crank.D.x"] == again["crank.D.x"]
     assert (most["G.position"] == again["G.position"]).all()

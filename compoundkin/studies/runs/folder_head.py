@@ -15,7 +15,7 @@ from compoundkin.files.atomic import write_atomically
 from compoundkin.studies.runs.parquet_parts import parquet
 from compoundkin.studies.runs.study_folder import StudyFolder
 from compoundkin.studies.runs.study_versions import told_versions, versions
-from compoundkin.studies.study_data import differences, digest
+from compoundkin.studies.study_data import ORDER, differences, digest
 from compoundkin.studies.study_plan import StudyPlan
 from compoundkin.studies.study_program import StudyColumn
 
@@ -87,6 +87,8 @@ def _hold_same(place: Path, own: FolderHead, there: FolderHead) -> None:
     """Raise InvalidInput where a folder is that of another study."""
     if digest(own.study) != digest(there.study):
         where = list(differences(own.study, there.study))
+        # the order says something only where the dimensions are the same
+        where = [name for name in where if name != ORDER or where == [ORDER]]
         more = f" and {len(where) - _MORE} more" if len(where) > _MORE else ""
         what = f"it has rows of another study, which differs in {', '.join(where[:_MORE])}{more}"
         raise InvalidInput(Problem(str(place), what, "name another folder"))
