@@ -23,7 +23,7 @@ from compoundkin.studies.variations.contract import Variation
 # the last bit.
 BLOCK = 4096
 # A block of courses has so many designs times poses at most, so that it stays in memory.
-MOST_POSES = 2**21
+MOST_POSES = 2**19
 ROW = "row"
 AXES = tuple(PARTS)[:2]
 ColumnKind: TypeAlias = Literal["dimension", "output", "state"]

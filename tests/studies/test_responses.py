@@ -133,3 +133,25 @@ def test_functions_of_a_pose_are_summed_with_their_slopes() -> None:
         studied_path(six_bar, list(RANGES), {"error": lambda at: at["Gx"]}, COARSE)
     with pytest.raises(ck.errors.InvalidInput, match="no function"):
         studied_path(six_bar, list(RANGES), {"error": 3.0}, COARSE)
+
+
+def test_led_designs_are_solved_in_time_too() -> None:
+    path, (response,) = studied_path(ck.catalog.load_named("five-bar-led"), ["left.B"], ["left.angle.stroke"])
+    own = path.compiled.programs.stated.own(path.compiled.programs.dimensions[0])
+    designs = path.designs({"left.B": own * np.array([0.99, 1.0, 1.01])})
+    expected = ck.quantity(designs.motion, "left.angle.stroke").values[:, 0]
+    assert np.abs(response.values(designs) - expected).max() < 1e-9 * expected.max()
+
+
+def test_numbers_of_laws_have_slopes_of_figures() -> None:
+    program = ck.laws.program(ck.laws.rise(1.2, over=0.6), ck.laws.dwell(0.5), ck.laws.fall(1.2, over=0.8))
+    press = ck.catalog.load_named("six-bar").replace(ck.drive("crank", law=program))
+    times = np.linspace(0.0, 1.8, 37)
+    path, (response,) = studied_path(
+        press, ["crank.law.segments.0.over"], ["G.velocity.length.greatest"], None, time=times
+    )
+    designs = path.designs({"crank.law.segments.0.over": np.array([0.65, 0.6])})
+    fine = ck.solve(press, time=np.linspace(0.0, 1.8, 3601))
+    expected = ck.quantity(fine, "G.velocity.length.greatest").values[0]
+    assert abs(response.values(designs)[1] - expected) < 1e-9 * expected
+    hold_slopes(designs, response, 1e-6)

@@ -136,7 +136,7 @@ class Designs(PrintsShort):
         return self.kept("motion", self._motion)
 
     def _motion(self) -> Motion:
-        values, dimensions, more = self.call
+        values, dimensions, more = self.call if self.times is None else self._call_in_time
         return solve(self.path.compiled.mechanism(dimensions), values, modes=self.path.compiled.modes, **more)
 
     def at(self, inputs: Inputs) -> Designs:
@@ -193,15 +193,22 @@ class Designs(PrintsShort):
         slopes = self.between(rows, places).slopes
         return np.array([slopes[name, by] for by in self.path.coordinates])
 
-    @cached_property
+    @property
     def call(self) -> tuple[Any, Mapping[str, Number], dict[str, Any]]:
         """The arguments of a call of the path: drivers' values, dimensions, rates.
 
         Where laws have free numbers they are what was given, and the times.
         """
-        columns = {name: np.reshape(value, (-1, 1)) for name, value in self.dimensions.items()}
         if self.times is not None and self.path.compiled.programs.law_numbers:
-            values, more = self.path.given
-            return values, columns, {**more, TIME: self.times}
+            return self._call_in_time
         values, *rates = ({name: each[k] for name, each in self.inputs.drives.items()} for k in range(len(RATES) + 1))
-        return values, columns, dict(zip(RATES, rates, strict=True))
+        return values, self._columns, dict(zip(RATES, rates, strict=True))
+
+    @property
+    def _call_in_time(self) -> tuple[Any, Mapping[str, Number], dict[str, Any]]:
+        values, more = self.path.given
+        return values, self._columns, {**more, TIME: self.times}
+
+    @property
+    def _columns(self) -> Mapping[str, Number]:
+        return {name: np.reshape(value, (-1, 1)) for name, value in self.dimensions.items()}
