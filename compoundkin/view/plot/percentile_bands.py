@@ -14,6 +14,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
+from compoundkin.studies.study_program import StudyColumn
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
@@ -101,7 +102,7 @@ def _panels(
     ordered = held_percentiles(percentiles)
     if isinstance(found, StudyResult):
         among = StudyColumns(found)
-        panels = tuple(_of_study(among.values(one), among.assembled, ordered) for one in among.courses(names))
+        panels = tuple(_of_study(among, one, ordered) for one in among.courses(names))
         return among.told(), found.reference, panels
     told = [counted(found.count, "random design"), _missing(found.unassembled)]
     panels = tuple(_of_tolerance(found, one, relative) for one in courses_of(found, names))
@@ -122,25 +123,28 @@ def held_percentiles(percentiles: Sequence[float]) -> list[float]:
     return found
 
 
-def percentile_courses(values: Number, percentiles: Sequence[float]) -> Number:
-    """Return percentiles of designs at every pose, (percentiles, poses).
+def percentile_courses(values: Number, chosen: Number, percentiles: Sequence[float]) -> Number:
+    """Return percentiles of the chosen designs at every pose, (percentiles, poses).
 
     They are NaN where no design is known.
 
-    >>> percentile_courses(np.array([[0.0, np.nan], [1.0, np.nan], [4.0, np.nan]]), [50.0]).tolist()
+    >>> values = np.array([[0.0, np.nan], [1.0, np.nan], [4.0, np.nan], [9.0, 9.0]])
+    >>> percentile_courses(values, np.array([True, True, True, False]), [50.0]).tolist()
     [[1.0, nan]]
     """
     found = np.full((len(percentiles), values.shape[-1]), np.nan)
     # pose by pose: all at once would need the memory of all designs again
     for pose in range(values.shape[-1]):
-        known = values[:, pose][np.isfinite(values[:, pose])]
+        known = values[:, pose][chosen & np.isfinite(values[:, pose])]
         if len(known):
-            found[:, pose] = np.percentile(known, percentiles)
+            found[:, pose] = np.percentile(known, percentiles, overwrite_input=True)
     return found
 
 
-def _of_study(quantity: Plotted, assembled: Number, percentiles: Sequence[float]) -> Bands:
-    rows = dict(zip(percentiles, percentile_courses(quantity.values[assembled], percentiles), strict=True))
+def _of_study(among: StudyColumns, column: StudyColumn, percentiles: Sequence[float]) -> Bands:
+    courses = percentile_courses(np.asarray(among.found[column.name]), among.assembled, percentiles)
+    quantity = shown_of(column.name, column.unit, courses)
+    rows = dict(zip(percentiles, quantity.values, strict=True))
     lower = [one for one in percentiles if one < 50.0 and 100.0 - one in rows]
     single = [one for one in percentiles if one not in lower and 100.0 - one not in lower]
     edges = tuple((_between(one), rows[one], rows[100.0 - one]) for one in lower)
