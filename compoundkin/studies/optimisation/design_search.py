@@ -15,6 +15,7 @@ from compoundkin.studies.optimisation.design_problem import DesignProblem
 from compoundkin.studies.optimisation.evolution import GENERATIONS, evolved
 from compoundkin.studies.optimisation.local_methods import EVOLUTION, METHODS, method_of
 from compoundkin.studies.optimisation.local_minima import EndedSearch, ended_searches
+from compoundkin.studies.optimisation.shared_refinement import refined_together
 from compoundkin.studies.optimisation.simultaneous_descent import STEPS, descended
 from compoundkin.studies.optimisation.starting_designs import StartingDesigns, starting_designs
 
@@ -66,9 +67,9 @@ class DesignSearch(PrintsShort):
         count = self._worth(close)
         refine = METHODS.get(self.word, METHODS["SLSQP"])
         parts = [one.parts for one in close]
-        for k in range(count):
-            parts[k] = refine(self.problem, parts[k], scales)
-            self._tell(LED + (PARTS - LED) * (k + 1) // count)
+        parts[:count] = refined_together(
+            self.problem, parts[:count], scales, refine, lambda k: self._tell(LED + (PARTS - LED) * k // count)
+        )
         self._tell(PARTS)
         found = ended_searches(self.problem, np.array(parts), scales, searches=[one.searches for one in close])
         refined = {close[k].searches[0] for k in range(count)}

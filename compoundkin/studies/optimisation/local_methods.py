@@ -9,12 +9,12 @@ import numpy as np
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
 from compoundkin.studies.optimisation.design_problem import DesignProblem
-from compoundkin.studies.optimisation.single_design import SingleDesign
+from compoundkin.studies.optimisation.single_design import DesignsOfSearch, SingleDesign
 
 # A search ends where a step changes the objective or the design by less than this part.
 ENOUGH = 1e-12
 # Where the objective is measured anew a coarser end will do.
-FINE = 1e-10
+FINE = 1e-9
 # Objectives become much less than they were: so often they are measured anew, and the search begun again there.
 ROUNDS = 4
 # It is begun again while a round makes it less by this part.
@@ -22,7 +22,7 @@ WORTH = 1e-2
 STEPS = 100
 
 
-def by_least_squares(problem: DesignProblem, start: Number, scales: Number) -> Number:
+def by_least_squares(problem: DesignsOfSearch, start: Number, scales: Number) -> Number:
     """Refine a sum of squares between bounds, by trust regions."""
     from scipy.optimize import least_squares
 
@@ -35,18 +35,18 @@ def by_least_squares(problem: DesignProblem, start: Number, scales: Number) -> N
     return at.best
 
 
-def by_slsqp(problem: DesignProblem, start: Number, scales: Number) -> Number:
+def by_slsqp(problem: DesignsOfSearch, start: Number, scales: Number) -> Number:
     """Refine with constraints, by sequential least-squares programming."""
     return _in_rounds(problem, start, scales, _slsqp)
 
 
-def by_trust_region(problem: DesignProblem, start: Number, scales: Number) -> Number:
+def by_trust_region(problem: DesignsOfSearch, start: Number, scales: Number) -> Number:
     """Refine with constraints, by trust regions with a barrier."""
     return _in_rounds(problem, start, scales, _trust_region)
 
 
 def _in_rounds(
-    problem: DesignProblem, start: Number, scales: Number, once: Callable[[SingleDesign, Number], None]
+    problem: DesignsOfSearch, start: Number, scales: Number, once: Callable[[SingleDesign, Number], None]
 ) -> Number:
     for _ in range(ROUNDS):
         at = SingleDesign(problem, scales, start)
@@ -68,20 +68,16 @@ def _slsqp(at: SingleDesign, start: Number) -> None:
 
 
 def _trust_region(at: SingleDesign, start: Number) -> None:
-    import warnings
 
     from scipy.optimize import BFGS, NonlinearConstraint, minimize
 
     held = [NonlinearConstraint(at.margins, 0.0, np.inf, at.margin_slopes, BFGS())] if len(at.scales) else []
     options = {"xtol": ENOUGH, "gtol": ENOUGH, "maxiter": STEPS}
     told = {"jac": at.value_slopes, "bounds": _bounds(at.problem), "constraints": held}
-    with warnings.catch_warnings():
-        # it says where slopes did not change from one step to the next
-        warnings.simplefilter("ignore", UserWarning)
-        minimize(at.value, start, method="trust-constr", options=options, **told)
+    minimize(at.value, start, method="trust-constr", options=options, **told)
 
 
-def _bounds(problem: DesignProblem) -> list[tuple[float | None, float | None]]:
+def _bounds(problem: DesignsOfSearch) -> list[tuple[float | None, float | None]]:
     low, high = problem.space.bounds
     return [(a, b) if np.isfinite(a) else (None, None) for a, b in zip(low.tolist(), high.tolist(), strict=True)]
 

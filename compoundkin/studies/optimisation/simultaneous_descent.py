@@ -15,6 +15,8 @@ from compoundkin.studies.optimisation.design_problem import DesignProblem, Searc
 STEPS = 100
 # It is enough where a step makes the sum less by so little a part of it, or is so short.
 LITTLE, SHORT = 1e-9, 1e-9
+# What is no sum of squares is only led near: its figures have corners, at which such steps are many and small.
+STEPS_NEAR, LITTLE_NEAR = 30, 1e-4
 # Damping at first, and at most: beyond it no step is of use.
 DAMPING, MOST_DAMPED = 1e-2, 1e12
 # What a curvature of nothing is replaced by, as a part of the greatest.
@@ -36,7 +38,8 @@ class _Descent(PrintsShort):
     aim: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        self.residuals, self.slopes = self._sloped(self.parts)
+        at = self.problem.at(self.parts)
+        self.residuals, self.slopes = self._residuals(at), self._slopes(at)
         self.sums = (self.residuals**2).sum(axis=1)
         self.damping = np.full(len(self.parts), DAMPING)
         self.growth = np.full(len(self.parts), 2.0)
@@ -46,25 +49,25 @@ class _Descent(PrintsShort):
         """Take a step from every start that still moves."""
         rows = self.live
         there, foreseen = self._ahead(rows)
-        residuals = self._residuals(there)
-        gain = self.sums[rows] - (residuals**2).sum(axis=1)
+        at = self.problem.at(there)
+        gain = self.sums[rows] - (self._residuals(at) ** 2).sum(axis=1)
         better = gain > 0.0
         moved = np.abs(there - self.parts[rows]).max(axis=1)
-        enough = (better & (gain <= LITTLE * self.sums[rows])) | (moved < SHORT)
-        self._accept(rows[better], there[better], (gain / foreseen)[better])
+        little = LITTLE if self.aim is None else LITTLE_NEAR
+        enough = (better & (gain <= little * self.sums[rows])) | (moved < SHORT)
+        if better.any():
+            self._accept(at, rows, better, gain / foreseen)
         worse = rows[~better]
         self.damping[worse] *= self.growth[worse]
         self.growth[worse] *= 2.0
         self.live = rows[~enough & (self.damping[rows] < MOST_DAMPED) & (self.sums[rows] > 0.0)]
 
-    def _accept(self, rows: Number, there: Number, ratio: Number) -> None:
+    def _accept(self, at: SearchedDesigns, rows: Number, better: Number, ratio: Number) -> None:
         """Move on; the better a step was foreseen the less the next is damped."""
-        if not len(rows):
-            return
-        residuals, slopes = self._sloped(there)
-        known = np.isfinite(slopes).all(axis=(1, 2))
+        residuals, slopes = self._residuals(at), self._slopes(at)
+        known = better & np.isfinite(slopes).all(axis=(1, 2))
         rows, ratio = rows[known], ratio[known]
-        self.parts[rows], self.residuals[rows], self.slopes[rows] = there[known], residuals[known], slopes[known]
+        self.parts[rows], self.residuals[rows], self.slopes[rows] = at.parts[known], residuals[known], slopes[known]
         self.sums[rows] = (self.residuals[rows] ** 2).sum(axis=1)
         # H. B. Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05
         self.damping[rows] *= np.maximum(1.0 / 3.0, 1.0 - (2.0 * np.minimum(ratio, 2.0) - 1.0) ** 3)
@@ -90,17 +93,13 @@ class _Descent(PrintsShort):
         foreseen = -(2.0 * (gradient * ahead).sum(axis=1) + bent)
         return there, np.maximum(foreseen, np.finfo(float).tiny)
 
-    def _residuals(self, parts: Number) -> Number:
-        return self._all_residuals(self.problem.at(parts))
-
-    def _sloped(self, parts: Number) -> tuple[Number, Number]:
-        at = self.problem.at(parts)
+    def _slopes(self, at: SearchedDesigns) -> Number:
         root, violated = np.sqrt(self.weight), at.margins < 0.0
         steep = np.where(violated[:, :, None], root / self.scales[:, None] * at.margin_slopes, 0.0)
         own = at.residual_slopes if self.aim is None else at.value_slopes[:, None, :] / self.aim[1]
-        return self._all_residuals(at), np.concatenate([own, steep], axis=1)
+        return np.concatenate([own, steep], axis=1)
 
-    def _all_residuals(self, at: SearchedDesigns) -> Number:
+    def _residuals(self, at: SearchedDesigns) -> Number:
         """Return the residuals of goals, or how far the objective is from the aim, and of violated constraints."""
         violated = np.sqrt(self.weight) * np.minimum(at.margins / self.scales, 0.0)
         own = at.residuals if self.aim is None else np.maximum(at.values - self.aim[0], 0.0)[:, None] / self.aim[1]
@@ -119,7 +118,7 @@ def descended(problem: DesignProblem, parts: Number, scales: Number, tell: Calla
         aim, size = (float(values.min()) - BELOW * spread, spread), BELOW**2
     for weight in WEIGHTS if len(scales) else WEIGHTS[:1]:
         descent = _Descent(problem, scales, weight * size, parts.copy(), aim)
-        for _ in range(STEPS):
+        for _ in range(STEPS if aim is None else STEPS_NEAR):
             if not len(descent.live):
                 break
             descent.step()

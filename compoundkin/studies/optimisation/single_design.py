@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns
+from compoundkin.studies.optimisation.design_problem import SearchedDesigns
+from compoundkin.studies.optimisation.search_space import SearchSpace
 
 # Margins violated by less than this part of their size hold: SciPy's methods end so near.
 HELD = 1e-7
@@ -16,16 +18,27 @@ HELD = 1e-7
 WORSE = 10.0
 
 
+class DesignsOfSearch(Protocol):
+    """The problem as a search of one design sees it, alone or beside others."""
+
+    @property
+    def space(self) -> SearchSpace:
+        """Where it searches."""
+
+    def at(self, parts: Number) -> Any:
+        """Return one design by parts of the ranges, with all numbers of `SearchedDesigns`."""
+
+
 @dataclass(eq=False, repr=False)
 class SingleDesign(PrintsShort):
     """Objective and constraints at parts of the ranges, both in sizes of their own."""
 
-    problem: DesignProblem
+    problem: DesignsOfSearch
     scales: Number
     best: Number
     size: float = 1.0
-    _last: SearchedDesigns = field(init=False)
-    _known: SearchedDesigns = field(init=False)
+    _last: Any = field(init=False)
+    _known: Any = field(init=False)
 
     def __post_init__(self) -> None:
         self._last = self._known = self.problem.at(self.best)
@@ -60,7 +73,7 @@ class SingleDesign(PrintsShort):
         """Return their slopes."""
         return _finite(self._at(parts).margin_slopes[0]) / self.scales[:, None]
 
-    def _at(self, parts: Number) -> SearchedDesigns:
+    def _at(self, parts: Number) -> Any:
         inside = np.clip(parts, *self.problem.space.bounds)
         if not np.array_equal(inside, self._last.parts[0]):
             self._last = self.problem.at(inside)
