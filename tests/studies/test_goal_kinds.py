@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.base.series import Number
 from compoundkin.studies.goals.assembly_constraint import assembles, full_turn
-from compoundkin.studies.goals.bound_constraint import at_least, at_most, box, transmission_angle
+from compoundkin.studies.goals.bound_constraint import at_least, at_most, box, transmits
 from compoundkin.studies.goals.contract import DesignConstraint, Goal
 from compoundkin.studies.goals.design_trial import DesignTrial
 from compoundkin.studies.goals.distance_constraint import distance
@@ -48,7 +48,7 @@ ASKED: dict[str, tuple[Goal | DesignConstraint, Number | None]] = {
     "target of a course": (target("G.position", PLACES[0]), None),
     "at least": (at_least("bar.angle", -1.0), None),
     "at most": (at_most("G.y.stroke", 9.0), None),
-    "transmission angle": (transmission_angle("bar", 0.5), None),
+    "transmission angle": (transmits("bar", 0.5), None),
     "box": (box("G", x=(10, 30), y=(-20.0, 20.0)), None),
     "distance": (distance("C", "G", at_least=1.0, at_most=50.0), None),
     "length": (distance("A", "C", at_most=50.0), None),
@@ -96,7 +96,7 @@ def test_numbers_are_those_of_solve() -> None:
 
 def test_margins_are_those_of_solve() -> None:
     angle = ck.quantity(MOTION, "bar.transmission_angle").values
-    assert of_one(transmission_angle("bar", 0.2)) == pytest.approx([angle.min() - 0.2], abs=0.01)
+    assert of_one(transmits("bar", 0.2)) == pytest.approx([angle.min() - 0.2], abs=0.01)
     assert of_one(box("G", x=(0, 30))) == pytest.approx([G.real.min(), 30 - G.real.max()], abs=0.1)
     between = np.asarray(abs(G - MOTION.points["B"].position))
     margins = of_one(distance("B", "G", at_least=1.0, at_most=50.0))

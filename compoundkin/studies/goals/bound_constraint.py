@@ -102,13 +102,13 @@ def at_most(name: str, value: float) -> DesignConstraint:
 
 
 @checked
-def transmission_angle(link: str, least: float) -> DesignConstraint:
+def transmits(link: str, least: float) -> DesignConstraint:
     """Return the constraint that a transmission angle is at least so great.
 
     It is that of the dyad that moves a link, in radians, folded to 0 to pi / 2, a right angle is best. Raises
     InvalidInput for what is no number. Source: H. Alt, 1932.
 
-    >>> transmission_angle("rocker", 0.7).told
+    >>> transmits("rocker", 0.7).told
     'rocker.transmission_angle at least 0.7'
     """
     return at_least(f"{link}.{TRANSMISSION_ANGLE}", least)

@@ -115,7 +115,7 @@ def function(output: str, wanted: object, *, driver: str | None = None, free_zer
         return FunctionGoal(output, None, wanted, driver, free_zero)
     try:
         pairs = np.asarray(wanted, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         pairs = np.empty(0)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or not len(pairs) or not np.isfinite(pairs).all():
         raise InvalidInput(Problem(f"function.{output}", f"{short(wanted)} is no function", PAIRS))

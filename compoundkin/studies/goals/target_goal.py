@@ -62,10 +62,10 @@ def target(name: str, value: object) -> Goal:
     'ram.displacement.time_ratio 1.4'
     """
     try:
-        found = np.asarray(value) + 0
+        found = np.asarray(value)
         good = found.dtype.kind in "fiuc" and found.ndim <= 1 and found.size > 0 and np.isfinite(found).all()
     except (TypeError, ValueError):
         good = False
     if not good:
         raise InvalidInput(Problem(f"target.{name}", f"{short(value)} is no value", "a number, or one for each pose"))
-    return TargetGoal(name, found if found.ndim else found.item())
+    return TargetGoal(name, found if found.ndim else found[()])

@@ -86,7 +86,7 @@ def wanted_poses(where: str, link: str, point: str, given: object, arm: float | 
     """
     try:
         rows = np.asarray(given, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         rows = np.empty(0)
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise InvalidInput(Problem(where, "these are no poses", "give a list of (x, y, angle), radians"))
