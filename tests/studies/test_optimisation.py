@@ -99,7 +99,7 @@ def test_a_figure_with_a_constraint_is_that_of_a_fine_grid(method: str | None) -
     best = strokes[angles >= 0.6].max()
     found = ck.optimise(
         LINKAGE, free, ck.goals.greatest("rocker.angle.stroke"), [at_least(TRANSMISSION, 0.6)], values=TURN,
-        starts=8, method=method,
+        starts=2 if method == "trust-constr" else 6, method=method,
     )  # fmt: skip
     assert best - 1e-3 < -found.value < best * 1.01
     assert found.is_held
@@ -178,4 +178,4 @@ def test_what_does_not_fit_is_told_before_anything_is_searched(changed: dict[str
 
 def test_no_design_that_is_assembled_is_told_with_the_group_that_fails() -> None:
     with pytest.raises(ck.errors.NotAssembled, match=r"none of 65537 designs .* fails at RRR\(coupler\) in 65537"):
-        ck.optimise(LINKAGE, {"coupler.C.x": (0.1, 0.2)}, "rocker.angle.stroke", values=TURN)
+        ck.optimise(LINKAGE, {"coupler.C.x": (0.1, 0.2)}, "rocker.angle.stroke", values=TURN[:3])

@@ -80,7 +80,7 @@ class SharedProblem(PrintsShort):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SharedDesign(PrintsShort):
-    """One design of a round; each of its numbers has one row, as if it were alone."""
+    """One design of a round: each of its numbers has one row."""
 
     parts: Number
     designs: SearchedDesigns
