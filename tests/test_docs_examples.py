@@ -74,6 +74,11 @@ def test_the_pages_on_many_designs_print_what_they_show(
         assert shown in ("", printed)
 
 
+def test_the_page_on_optimisation_names_all_goals() -> None:
+    text = (DOCS / "optimisation.md").read_text("utf-8")
+    assert set(re.findall(r"ck\.goals\.(\w+)", text)) == set(ck.goals.__all__)
+
+
 def test_the_words_for_profiles_are_named_with_their_module() -> None:
     for page in DOCS.glob("*.md"):
         bare = re.findall(r"`(?:disc|profile|formula|synthesise|cam_analysis)`", page.read_text("utf-8"))
