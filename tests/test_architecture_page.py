@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 
-from tests.architecture_page import PAGE, pages
+from tests.architecture_page import BEGIN, END, PAGE, pages
 from tests.source import FILES, ROOT, tree, where
 from tests.test_architecture import only_shrinks
 
@@ -16,7 +16,9 @@ def test_its_tables_are_up_to_date() -> None:
 
 
 def test_it_is_one_page() -> None:
-    assert len(PAGE.read_text(encoding="utf-8").splitlines()) <= 290
+    """But for the generated table, which has a line for each folder."""
+    before, _, after = PAGE.read_text(encoding="utf-8").partition(BEGIN)
+    assert len((before + after.partition(END)[2]).splitlines()) <= 250
 
 
 def test_every_module_begins_with_a_sentence() -> None:
