@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from hashlib import sha256
-from types import CodeType
+from types import CodeType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -51,13 +51,32 @@ def _told(value: Any) -> Any:
     return {CALLED: getattr(value, "__qualname__", type(value).__name__), CONTENT: digest(_content(value))}
 
 
-def _content(function: Any) -> Any:
-    """Return what a function does, and the values that it holds: lists of plain things."""
+def _content(function: Any, callers: tuple[Any, ...] = ()) -> Any:
+    """Return what a function does, and the values that it holds and reads of its module: lists of plain things."""
     code = getattr(function, "__code__", None)
     if code is None:
         return repr(function)
-    held = [plain(cell.cell_contents) for cell in function.__closure__ or ()]
-    return [_instructions(code), held, plain(function.__defaults__)]
+    names = {name for one in _codes(code) for name in one.co_names} & function.__globals__.keys()
+    read = {name: function.__globals__[name] for name in sorted(names)}
+    read |= {name: cell.cell_contents for name, cell in zip(code.co_freevars, function.__closure__ or (), strict=True)}
+    callers = (*callers, function)
+    given = plain([function.__defaults__, function.__kwdefaults__])
+    return [_instructions(code), given, {name: _read(value, callers) for name, value in read.items()}]
+
+
+def _read(value: Any, callers: tuple[Any, ...]) -> Any:
+    """Return what tells a value that functions read from others; a library is what it is called."""
+    if isinstance(value, ModuleType) or any(value is one for one in callers):
+        return value.__name__
+    return _content(value, callers) if hasattr(value, "__code__") else plain(value)
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    """Yield the code of a function and of those inside it."""
+    yield code
+    for one in code.co_consts:
+        if isinstance(one, CodeType):
+            yield from _codes(one)
 
 
 def _instructions(code: CodeType) -> Any:

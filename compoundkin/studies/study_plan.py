@@ -119,6 +119,9 @@ class StudyPlan:
         if len(shape := program.path.reference.shape) != 1:
             what = f"the drivers' values have {len(shape)} axes"
             raise InvalidInput(Problem("values", what, "give one motion: each driver a number or a list of poses"))
+        names = [column.name for column in self.columns]
+        if twice := sorted({name for name in names if names.count(name) > 1}):
+            raise InvalidInput(Problem("outputs", f"{twice[0]!r} would be two columns", "name each output once"))
         designs = program.path.designs(self.sample.designs(self.dimensions, range(1)))
         for response in program.responses:
             found = np.shape(response.values(designs))

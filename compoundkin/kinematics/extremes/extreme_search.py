@@ -169,7 +169,7 @@ class ExtremeSearch(PrintsShort):
         group = self.group[windows.which]
         best = self._by_group(np.fmax(rows, (BOTH * self.ends[:, None]).max(axis=-1)))[..., group]
         varies = ~self._constant(best, self._slack[:, None, group])
-        m, s, w = np.nonzero(varies & (high >= best - ALIKE * windows.span[:, None, None]))
+        m, s, w = np.nonzero(varies & (high >= best - ALIKE * windows.span[:, None]))
         _, earliest = np.unique(self._kinds(m, s, windows.which[w]), return_index=True)
         chosen = varies & ~windows.trusted[:, None] & (high + windows.doubt[:, None] >= best)
         chosen[m[earliest], s[earliest], w[earliest]] = True

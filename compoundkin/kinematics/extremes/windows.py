@@ -37,10 +37,11 @@ class Windows(PrintsShort):
     """Windows of stretches with samples of quantities.
 
     They go from `low` to `high` in the stretches' own t. `values` (quantities, windows, samples) are NaN where there
-    are none.
+    are none. `design` (windows,) says of which design each is.
     """
 
     which: Number
+    design: Number
     low: Number
     high: Number
     places: Number
@@ -79,15 +80,14 @@ class Windows(PrintsShort):
 
     @cached_property
     def span(self) -> Number:
-        """How much each quantity varies over all samples, (quantities,)."""
-        return _span(self.values)
+        """How much each quantity varies over all samples of a window's design, (quantities, windows)."""
+        return self._span(self.values)
 
     @cached_property
     def trusted(self) -> Number:
         """Whose polynomials are right to all digits that matter, (quantities, windows)."""
-        largest = np.fmax.reduce(np.abs(self.smooth_values), axis=(1, 2))
-        allowed = TRUSTED * _span(self.smooth_values) + ROUNDING * largest
-        return self._off <= allowed[:, None]
+        largest = self._of_design(np.fmax, np.abs(self.smooth_values))
+        return self._off <= TRUSTED * self._span(self.smooth_values) + ROUNDING * largest
 
     @cached_property
     def doubt(self) -> Number:
@@ -101,10 +101,22 @@ class Windows(PrintsShort):
         off = np.nan_to_num(np.abs(ends - self.smooth_values[..., [0, -1]]), nan=0.0, posinf=0.0)
         return np.maximum(off.max(axis=-1), np.abs(self.polynomials[..., -1]))
 
+    def _span(self, values: Number) -> Number:
+        finite = np.where(np.isfinite(values), values, np.nan)
+        return np.nan_to_num(self._of_design(np.fmax, finite) - self._of_design(np.fmin, finite))
 
-def _span(values: Number) -> Number:
-    finite = np.where(np.isfinite(values), values, np.nan)
-    return np.nan_to_num(np.fmax.reduce(finite, axis=(1, 2)) - np.fmin.reduce(finite, axis=(1, 2)))
+    def _of_design(self, reduce: np.ufunc, values: Number) -> Number:
+        """Return what a reduction makes of all samples of a window's design, (quantities, windows).
+
+        What other designs do, near their limits perhaps, changes nothing.
+        """
+        if not len(self.design):
+            return values[..., 0]
+        _, own = np.unique(self.design, return_inverse=True)
+        in_order = np.argsort(own, kind="stable")
+        starts = np.flatnonzero(np.append(True, np.diff(own[in_order]) != 0))
+        found: Number = reduce.reduceat(reduce.reduce(values, axis=-1)[:, in_order], starts, axis=1)
+        return found[:, own]
 
 
 def sampled(
@@ -119,7 +131,7 @@ def sampled(
     ends = (t == -1.0) & stretches.limits[which, :1], (t == 1.0) & stretches.limits[which, 1:]
     rates = np.array([one.order > 0 for one in measures], dtype=bool)[:, None, None]
     values = np.where(rates & (ends[0] | ends[1]), np.nan, values)
-    return Windows(which, low, high, places, values, tuple(measures))
+    return Windows(which, stretches.design[which], low, high, places, values, tuple(measures))
 
 
 def solved(motion: Motion, measures: Sequence[Measure], designs: Number, places: Number) -> Number:

@@ -16,7 +16,7 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.kinematics.approach import SPACING
+from compoundkin.kinematics.approach import MOST, SPACING
 from compoundkin.kinematics.driver_ways import NEAR
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.calls.call_numbers import CallNumbers, picked
@@ -59,13 +59,13 @@ def bound(order: SolvingOrder, numbers: CallNumbers) -> float:
 
 
 def _longest_step(order: SolvingOrder, numbers: CallNumbers) -> float:
-    """Return the longest step of a driver, in spacings at which `solve` looks for change points."""
+    """Return the longest step of a driver, in spacings at which `solve` looks for change points, as many as it does."""
     found = 0.0
     for name, value in numbers.driver_values.items():
         if value.shape[1] > 1:
             steps = value[:, 1:] - value[:, :-1]
             found = max(found, float(max(steps.max(), -steps.min())) / (order.unit(name) * SPACING))
-    return found
+    return min(found, float(MOST))
 
 
 def _is_rigid(numbers: CallNumbers) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.kinematics.approach import SPACING
+from compoundkin.kinematics.approach import MOST, SPACING
 from compoundkin.studies.responses.designs import Designs
 
 # Margins are looked at so many times as densely as `solve` looks for change points.
@@ -82,7 +82,7 @@ def _parts(designs: Designs) -> int:
     for name, (value, *_) in designs.inputs.drives.items():
         if np.ndim(value) and value.shape[1] > 1:
             longest = max(longest, float(np.abs(np.diff(value, axis=1)).max()) / order.unit(name))
-    return max(1, int(np.ceil(FINER * longest / SPACING)))
+    return max(1, int(np.ceil(FINER * min(longest / SPACING, MOST))))
 
 
 def _sampled(designs: Designs, places: Number) -> tuple[Number, Number]:

@@ -45,7 +45,7 @@ def prepared(path: str | os.PathLike[str], plan: StudyPlan) -> tuple[StudyFolder
     parquet()
     place = Path(os.path.abspath(path))
     own = FolderHead(plan.data, plan.columns, versions(plan.program), secrets.token_hex(8))
-    if not (place / HEAD).exists():
+    if not os.path.exists(place / HEAD):
         _begin(place, own)
     there = head_of(place)
     _hold_same(place, own, there)
@@ -56,15 +56,16 @@ def head_of(place: Path) -> FolderHead:
     """Return what a folder says of its study. Raises InvalidInput where it is none."""
     try:
         found = json.loads((place / HEAD).read_bytes())
-        if found["format"] != FORMAT:
-            raise InvalidInput(Problem(str(place / HEAD), f"its format {found['format']} is not known", "update"))
-        columns = tuple(StudyColumn(**column) for column in found["columns"])
-        return FolderHead(found["study"], columns, found["versions"], found["token"])
+        known, columns = found["format"], tuple(StudyColumn(**column) for column in found["columns"])
+        head = FolderHead(found["study"], columns, found["versions"], found["token"])
     except FileNotFoundError:
         raise InvalidInput(Problem(str(place), f"it is no folder of a study: it has no {HEAD}")) from None
     except (OSError, ValueError, KeyError, TypeError) as error:
         what = getattr(error, "strerror", None) or "it is damaged"
         raise InvalidInput(Problem(str(place / HEAD), f"it cannot be read: {what}")) from None
+    if known != FORMAT:
+        raise InvalidInput(Problem(str(place / HEAD), f"its format {known} is not known", "update compoundkin"))
+    return head
 
 
 def _begin(place: Path, head: FolderHead) -> None:

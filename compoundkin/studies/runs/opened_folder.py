@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.studies.recovered_plan import plan_from
-from compoundkin.studies.runs.folder_head import head_of
+from compoundkin.studies.runs.folder_head import HEAD, head_of
 from compoundkin.studies.runs.parquet_parts import parquet
 from compoundkin.studies.runs.rows_in_folder import RowsInFolder
 from compoundkin.studies.runs.study_folder import StudyFolder
@@ -22,4 +23,8 @@ def opened(path: str | os.PathLike[str]) -> tuple[StudyPlan, RowsInFolder]:
     parquet()
     place = Path(os.path.abspath(path))
     head = head_of(place)
-    return plan_from(head.study), RowsInFolder(head.columns, StudyFolder(place, digest(head.study)).parts())
+    try:
+        plan = plan_from(head.study)
+    except (KeyError, TypeError, AttributeError):
+        raise InvalidInput(Problem(str(place / HEAD), "what it says of the study is damaged")) from None
+    return plan, RowsInFolder(head.columns, StudyFolder(place, digest(head.study)).parts())

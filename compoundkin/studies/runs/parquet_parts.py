@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -42,7 +43,7 @@ def part_content(columns: Iterable[StudyColumn], found: Mapping[str, Any], finge
     texts = [field.name for field in fields if field.type == arrow.string()]
     content = io.BytesIO()
     table = arrow.Table.from_arrays(arrays, schema=schema)
-    write(table, content, row_group_size=ROWS_TOGETHER, use_dictionary=texts)
+    write(table, content, row_group_size=ROWS_TOGETHER, use_dictionary=texts, write_page_checksum=True)
     return content.getvalue()
 
 
@@ -52,8 +53,8 @@ def _array(arrow: Any, values: Number, width: int | None) -> Any:
     return arrow.FixedSizeListArray.from_arrays(arrow.array(np.ravel(values)), width)
 
 
-def rows_of_part(path: Path, fingerprint: str) -> int | None:
-    """Return how many rows a part has.
+def rows_of_part(path: Path, fingerprint: str) -> range | None:
+    """Return which rows a part has, by what it says of itself.
 
     None where it is damaged or belongs to another study.
     """
@@ -61,19 +62,36 @@ def rows_of_part(path: Path, fingerprint: str) -> int | None:
         found = parquet().read_metadata(path)
     except (OSError, ValueError):
         return None
-    return int(found.num_rows) if (found.metadata or {}).get(STUDY) == fingerprint.encode() else None
+    if (found.metadata or {}).get(STUDY) != fingerprint.encode() or not found.num_rows:
+        return None
+    first, last = (found.row_group(k).column(0).statistics for k in (0, found.num_row_groups - 1))
+    return range(first.min, last.max + 1)
 
 
 def part_column(path: Path, column: StudyColumn) -> Number:
-    """Return a column of a part."""
-    return _values(parquet().ParquetFile(path).read([column.name]), column)
+    """Return a column of a part. Raises InvalidInput where it is damaged."""
+    with _opened(path) as file:
+        return _values(file.read([column.name]), column)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Yield a part whose pages are checked as they are read; what is wrong with it is told."""
+    try:
+        with parquet().ParquetFile(path, page_checksum_verification=True) as file:
+            yield file
+    except FileNotFoundError:
+        raise InvalidInput(Problem(str(path), "the part is gone", "run the study into this folder again")) from None
+    except (OSError, ValueError):
+        remedy = "remove it, and run the study into this folder again"
+        raise InvalidInput(Problem(str(path), "the part is damaged", remedy)) from None
 
 
 def part_rows(path: Path, columns: Iterable[StudyColumn], places: Number) -> dict[str, Number]:
-    """Return all columns of some rows of a part, by their places in it."""
-    file = parquet().ParquetFile(path)
+    """Return all columns of some rows of a part, by their places in it. Raises InvalidInput where it is damaged."""
     groups = np.unique(places // ROWS_TOGETHER)
-    table = file.read_row_groups(groups.tolist())
+    with _opened(path) as file:
+        table = file.read_row_groups(groups.tolist())
     # the groups that are read follow each other
     near = np.searchsorted(groups, places // ROWS_TOGETHER) * ROWS_TOGETHER + places % ROWS_TOGETHER
     return {column.name: _values(table, column)[near] for column in columns}

@@ -41,6 +41,8 @@ class RowsInFolder(StudyRows):
 
     def picked(self, places: Number) -> dict[str, Number]:
         """Return all columns of some rows."""
+        if not len(places):
+            return {one.name: np.empty(0) for one in self.columns}
         starts = np.cumsum([0, *(len(part.fresh) for part in self.parts)])
         owner = np.searchsorted(starts, places, side="right") - 1
         order: list[Number] = []

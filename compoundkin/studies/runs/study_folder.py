@@ -52,7 +52,7 @@ class StudyFolder:
         reached = 0
         # runs with other chunks leave parts that overlap: the rows are the same, each is taken once
         for rows, path in sorted(there, key=lambda one: (one[0].start, -one[0].stop)):
-            if rows_of_part(path, self.fingerprint) != len(rows):
+            if rows_of_part(path, self.fingerprint) != rows:
                 warn(f"{path}: the part is damaged or of another study: its rows count as missing", LikelySlip)
             elif rows.stop > reached:
                 found.append(StudyPart(path, rows, range(max(rows.start, reached), rows.stop)))

@@ -90,9 +90,9 @@ class Levels(PrintsShort, Variation):
     @classmethod
     def of(cls, where: str, given: Any) -> Self:
         """Return a list of numbers or points as levels; raises InvalidInput."""
-        if np.size(given) == 0:
-            raise InvalidInput(Problem(where, f"{short(given)} has no values", "list at least one"))
         found = numbers_or_points(where, given)
+        if found.size == 0:
+            raise InvalidInput(Problem(where, f"{short(given)} has no values", "list at least one"))
         own = found.copy()
         own.flags.writeable = False
         return cls(own)
