@@ -106,11 +106,14 @@ def transmits(link: str, least: float) -> DesignConstraint:
     """Return the constraint that a transmission angle is at least so great.
 
     It is that of the dyad that moves a link, in radians, folded to 0 to pi / 2, a right angle is best. Raises
-    InvalidInput for what is no number. Source: H. Alt, 1932.
+    InvalidInput for what is no such angle. Source: H. Alt, 1932.
 
     >>> transmits("rocker", 0.7).told
-    'rocker.transmission_angle at least 0.7'
+    'rocker.transmission_angle at least 40.107 deg'
     """
+    if not 0.0 < least < np.pi / 2:
+        what, remedy = f"{least:g} is no angle between 0 and pi / 2", "give radians, as compoundkin.deg(40)"
+        raise InvalidInput(Problem(f"transmits.{link}", what, remedy))
     return at_least(f"{link}.{TRANSMISSION_ANGLE}", least)
 
 

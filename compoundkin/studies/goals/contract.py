@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.argument_forms import is_real
+from compoundkin.base.display import short
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
@@ -80,7 +82,45 @@ class Term(ABC):
         """
 
 
-class Goal(Term):
+class Summand(ABC):
+    """What can be added to goals, with a weight."""
+
+    # a number of NumPy leaves it to its weight
+    __array_ufunc__ = None
+
+    @property
+    @abstractmethod
+    def parts(self) -> tuple[tuple[float, Goal], ...]:
+        """Weights and goals."""
+
+    def __add__(self, other: object) -> GoalSum:
+        if not isinstance(other, Summand):
+            raise InvalidInput(Problem("objective", f"{short(other)} is no goal that could be added", ADDED))
+        return GoalSum((*self.parts, *other.parts))
+
+    def __radd__(self, other: object) -> GoalSum:
+        # Python's own sum begins with nothing
+        return GoalSum(self.parts) if is_real(other) and other == 0 else self + other
+
+    def __mul__(self, weight: object) -> GoalSum:
+        if not (is_real(weight) and 0.0 < float(weight) < np.inf):  # type: ignore[arg-type]
+            raise InvalidInput(Problem("weight", f"{short(weight)} is no positive number", WEIGHED))
+        return GoalSum(tuple((float(weight) * own, goal) for own, goal in self.parts))  # type: ignore[arg-type]
+
+    __rmul__ = __mul__
+
+    def __neg__(self) -> GoalSum:
+        return self * -1
+
+    def __sub__(self, other: object) -> GoalSum:
+        return self + (-other if isinstance(other, Summand) else other)
+
+
+ADDED = 'add goals: ck.goals.least("...") + 2 * ck.goals.path("...", points)'
+WEIGHED = "2 * goal; what shall be as great as can be is goals.greatest(...)"
+
+
+class Goal(Term, Summand):
     """What shall be least.
 
     It is the sum of its residuals, or where `is_squares` of their squares.
@@ -105,30 +145,12 @@ class Goal(Term):
         """Weights and goals of a sum: itself."""
         return ((1.0, self),)
 
-    def __add__(self, other: Goal | GoalSum) -> GoalSum:
-        return GoalSum(self.parts) + other
-
-    def __mul__(self, weight: float) -> GoalSum:
-        return GoalSum(self.parts) * weight
-
-    __rmul__ = __mul__
-
 
 @dataclass(frozen=True)
-class GoalSum:
+class GoalSum(Summand):
     """Several goals at once, by their weights."""
 
-    parts: tuple[tuple[float, Goal], ...]
-
-    def __add__(self, other: Goal | GoalSum) -> GoalSum:
-        return GoalSum((*self.parts, *other.parts))
-
-    def __mul__(self, weight: float) -> GoalSum:
-        if not (isinstance(weight, int | float) and np.isfinite(weight) and weight > 0):
-            raise InvalidInput(Problem("weight", f"{weight!r} is no positive number", "2 * goal"))
-        return GoalSum(tuple((weight * own, goal) for own, goal in self.parts))
-
-    __rmul__ = __mul__
+    parts: tuple[tuple[float, Goal], ...] = ()
 
 
 class DesignConstraint(Term):

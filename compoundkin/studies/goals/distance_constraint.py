@@ -71,6 +71,8 @@ def distance(one: str, other: str, *, at_least: float | None = None, at_most: fl
     >>> distance("A", "B", at_least=5.0, at_most=60.0).told
     'A from B at least 5 and at most 60'
     """
+    if one == other:
+        raise InvalidInput(Problem(f"distance.{one}", "a point has no distance from itself", 'name two: ("A", "B")'))
     low, high = -np.inf if at_least is None else at_least, np.inf if at_most is None else at_most
     given = [value for value in (at_least, at_most) if value is not None]
     if not given or not np.isfinite(given).all() or not low < high or high <= 0.0:

@@ -15,7 +15,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import RADIANS
+from compoundkin.model.attributes import RADIANS, course_figure
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial
 from compoundkin.studies.goals.driver_schedule import driver_of
@@ -54,6 +54,8 @@ class FunctionGoal(Goal):
         Raises InvalidInput where it is a vector, or the function gives no numbers.
         """
         driver_of(self._where, motion, self.driver)
+        if course_figure(self.output)[1]:
+            raise InvalidInput(Problem(self._where, "it is one number, and no course", "target for a figure"))
         if quantity(motion, self.output).is_vector:
             what = "it is a vector, and no number"
             raise InvalidInput(Problem(self._where, what, f'"{self.output}.x", or path for a point'))
@@ -71,9 +73,9 @@ class FunctionGoal(Goal):
         driver = np.ravel(motion.inputs.drives[driver_of(self._where, motion, self.driver)][0])
         try:
             found = np.broadcast_to(np.asarray(self.wanted(driver), dtype=float), (motion.inputs.poses,))
-        except (TypeError, ValueError):
-            what = "the function gives no number for each value of the driver"
-            raise InvalidInput(Problem(self._where, what, "write it with NumPy's functions")) from None
+        except Exception as error:  # whatever a user's function does
+            what = f"the function gives no number for each value of the driver: {error}"
+            raise InvalidInput(Problem(self._where, what, "write it with NumPy's functions")) from error
         if not np.isfinite(found).all():
             raise InvalidInput(Problem(self._where, "the function is not finite everywhere", "check it at the poses"))
         return found
@@ -119,4 +121,6 @@ def function(output: str, wanted: object, *, driver: str | None = None, free_zer
         pairs = np.empty(0)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or not len(pairs) or not np.isfinite(pairs).all():
         raise InvalidInput(Problem(f"function.{output}", f"{short(wanted)} is no function", PAIRS))
+    if free_zero and len(pairs) == 1:
+        raise InvalidInput(Problem(f"function.{output}", "one pair has no changes, which alone count", PAIRS))
     return FunctionGoal(output, pairs[:, 0], pairs[:, 1], driver, free_zero)

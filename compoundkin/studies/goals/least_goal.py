@@ -8,6 +8,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import GREATEST, course_figure
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial
@@ -32,10 +33,12 @@ class LeastGoal(Goal):
 
     def outputs(self, motion: Motion) -> tuple[str, ...]:
         """Return its name; raises InvalidInput where it is a whole course, and no number."""
-        of, figure = course_figure(self.name)
+        figure = course_figure(self.name)[1]
         if not figure:
+            found = quantity(motion, self.name)
             what = "it has a value at every pose, and is no number that could be least"
-            raise InvalidInput(Problem(self.name, what, f'say which figure of it: "{of}.{GREATEST}"'))
+            remedy = f'say which figure of it: "{found.name}{".length" * found.is_vector}.{GREATEST}"'
+            raise InvalidInput(Problem(self.name or "objective", what, remedy))
         return (self.name,)
 
     def residuals(self, trial: DesignTrial) -> Number:

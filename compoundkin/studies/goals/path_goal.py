@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compoundkin.base.argument_forms import is_real
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
@@ -71,6 +72,8 @@ def path(point: str, through: object) -> Goal:
 
 def places_of(where: str, given: object) -> Number:
     """Return places of the plane as complex numbers. Raises InvalidInput for what is none."""
+    if isinstance(given, tuple) and len(given) == 2 and all(map(is_real, given)):
+        raise InvalidInput(Problem(where, f"{given} is one point, and no list of them", f"[{given}, ...]"))
     try:
         found = np.asarray(given)
         found = found[:, 0] + 1j * found[:, 1] if found.ndim == 2 and found.shape[1] == 2 else found + 0j

@@ -66,7 +66,8 @@ class StraightLineGoal(Goal):
         if self.angle is not None:
             return np.asarray(found)
         squares = (about**2).sum(axis=1)[:, None]
-        turn = ((about[..., None] * by).sum(axis=1) / squares).imag
+        # a point that rests has no line that could turn
+        turn = ((about[..., None] * by).sum(axis=1) / np.where(squares == 0.0, 1.0, squares)).imag
         return found - turn[:, None, :] * (about * along.conj()).real[..., None]
 
 

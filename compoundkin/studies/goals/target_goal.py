@@ -11,6 +11,7 @@ from compoundkin.base.display import short
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import course_figure
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
@@ -38,6 +39,9 @@ class TargetGoal(Goal):
         if np.size(self.value) not in (1, count):
             what = f"there are {np.size(self.value)} values, and {count} poses"
             raise InvalidInput(Problem(f"target.{self.name}", what, "give one value, or one for each pose"))
+        if np.iscomplexobj(self.value) and (self._is_figure or not quantity(motion, self.name).is_vector):
+            what = f"{self.name} is no vector, and cannot be {short(np.asarray(self.value).tolist())}"
+            raise InvalidInput(Problem(f"target.{self.name}", what, "give a real number"))
         return (self.name,)
 
     def residuals(self, trial: DesignTrial) -> Number:
