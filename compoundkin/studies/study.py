@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.silence import silence
 from compoundkin.base.suffixes import Kind
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
@@ -20,7 +21,6 @@ from compoundkin.studies.runs.study_run import run
 from compoundkin.studies.samples import sample_of
 from compoundkin.studies.samples.contract import DesignSample
 from compoundkin.studies.samples.listed_rows import TableSample
-from compoundkin.studies.silence import silence
 from compoundkin.studies.study_files.study_writer import study_text
 from compoundkin.studies.study_plan import StudyPlan
 from compoundkin.studies.study_result import StudyResult

@@ -11,21 +11,19 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.model.attributes import PARTS
+from compoundkin.base.silence import silence
+from compoundkin.model.component_names import component_names
 from compoundkin.studies.design_states import STATES, design_states
 from compoundkin.studies.responses.contract import Response
+from compoundkin.studies.responses.design_blocks import designs_at_once
 from compoundkin.studies.responses.designs import Designs, StudiedPath
 from compoundkin.studies.samples.contract import DesignSample
-from compoundkin.studies.silence import silence
 from compoundkin.studies.variations.contract import Variation
 
 # Rows are computed in blocks that begin at a multiple of this many: whatever chunk asks, the arithmetic is the same to
 # the last bit.
 BLOCK = 4096
-# A block of courses has so many designs times poses at most, so that it stays in memory.
-MOST_POSES = 2**19
 ROW = "row"
-AXES = tuple(PARTS)[:2]
 ColumnKind: TypeAlias = Literal["dimension", "output", "state"]
 
 
@@ -58,8 +56,7 @@ class StudyProgram(PrintsShort):
     @cached_property
     def block(self) -> int:
         """How many rows are computed at once: a power of two."""
-        poses = max(1, self.path.reference.inputs.poses)
-        return min(BLOCK, 1 << max(0, (MOST_POSES // poses).bit_length() - 1))
+        return min(BLOCK, 1 << (designs_at_once(self.path.reference.inputs.poses).bit_length() - 1))
 
     @cached_property
     def columns(self) -> tuple[StudyColumn, ...]:
@@ -70,14 +67,14 @@ class StudyProgram(PrintsShort):
     def _dimensions(self) -> Iterator[tuple[str, str]]:
         programs = self.path.compiled.programs
         units = {one.name: programs.stated.unit(one) for one in programs.dimensions}
-        vectors = {one.name for one in programs.dimensions if one.is_vector}
+        coordinates = {one.name: one.coordinates for one in programs.dimensions}
         for name in self.variations:
-            yield from ((part, units[name]) for part in (_parts(name) if name in vectors else (name,)))
+            yield from ((coordinate, units[name]) for coordinate in coordinates[name])
 
     def _outputs(self) -> Iterator[StudyColumn]:
         poses = self.path.reference.inputs.poses
         for one in self.responses:
-            for name in _parts(one.name) if one.is_vector else (one.name,):
+            for name in component_names(one.name) if one.is_vector else (one.name,):
                 yield StudyColumn(name, one.unit, "output", poses if one.is_course else None)
 
     def rows(self, rows: range) -> dict[str, Number]:
@@ -115,13 +112,8 @@ class StudyProgram(PrintsShort):
         return np.broadcast_to(one.values(designs), shape)
 
 
-def _parts(name: str) -> tuple[str, ...]:
-    """Return the names of both coordinates."""
-    return tuple(f"{name}.{axis}" for axis in AXES)
-
-
 def _columns(name: str, values: Number) -> dict[str, Number]:
     """Return a column, or two of a planar vector."""
     if not np.iscomplexobj(values):
         return {name: np.asarray(values)}
-    return dict(zip(_parts(name), (values.real, values.imag), strict=True))
+    return dict(zip(component_names(name), (values.real, values.imag), strict=True))

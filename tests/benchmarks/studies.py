@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
+from compoundkin.base.silence import silence
 from compoundkin.studies.responses import studied_path
 from compoundkin.studies.samples import sample_of
-from compoundkin.studies.silence import silence
 from compoundkin.studies.study_program import StudyProgram
 from compoundkin.studies.variations import variations_of
 from tests.benchmarks.__main__ import heading, row

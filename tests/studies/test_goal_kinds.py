@@ -9,6 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.series import Number
+from compoundkin.base.silence import silence
 from compoundkin.studies.goals.assembly_constraint import assembles, full_turn
 from compoundkin.studies.goals.bound_constraint import at_least, at_most, box, transmits
 from compoundkin.studies.goals.contract import DesignConstraint, Goal
@@ -22,7 +23,6 @@ from compoundkin.studies.goals.straight_line_goal import straight_line
 from compoundkin.studies.goals.target_goal import target
 from compoundkin.studies.goals.trace_goal import trace
 from compoundkin.studies.responses import studied_path
-from compoundkin.studies.silence import silence
 from tests.studies.test_goals import FREE, TURN, hold_slopes, numbers, trial_of
 
 SIX_BAR = ck.compile(ck.catalog.load_named("six-bar"), "G.position", free=list(FREE)).mechanism(FREE)

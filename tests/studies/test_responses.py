@@ -9,10 +9,10 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.series import Number
+from compoundkin.base.silence import silence
 from compoundkin.studies.responses import Designs, Response, studied_path
 from compoundkin.studies.responses.solved_response import SolvedResponse
 from compoundkin.studies.samples import sample_of
-from compoundkin.studies.silence import silence
 from compoundkin.studies.variations import variation_of
 
 RANGES = {"crank.D.x": variation_of("crank.D.x", (13.0, 14.0)), "plate.C": ck.around((12.3, 8.6), 0.5)}

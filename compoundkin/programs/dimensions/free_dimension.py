@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from compoundkin.base.series import Number
+from compoundkin.model.attributes import PARTS
+from compoundkin.model.component_names import AXES, component_names
 from compoundkin.programs.graph.input_kinds import DIMENSION
 from compoundkin.programs.graph.operation_graph import InputNumber
 
-AXES = ("x", "y")
 # The word of a law's numbers.
 LAW = "law"
 
@@ -48,6 +49,11 @@ class FreeDimension:
         return f"{self.word}.{self.part}" if self.part else self.word
 
     @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The names of its numbers: both coordinates of a point."""
+        return component_names(self.name) if self.is_vector else (self.name,)
+
+    @property
     def inputs(self) -> tuple[InputNumber, ...]:
         """The inputs of a program that it is: two of a point."""
         if self.is_vector:
@@ -62,7 +68,7 @@ class FreeDimension:
 
     def part_of(self, value: Number) -> Number:
         """Return its part of a point."""
-        return {"x": np.real, "y": np.imag}[self.part](value) if self.part else value
+        return PARTS[self.part](value) if self.part else value
 
     def value_in(self, given: Mapping[InputNumber, Number]) -> Number:
         """Return its value among the inputs of a call, perhaps a single number."""

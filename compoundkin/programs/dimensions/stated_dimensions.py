@@ -10,13 +10,14 @@ from typing import Any
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.model.attributes import Dimension, unit_of
+from compoundkin.model.component_names import AXES
 from compoundkin.model.field_numbers import numbers_of
 from compoundkin.model.laws.law_numbers import law_numbers
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import pairs_among
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.drawn_numbers import read_off
-from compoundkin.programs.dimensions.free_dimension import AXES, LAW, FreeDimension
+from compoundkin.programs.dimensions.free_dimension import LAW, FreeDimension
 
 # Of the kinds of keys that are numbers.
 _DIMENSIONS: Mapping[str, Dimension] = {

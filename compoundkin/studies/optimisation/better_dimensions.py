@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, UnmetConstraints, warn
+from compoundkin.base.silence import silence
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.goals.contract import DesignConstraint, Goal, GoalSum
@@ -17,7 +18,6 @@ from compoundkin.studies.optimisation.answer import answer
 from compoundkin.studies.optimisation.design_search import DesignSearch
 from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.optimisation.stated_problem import constraints_of, goals_of, stated_problem
-from compoundkin.studies.silence import silence
 
 
 @checked

@@ -12,6 +12,7 @@ import numpy as np
 from compoundkin.analysis.checks import Check, verify
 from compoundkin.base.display import PrintsShort, Shows, counted, way
 from compoundkin.base.series import Number
+from compoundkin.base.silence import silence
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
@@ -19,7 +20,6 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.optimisation.kept_modes import with_modes
-from compoundkin.studies.silence import silence
 
 
 @dataclass(frozen=True)

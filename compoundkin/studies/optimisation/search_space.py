@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.programs.dimensions.free_dimension import AXES
+from compoundkin.model.component_names import AXES, component_names
 from compoundkin.studies.goals.contract import GoalUnknown
 from compoundkin.studies.variations.contract import Variation
 
@@ -40,7 +40,7 @@ class SearchSpace(PrintsShort):
         places: dict[str, tuple[int, ...]] = {}
         names: list[str] = []
         for name, (least, _) in ends.items():
-            parts = tuple(f"{name}.{axis}" for axis in AXES) if len(least) == len(AXES) else (name,)
+            parts = component_names(name) if len(least) == len(AXES) else (name,)
             places[name] = tuple(range(len(names), len(names) + len(parts)))
             names += parts
         own = [(one.low, one.high) for one in unknowns]

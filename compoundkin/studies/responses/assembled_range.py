@@ -9,6 +9,7 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.kinematics.approach import MOST, SPACING
+from compoundkin.studies.responses.design_blocks import blocks
 from compoundkin.studies.responses.designs import Designs
 
 # Margins are looked at so many times as densely as `solve` looks for change points.
@@ -18,8 +19,6 @@ FINER = 5
 PARTS, ROUNDS = 33, 5
 # Margins (squared sines) below this are rounding.
 ROUNDING = 1e-12
-# So many poses are looked at together.
-MOST_POSES = 2**19
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,9 +68,7 @@ def _between(designs: Designs) -> tuple[Number, Number]:
     """Return which group of each design fails between its poses plus one, else 0, and after which pose."""
     parts = _parts(designs)
     places = np.linspace(0.0, designs.poses - 1.0, (designs.poses - 1) * parts + 1)
-    step = max(1, MOST_POSES // len(places))
-    found = [_sampled(designs.picked(np.arange(k, min(k + step, designs.number))), places)
-             for k in range(0, designs.number, step)]  # fmt: skip
+    found = [_sampled(designs.picked(np.array(rows)), places) for rows in blocks(designs.number, len(places))]
     failed, place = (np.concatenate(each) for each in zip(*found, strict=True))
     return failed, np.minimum(place.astype(int), designs.poses - 2)
 

@@ -49,9 +49,9 @@ class StudiedPath(PrintsShort):
     def directions(self) -> dict[str, tuple[str, complex]]:
         """The dimension that each coordinate is of. With it 1, or i for the y of a point."""
         return {
-            f"{one.name}.{given.part}" if one.is_vector else one.name: (one.name, (1.0, 1j)[k])
+            coordinate: (one.name, factor)
             for one in self.compiled.programs.dimensions
-            for k, given in enumerate(one.inputs)
+            for coordinate, factor in zip(one.coordinates, (1.0, 1j), strict=False)
         }
 
     def scale(self, coordinate: str) -> float:

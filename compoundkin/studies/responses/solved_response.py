@@ -11,6 +11,7 @@ from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotAssembled
 from compoundkin.base.series import Number
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.studies.responses.contract import Response
+from compoundkin.studies.responses.design_blocks import blocks
 from compoundkin.studies.responses.designs import Designs
 
 # So many poses are solved at once, so that a motion with all its forces stays in memory.
@@ -29,9 +30,8 @@ class SolvedResponse(Response):
         """Return it; figures of designs that are not assembled at all poses are none."""
         shape = (designs.number, designs.poses) if self.is_course else (designs.number,)
         found = np.full(shape, np.nan, dtype=complex if self.is_vector else float)
-        step = max(1, MOST_POSES // max(designs.poses, 1))
-        for start in range(0, designs.number, step):
-            for rows, values in self._parts(designs, np.arange(start, min(start + step, designs.number))):
+        for block in blocks(designs.number, designs.poses, MOST_POSES):
+            for rows, values in self._parts(designs, np.array(block)):
                 found[rows] = values
         return found
 

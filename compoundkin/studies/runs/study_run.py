@@ -9,12 +9,12 @@ from pickle import PicklingError
 from typing import Any, TypeAlias
 
 from compoundkin.base.errors import CompoundkinError, Problem, StudyStopped
+from compoundkin.base.silence import silence
 from compoundkin.studies.runs.contract import RunStore
 from compoundkin.studies.runs.row_pieces import piece_size, pieces_of
 from compoundkin.studies.runs.side_by_side import answers
 from compoundkin.studies.runs.study_rows import StudyRows
 from compoundkin.studies.runs.workers import Workers, workers
-from compoundkin.studies.silence import silence
 
 Progress: TypeAlias = Callable[[int, int], Any]
 # What ends a run and is nobody's mistake in the program: workers that die, disks that are full, connections lost.

@@ -7,7 +7,7 @@ from functools import lru_cache
 from threading import Lock
 
 from compoundkin.base.series import Number
-from compoundkin.studies.silence import silence
+from compoundkin.base.silence import silence
 from compoundkin.studies.study_plan import StudyPlan
 from compoundkin.studies.study_program import StudyProgram
 

@@ -9,10 +9,10 @@ import numpy as np
 from compoundkin.base.display import counted
 from compoundkin.base.errors import FewDigits, NotAssembled, Problem, UnassembledPoses, warn
 from compoundkin.base.series import Number
+from compoundkin.base.silence import silence
 from compoundkin.model.attributes import PARTS, RADIANS
+from compoundkin.model.component_names import AXES
 from compoundkin.studies.responses import Response
-from compoundkin.studies.silence import silence
-from compoundkin.studies.study_program import AXES
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.sampled_output import SampledOutput
 from compoundkin.studies.tolerances.toleranced_designs import TolerancedDesigns

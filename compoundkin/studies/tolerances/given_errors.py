@@ -13,7 +13,7 @@ from compoundkin.base.display import short
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
-from compoundkin.programs.dimensions.free_dimension import AXES
+from compoundkin.model.component_names import AXES
 from compoundkin.studies.responses import StudiedPath
 from compoundkin.studies.tolerances.contract import ErrorSource
 from compoundkin.studies.tolerances.dimension_tolerance import DimensionTolerance
@@ -115,6 +115,5 @@ def error_sources(path: StudiedPath, given: Sequence[GivenError]) -> tuple[Error
         if np.size(own) != 1:
             what = f"it has {np.size(own)} values, and tolerances are of one design"
             raise InvalidInput(Problem(f"tolerances.{one.dimension}", what, "give the mechanism one value"))
-        parts = tuple(f"{dimension.name}.{axis}" for axis in AXES) if dimension.is_vector else (dimension.name,)
-        sources.append(one.source(parts, stated.unit(dimension), np.reshape(own, ())))
+        sources.append(one.source(dimension.coordinates, stated.unit(dimension), np.reshape(own, ())))
     return tuple(sources)

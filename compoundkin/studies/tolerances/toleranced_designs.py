@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,11 +10,11 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.studies.design_states import ASSEMBLED, design_states
+from compoundkin.base.silence import silence
 from compoundkin.studies.responses import Designs, Response, StudiedPath
+from compoundkin.studies.responses.assembled_range import assembled_range
+from compoundkin.studies.responses.design_blocks import blocks
 from compoundkin.studies.samples.random_rows import RandomSample
-from compoundkin.studies.silence import silence
-from compoundkin.studies.study_program import MOST_POSES
 from compoundkin.studies.tolerances.contract import ErrorSource
 
 
@@ -41,27 +41,21 @@ class TolerancedDesigns(PrintsShort):
         """Return the values of responses by name, and which designs assemble."""
         parts: dict[str, list[Number]] = {one.name: [] for one in responses}
         assembled = []
-        for rows in self._blocks():
+        for rows in blocks(self.sample.count, self.path.reference.inputs.poses):
             with silence():
                 designs = self.designs(rows)
-                assembled.append(design_states(designs)[ASSEMBLED])
+                assembled.append(assembled_range(designs).assembled)
                 for one in responses:
                     shape = (designs.number, designs.poses)[: 1 + one.is_course]
                     parts[one.name].append(np.broadcast_to(one.values(designs), shape))
         return {name: np.concatenate(part) for name, part in parts.items()}, np.concatenate(assembled)
-
-    def _blocks(self) -> Iterator[range]:
-        """Yield the rows in blocks that stay in memory."""
-        block = max(1, MOST_POSES // max(1, self.path.reference.inputs.poses))
-        for start in range(0, self.sample.count, block):
-            yield range(start, min(start + block, self.sample.count))
 
     def designs(self, rows: range) -> Designs:
         """Return some of them."""
         errors = self._errors(rows)
         found = {}
         for one in self.path.compiled.programs.dimensions:
-            parts = [errors[f"{one.name}.{given.part}" if one.is_vector else one.name] for given in one.inputs]
+            parts = [errors[name] for name in one.coordinates]
             found[one.name] = self.own[one.name] + (parts[0] + 1j * parts[1] if one.is_vector else parts[0])
         return self.path.designs(found)
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN
 from compoundkin.base.series import Number
+from compoundkin.base.silence import silence
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.studies.silence import silence
 
 # So many poses make a smooth curve.
 POSES = 361

@@ -12,7 +12,8 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.model.attributes import GREATEST
-from compoundkin.studies.study_program import AXES, StudyColumn
+from compoundkin.model.component_names import component_names
+from compoundkin.studies.study_program import StudyColumn
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.view.plot.plotted_rows import Plotted
 from compoundkin.view.report.wording import counted
@@ -54,7 +55,7 @@ class StudyColumns(PrintsShort):
 
     def named(self, name: str) -> tuple[StudyColumn, ...]:
         """Return the columns of a name: two of a point or vector. Raises UnknownName with the nearest."""
-        names = [name] if name in self.columns else [f"{name}.{axis}" for axis in AXES]
+        names = (name,) if name in self.columns else component_names(name)
         if names[0] not in self.columns:
             remedy = nearest(name, list(self.columns))
             raise UnknownName(Problem(name, "the study has no such column of numbers", remedy))

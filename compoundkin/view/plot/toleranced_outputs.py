@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.studies.study_program import AXES
+from compoundkin.model.component_names import component_names
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot.plotted_rows import along
@@ -18,7 +18,7 @@ from compoundkin.view.plot.study_columns import shown_of
 
 def outputs_of(found: ToleranceAnalysis, name: str) -> list[OutputTolerance]:
     """Return the outputs of a name: both components of a vector. Raises UnknownName."""
-    both = [f"{name}.{axis}" for axis in AXES]
+    both = component_names(name)
     return [found[one] for one in (both if name not in found.outputs and both[0] in found.outputs else [name])]
 
 
