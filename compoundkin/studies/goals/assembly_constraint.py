@@ -65,7 +65,7 @@ class AssemblyConstraint(DesignConstraint):
 
     def _there(self, trial: DesignTrial) -> DesignTrial:
         if not self.turned:
-            return trial
+            return trial.closely
         return trial.at(driver_of("full_turn", trial.designs.path.reference, self.driver), TURNED)
 
     def margins(self, trial: DesignTrial) -> Number:

@@ -62,11 +62,13 @@ class BoundConstraint(DesignConstraint):
 
     def margins(self, trial: DesignTrial) -> Number:
         """Return how far each is from its bound."""
-        return np.stack([one.sign * (trial.values(one.figure) - one.value) for one in self.bounds], axis=1)
+        there = trial.closely
+        return np.stack([one.sign * (there.values(one.figure) - one.value) for one in self.bounds], axis=1)
 
     def slopes(self, trial: DesignTrial) -> Number:
         """Return the slopes of those."""
-        return np.stack([one.sign * trial.slopes(one.figure) for one in self.bounds], axis=1)
+        there = trial.closely
+        return np.stack([one.sign * there.slopes(one.figure) for one in self.bounds], axis=1)
 
 
 def _bound(where: str, name: str, value: float, sign: int) -> FigureBound:

@@ -13,6 +13,10 @@ from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.designs import Designs
 
 
+# Constraints look at a motion in so many steps at least: ten degrees of a turn.
+CLOSE = 36
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class DesignTrial(PrintsShort):
     """Some designs along the motion, and the unknowns of the goal that asks.
@@ -68,6 +72,22 @@ class DesignTrial(PrintsShort):
             drives = {**first, driver: (placed, *first[driver][1:])}
             elsewhere = inputs.of_poses(placed.shape[-1]).driven(drives)
             self._elsewhere[key] = replace(self, designs=self.designs.at(elsewhere))
+        return self._elsewhere[key]
+
+    @property
+    def closely(self) -> DesignTrial:
+        """The same designs, with poses between those of a motion that has few.
+
+        What a motion does between two of its poses that are far apart is seen from neither.
+        """
+        steps = self.designs.poses - 1
+        parts = -(-CLOSE // steps) if steps else 1
+        if parts == 1:
+            return self
+        key = (b"closely",)
+        if key not in self._elsewhere:
+            places = np.broadcast_to(np.linspace(0.0, steps, parts * steps + 1), (self.number, parts * steps + 1))
+            self._elsewhere[key] = replace(self, designs=self.designs.between(np.arange(self.number), places))
         return self._elsewhere[key]
 
     def apart(self, driver: str, values: Number) -> PosesApart:

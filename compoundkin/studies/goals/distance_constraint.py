@@ -38,7 +38,7 @@ class DistanceConstraint(DesignConstraint):
         return tuple(f"{one}.{POSITION}" for one in self.points)
 
     def _between(self, trial: DesignTrial) -> Number:
-        one, other = (trial.values(f"{name}.{POSITION}") for name in self.points)
+        one, other = (trial.closely.values(f"{name}.{POSITION}") for name in self.points)
         return np.broadcast_arrays(other - one, np.empty((trial.number, 1)))[0]
 
     def margins(self, trial: DesignTrial) -> Number:
@@ -52,7 +52,7 @@ class DistanceConstraint(DesignConstraint):
         """Return the slopes of those, at the poses that have them."""
         between = self._between(trial)
         lengths = np.abs(between)
-        one, other = (trial.slopes(f"{name}.{POSITION}") for name in self.points)
+        one, other = (trial.closely.slopes(f"{name}.{POSITION}") for name in self.points)
         with np.errstate(invalid="ignore", divide="ignore"):
             unit = between.conj() / lengths
         slopes = np.broadcast_to(((other - one) * unit[..., None]).real, (*lengths.shape, len(trial.coordinates)))

@@ -1,0 +1,50 @@
+"""Motions of few poses, far apart: constraints hold between them too, and the answer is a motion that can be made."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.studies.goals.contract import DesignConstraint
+from compoundkin.studies.optimisation.stated_problem import stated_problem
+
+LINKAGE = ck.Mechanism(
+    "Four-bar",
+    ck.link("frame", A=(0, 0), D=(5, 0)),
+    ck.link("crank", A=(0, 0), B=(2, 0)),
+    ck.link("coupler", B=(0, 0), C=(5, 0), P=(2.5, 1.5)),
+    ck.link("rocker", D=(0, 0), C=(4, 0)),
+    ck.drive("crank"),
+)
+# the crank passes the frame, where a linkage near Grashof's limit nearly folds, between two poses
+FEW = ck.deg([-80.0, -50.0, -30.0, 25.0, 50.0, 65.0])
+PLACES = np.array([-0.35 - 3.53j, 1.35 - 3.44j, 2.47 - 2.56j, 7.88 + 1.25j, 6.61 + 4.75j, 5.27 + 5.82j])
+FREE = {"crank.B.x": (1, 8), "coupler.P": ((1, 1), (4, 4)), "rocker.C.x": (2, 6)}
+
+
+@pytest.mark.parametrize(
+    ("asked", "name", "value"),
+    [
+        (ck.goals.assembles(), "coupler.transmission_index.least", 0.05),
+        (ck.goals.transmits("coupler", 0.1), "coupler.transmission_angle.least", 0.1),
+        (ck.goals.distance("C", "A", at_least=1.0), "C.length.least", 1.0),
+    ],
+)
+def test_constraints_look_between_poses_far_apart(asked: DesignConstraint, name: str, value: float) -> None:
+    problem = stated_problem(LINKAGE, {"rocker.C.x": (2, 6)}, ck.goals.path("P", PLACES), (asked,), values=FEW)
+    parts = np.array([0.3, 0.6])
+    found = problem.at(parts[:, None])
+    for size, margin in zip(2.0 + 4.0 * parts, found.margins[:, 0], strict=True):
+        made = LINKAGE.replace(ck.link("rocker", D=(0, 0), C=(size, 0)))
+        fine = ck.solve(made, ck.deg(np.arange(-80, 65.1, 1.0)))
+        least = float(np.ravel(ck.quantity(fine, name).values)[0])
+        assert abs(margin - (least - value)) < 2e-2 * least
+
+
+def test_a_path_of_few_places_ends_at_a_motion_that_can_be_made() -> None:
+    found = ck.optimise(LINKAGE, FREE, ck.goals.path("P", PLACES), ck.goals.assembles(), values=FEW, starts=4)
+    fine = ck.solve(found.mechanism, ck.deg(np.arange(-80, 65.1, 0.5)))
+    assert found.check.passed
+    assert ck.quantity(fine, "coupler.transmission_index").values.min() > 0.05 - 1e-6
+    assert found.constraints[0].binds
