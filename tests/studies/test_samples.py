@@ -118,7 +118,7 @@ def test_a_table_has_its_rows() -> None:
         ("grid", None, RANGES, "count: it is not said how many designs"),
         ({"a": 3, "x": 2}, None, RANGES, "sample.x: it is not among the dimensions"),
         ({"a": 3}, None, RANGES, "sample.b: it is not said how many levels it has"),
-        ({"a": 3, "b": 2.5}, None, RANGES, "sample.b: it is not said how many levels it has"),
+        ({"a": 3, "b": 2.5}, None, RANGES, "sample.b: 2.5 is no number of levels"),
         ({"a": 3, "b": 3}, 20, RANGES, "count: the grid has 27 designs, not 20"),
         ({"a": 3, "b": 2**20}, None, RANGES, "count: the grid has 3298534883328 designs"),
         ("table", None, RANGES, "dimensions.a: in a table it is a list of values"),

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Barrier
 from typing import Any
 
 import numpy as np
@@ -117,3 +119,42 @@ def test_figures_of_a_design_do_not_depend_on_others_near_their_limits() -> None
         least = np.abs(ck.quantity(fine, "O.force").values).min()
         assert result["O.force.length.least"][row] == pytest.approx(least, rel=1e-7)
     assert result.assembled.tolist() == [True, False]
+
+
+def test_runs_that_begin_a_folder_at_a_time_share_it(tmp_path: Path) -> None:
+    study, begun = rocker(8), Barrier(4)
+
+    def run(_: int) -> Any:
+        begun.wait()
+        return study.run(tmp_path / "new", threads=1)["rocker.angle"]
+
+    with ThreadPoolExecutor(4) as pool:
+        for found in pool.map(run, range(4)):
+            np.testing.assert_array_equal(found, study.run()["rocker.angle"])
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"count": 10**30}, "count: .* is too large"),
+        ({"sample": {"crank.B.x": 10**12}}, r"sample\.crank\.B\.x: 1000000000000 is no number of levels"),
+        ({"sample": {"crank.B.x": "4"}}, r"sample\.crank\.B\.x: '4' is no number of levels"),
+        ({"sample": {}}, r"sample\.crank\.B\.x: it is not said how many levels it has"),
+    ],
+)
+def test_numbers_that_are_too_large_are_told_so(options: dict[str, Any], told: str) -> None:
+    with pytest.raises(InvalidInput, match=told):
+        rocker(**{"count": None, **options})
+
+
+def test_more_random_designs_than_stay_in_memory_are_refused() -> None:
+    mechanism = ck.catalog.load_named("crank-rocker")
+    with pytest.raises(InvalidInput, match="count: 100000000 designs of 2 values each do not stay in memory; at most"):
+        ck.tolerance(mechanism, {"crank.B.x": 0.01}, "rocker.angle", values=[0.0, 0.1], count=10**8)
+
+
+def test_errors_given_as_values_are_likely_slips() -> None:
+    mechanism = ck.catalog.load_named("crank-rocker")
+    options: Any = {"values": [0.0, 0.1], "count": 100, "percentiles": (50,)}
+    with pytest.warns(LikelySlip, match=r"tolerances\.crank\.B\.x: the mechanism's own value is not among these"):
+        ck.tolerance(mechanism, {"crank.B.x": ck.around(0.0, 0.01)}, "rocker.angle", **options)

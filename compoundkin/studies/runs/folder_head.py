@@ -76,6 +76,9 @@ def _begin(place: Path, head: FolderHead) -> None:
     except (OSError, ValueError) as error:
         what = getattr(error, "strerror", None) or str(error)
         raise InvalidInput(Problem(str(place), f"it cannot be a folder of a study: {what}")) from None
+    if os.path.exists(place / HEAD):
+        # another run has begun it meanwhile
+        return
     if others:
         what = f"it has files that are no study's, such as {others[0]}"
         raise InvalidInput(Problem(str(place), what, "name a new folder"))

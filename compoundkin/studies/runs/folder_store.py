@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem, StudyStopped
-from compoundkin.files.atomic import write_atomically
 from compoundkin.studies.runs.contract import RunStore
 from compoundkin.studies.runs.folder_head import FolderHead, head_of
 from compoundkin.studies.runs.parquet_parts import part_content
@@ -40,7 +39,7 @@ class PartTask:
         content = part_content(self.plan.columns, computed(self.plan, rows), self.folder.fingerprint)
         if not is_seen(self.folder.path, self.token):
             return content
-        _write(self.folder.part(rows), content)
+        self.folder.write(rows, content)
         return None
 
 
@@ -54,10 +53,6 @@ def is_seen(place: Path, token: str) -> bool:
         return head_of(place).token == token
     except InvalidInput:
         return False
-
-
-def _write(path: Path, content: bytes) -> None:
-    write_atomically(path, lambda file: file.write(content))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -83,7 +78,7 @@ class FolderStore(RunStore):
     def take(self, rows: range, answer: bytes | None) -> None:
         """Write a part that a worker has sent."""
         if answer is not None:
-            _write(self.folder.part(rows), answer)
+            self.folder.write(rows, answer)
 
     def finished(self) -> RowsInFolder:
         """Return all rows; raises StudyStopped where parts are not to be seen."""

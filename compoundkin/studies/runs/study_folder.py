@@ -8,8 +8,9 @@ from pathlib import Path
 from time import time
 from typing import NamedTuple
 
-from compoundkin.base.errors import LikelySlip, warn
+from compoundkin.base.errors import InvalidInput, LikelySlip, warn
 from compoundkin.base.suffixes import suffix_for
+from compoundkin.files.atomic import write_atomically
 from compoundkin.studies.runs.parquet_parts import rows_of_part
 from compoundkin.studies.runs.row_pieces import missing_rows
 
@@ -40,6 +41,18 @@ class StudyFolder:
     def part(self, rows: range) -> Path:
         """Return where the part of some rows is or will be."""
         return self.path / f"rows-{rows.start:09d}-{rows.stop:09d}{_SUFFIX}"
+
+    def write(self, rows: range, content: bytes) -> None:
+        """Write the part of some rows.
+
+        Raises InvalidInput where it cannot be written, and no other run has put these rows there meanwhile: one that
+        completes the folder sweeps what is being written.
+        """
+        try:
+            write_atomically(self.part(rows), lambda file: file.write(content))
+        except InvalidInput:
+            if any(one.stop > rows.start for one in self.missing(rows.stop)):
+                raise
 
     def parts(self) -> tuple[StudyPart, ...]:
         """Return the parts that are there, in order.

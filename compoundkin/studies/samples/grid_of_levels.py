@@ -60,7 +60,7 @@ class GridSample(DesignSample):
         # lists of values have their own levels
         levels = {name: given.get(name, 1 if one.is_listed else None) for name, one in variations.items()}
         problems = [
-            Problem(f"sample.{name}", "it is not said how many levels it has", _WHOLE)
+            Problem(f"sample.{name}", _no_levels(number), _WHOLE)
             for name, number in levels.items()
             if not is_whole(number) or not 1 <= number <= MOST_DESIGNS
         ]
@@ -89,6 +89,10 @@ class GridSample(DesignSample):
     def data(self) -> Mapping[str, Any]:
         """Its levels by dimensions."""
         return {"sample": dict(self.levels), "count": self.count}
+
+
+def _no_levels(number: Any) -> str:
+    return "it is not said how many levels it has" if number is None else f"{short(number)} is no number of levels"
 
 
 def _size(variations: Mapping[str, Variation], levels: Mapping[str, Any]) -> int:

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from compoundkin.base.display import PrintsShort
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.base.silence import silence
 from compoundkin.studies.responses import Designs, Response, StudiedPath
@@ -16,6 +17,9 @@ from compoundkin.studies.responses.assembled_range import assembled_range
 from compoundkin.studies.responses.design_blocks import blocks
 from compoundkin.studies.samples.random_rows import RandomSample
 from compoundkin.studies.tolerances.contract import ErrorSource
+
+# The values of all random designs are kept: so many numbers at most, a gibibyte.
+MOST_VALUES = 2**27
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -39,6 +43,7 @@ class TolerancedDesigns(PrintsShort):
 
     def found(self, responses: Sequence[Response]) -> tuple[dict[str, Number], Number]:
         """Return the values of responses by name, and which designs assemble."""
+        self._hold_room(responses)
         parts: dict[str, list[Number]] = {one.name: [] for one in responses}
         assembled = []
         for rows in blocks(self.sample.count, self.path.reference.inputs.poses):
@@ -49,6 +54,14 @@ class TolerancedDesigns(PrintsShort):
                     shape = (designs.number, designs.poses)[: 1 + one.is_course]
                     parts[one.name].append(np.broadcast_to(one.values(designs), shape))
         return {name: np.concatenate(part) for name, part in parts.items()}, np.concatenate(assembled)
+
+    def _hold_room(self, responses: Sequence[Response]) -> None:
+        """Raise InvalidInput where the values of all designs would not stay in memory."""
+        poses = self.path.reference.inputs.poses
+        each = sum((poses if one.is_course else 1) * (1 + one.is_vector) for one in responses)
+        if self.sample.count * each > MOST_VALUES:
+            what = f"{self.sample.count} designs of {each} values each do not stay in memory"
+            raise InvalidInput(Problem("count", what, f"at most {MOST_VALUES // each}; a study keeps more in a folder"))
 
     def designs(self, rows: range) -> Designs:
         """Return some of them."""

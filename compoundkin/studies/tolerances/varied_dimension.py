@@ -8,7 +8,7 @@ from typing import Self
 
 import numpy as np
 
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, warn
 from compoundkin.base.series import Number
 from compoundkin.studies.tolerances.contract import ErrorSource
 from compoundkin.studies.variations.contract import Variation
@@ -53,6 +53,7 @@ class VariedDimension(ErrorSource):
         low, high = (_parts(end, len(numbers)) for end in variation.ends)
         lows = np.where(np.isfinite(low), low, means - sigmas * deviations) - own
         highs = np.where(np.isfinite(high), high, means + sigmas * deviations) - own
+        _tell_middle(where, lows, highs)
         errors = (own, lows, highs, means - own, deviations)
         return cls(name, numbers, unit, variation, *(tuple(one.tolist()) for one in errors))
 
@@ -85,6 +86,15 @@ class VariedDimension(ErrorSource):
     def mean(self, slopes: Sequence[Number]) -> Number:
         """Return the sum over the coordinates of slope times mean error."""
         return _sum(slopes, np.array(self.means))
+
+
+def _tell_middle(where: str, lows: Number, highs: Number) -> None:
+    """Warn LikelySlip where none of the values is the mechanism's own, as where deviations were meant."""
+    if np.any((lows > 0.0) | (highs < 0.0)):
+        told = (
+            f"{where}: the mechanism's own value is not among these; they are values of the dimension, not its errors"
+        )
+        warn(told, LikelySlip)
 
 
 def _parts(value: Number, count: int) -> Number:
