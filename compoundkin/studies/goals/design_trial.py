@@ -12,7 +12,6 @@ from compoundkin.base.series import Number
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.designs import Designs
 
-
 # Constraints look at a motion in so many steps at least: ten degrees of a turn.
 CLOSE = 36
 
