@@ -48,8 +48,8 @@ from compoundkin.programs.path_values import PathValues
 from compoundkin.structure import Group, Structure
 from compoundkin.structure.redundancy import MobilityAnalysis
 from compoundkin.studies.optimisation.optimum import ChangedDimension, HeldConstraint, LocalMinimum, Optimum
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.studies.study import Study
-from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.sampled_output import SampledOutput
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis

@@ -17,13 +17,13 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.runs.folder_head import prepared
 from compoundkin.studies.runs.folder_store import FolderStore
 from compoundkin.studies.runs.memory_store import MemoryStore
+from compoundkin.studies.runs.study_plan import StudyPlan
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.studies.runs.study_run import run
 from compoundkin.studies.samples import sample_of
 from compoundkin.studies.samples.contract import DesignSample
 from compoundkin.studies.samples.listed_rows import TableSample
 from compoundkin.studies.study_files.study_writer import study_text
-from compoundkin.studies.study_plan import StudyPlan
-from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.variations import variations_of
 
 

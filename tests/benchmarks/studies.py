@@ -19,8 +19,8 @@ import numpy as np
 import compoundkin as ck
 from compoundkin.base.silence import silence
 from compoundkin.studies.responses import studied_path
+from compoundkin.studies.runs.study_program import StudyProgram
 from compoundkin.studies.samples import sample_of
-from compoundkin.studies.study_program import StudyProgram
 from compoundkin.studies.variations import variations_of
 from tests.benchmarks.__main__ import heading, row
 from tests.benchmarks.measure import Times, interleaved

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from compoundkin.base.display import PrintsShort
+from compoundkin.studies.runs.study_plan import StudyPlan
 from compoundkin.studies.runs.study_rows import StudyRows
-from compoundkin.studies.study_plan import StudyPlan
 
 
 @dataclass(frozen=True, eq=False, repr=False)

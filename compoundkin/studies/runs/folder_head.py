@@ -13,11 +13,11 @@ from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, warn
 from compoundkin.base.suffixes import suffix_for
 from compoundkin.files.atomic import write_atomically
 from compoundkin.studies.runs.parquet_parts import parquet
+from compoundkin.studies.runs.study_data import ORDER, differences, digest
 from compoundkin.studies.runs.study_folder import StudyFolder
+from compoundkin.studies.runs.study_plan import StudyPlan
+from compoundkin.studies.runs.study_program import StudyColumn
 from compoundkin.studies.runs.study_versions import told_versions, versions
-from compoundkin.studies.study_data import ORDER, differences, digest
-from compoundkin.studies.study_plan import StudyPlan
-from compoundkin.studies.study_program import StudyColumn
 
 FORMAT = 1
 HEAD = f"study{suffix_for('mechanism', 'json')}"

@@ -14,9 +14,9 @@ from compoundkin.studies.runs.folder_head import FolderHead, head_of
 from compoundkin.studies.runs.parquet_parts import part_content
 from compoundkin.studies.runs.rows_in_folder import RowsInFolder
 from compoundkin.studies.runs.study_folder import StudyFolder
+from compoundkin.studies.runs.study_plan import StudyPlan
 from compoundkin.studies.runs.study_task import computed, kept_program
 from compoundkin.studies.runs.study_versions import told_versions, versions
-from compoundkin.studies.study_plan import StudyPlan
 
 
 @dataclass(frozen=True)

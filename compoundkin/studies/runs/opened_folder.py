@@ -6,13 +6,13 @@ import os
 from pathlib import Path
 
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.studies.recovered_plan import plan_from
 from compoundkin.studies.runs.folder_head import HEAD, head_of
 from compoundkin.studies.runs.parquet_parts import parquet
+from compoundkin.studies.runs.recovered_plan import plan_from
 from compoundkin.studies.runs.rows_in_folder import RowsInFolder
+from compoundkin.studies.runs.study_data import digest
 from compoundkin.studies.runs.study_folder import StudyFolder
-from compoundkin.studies.study_data import digest
-from compoundkin.studies.study_plan import StudyPlan
+from compoundkin.studies.runs.study_plan import StudyPlan
 
 
 def opened(path: str | os.PathLike[str]) -> tuple[StudyPlan, RowsInFolder]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.studies.study_program import StudyColumn
+from compoundkin.studies.runs.study_program import StudyColumn
 
 # What every part says of the study that it belongs to.
 STUDY = b"study"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import ceil
 
-from compoundkin.studies.study_program import StudyProgram
+from compoundkin.studies.runs.study_program import StudyProgram
 
 # So many rows are a piece at most, and so many bytes: what each worker has in memory at a time, a few times over.
 MOST_ROWS, MOST_BYTES = 65_536, 2**23

@@ -11,7 +11,7 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.studies.study_program import StudyColumn
+from compoundkin.studies.runs.study_program import StudyColumn
 
 
 @dataclass(frozen=True, eq=False, repr=False)

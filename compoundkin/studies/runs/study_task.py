@@ -8,8 +8,8 @@ from threading import Lock
 
 from compoundkin.base.series import Number
 from compoundkin.base.silence import silence
-from compoundkin.studies.study_plan import StudyPlan
-from compoundkin.studies.study_program import StudyProgram
+from compoundkin.studies.runs.study_plan import StudyPlan
+from compoundkin.studies.runs.study_program import StudyProgram
 
 # So many studies a worker keeps compiled.
 KEPT = 4

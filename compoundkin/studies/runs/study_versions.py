@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from compoundkin.base.version import VERSION
-from compoundkin.studies.study_program import StudyProgram
+from compoundkin.studies.runs.study_program import StudyProgram
 
 
 def versions(program: StudyProgram) -> dict[str, str]:

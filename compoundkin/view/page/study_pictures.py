@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from typing import TypeAlias
 
 from compoundkin.studies.optimisation.optimum import Optimum
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.page.markup import element, safe
 from compoundkin.view.plot import Plot, bands, contributions, improvement, scatter_matrix, starts

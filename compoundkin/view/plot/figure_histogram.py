@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.figure_bins import bins

@@ -11,8 +11,8 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, nearest
 from compoundkin.base.series import Number
-from compoundkin.studies.pareto_rows import pareto_rows
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.runs.pareto_rows import pareto_rows
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.plot_style import COLOURS, FAINT, Plot
 from compoundkin.view.plot.plotted_rows import Plotted

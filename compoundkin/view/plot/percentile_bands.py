@@ -14,8 +14,8 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.kinematics import Motion
-from compoundkin.studies.study_program import StudyColumn
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.runs.study_program import StudyColumn
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas, plot_style

@@ -10,7 +10,7 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.series import Number
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.figure_bins import bins
 from compoundkin.view.plot.label_lines import broken

@@ -13,8 +13,8 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.model.attributes import GREATEST
 from compoundkin.model.component_names import component_names
-from compoundkin.studies.study_program import StudyColumn
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.runs.study_program import StudyColumn
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.view.plot.plotted_rows import Plotted
 from compoundkin.view.report.wording import counted
 

@@ -6,7 +6,7 @@ from functools import singledispatch
 from typing import Any
 
 from compoundkin.studies.optimisation.optimum import Optimum
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot.contribution_bars import contributions
 from compoundkin.view.plot.figure_histogram import histogram

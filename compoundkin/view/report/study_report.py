@@ -11,9 +11,9 @@ import numpy as np
 
 from compoundkin.base.arrays import degrees
 from compoundkin.model.attributes import DEGREES, GREATEST, LEAST, PARTS, RADIANS
-from compoundkin.studies.design_states import CIRCUIT, ORDER_DEFECT, REASON
-from compoundkin.studies.study_program import ROW, StudyColumn
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.runs.design_states import CIRCUIT, ORDER_DEFECT, REASON
+from compoundkin.studies.runs.study_program import ROW, StudyColumn
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.view.report.report_data import Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted, listed, number

@@ -16,7 +16,7 @@ from compoundkin.model.design_numbers import mechanism_of_design
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure, decompose
 from compoundkin.studies.optimisation.optimum import Optimum
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.runs.study_result import StudyResult
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.optimum_report import optimum_report

@@ -13,10 +13,10 @@ from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
 from compoundkin.base.silence import silence
 from compoundkin.model.component_names import component_names
-from compoundkin.studies.design_states import STATES, design_states
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.design_blocks import designs_at_once
 from compoundkin.studies.responses.designs import Designs, StudiedPath
+from compoundkin.studies.runs.design_states import STATES, design_states
 from compoundkin.studies.samples.contract import DesignSample
 from compoundkin.studies.variations.contract import Variation
 

@@ -19,9 +19,9 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.responses import studied_path
+from compoundkin.studies.runs.study_data import ORDER, digest, plain, plain_mechanism
+from compoundkin.studies.runs.study_program import ROW, StudyColumn, StudyProgram
 from compoundkin.studies.samples.contract import DesignSample
-from compoundkin.studies.study_data import ORDER, digest, plain, plain_mechanism
-from compoundkin.studies.study_program import ROW, StudyColumn, StudyProgram
 from compoundkin.studies.variations import hold_kinds
 from compoundkin.studies.variations.contract import Variation
 

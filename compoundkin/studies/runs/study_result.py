@@ -21,9 +21,9 @@ from compoundkin.kinematics.table import ANGLES, ASSEMBLED, Table
 from compoundkin.model.component_names import AXES
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.runs.opened_folder import opened
+from compoundkin.studies.runs.study_plan import StudyPlan
+from compoundkin.studies.runs.study_program import StudyColumn
 from compoundkin.studies.runs.study_rows import StudyRows
-from compoundkin.studies.study_plan import StudyPlan
-from compoundkin.studies.study_program import StudyColumn
 
 _X, _Y = (f".{axis}" for axis in AXES)
 

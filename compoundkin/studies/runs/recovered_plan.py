@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.studies.runs.study_data import CALLED, ORDER, mechanism_from
+from compoundkin.studies.runs.study_plan import RATES, StudyPlan
 from compoundkin.studies.samples import sample_from
-from compoundkin.studies.study_data import CALLED, ORDER, mechanism_from
-from compoundkin.studies.study_plan import RATES, StudyPlan
 from compoundkin.studies.variations import variation_from
 
 
