@@ -66,7 +66,7 @@ def hold_figures(studied: Study, asked: tuple[str, ...]) -> None:
     """Raise UnknownName where the best are asked of what is no figure."""
     from compoundkin.base.errors import Problem, UnknownName, nearest
 
-    known = [one.name for one in studied.columns if one.kind != "state" and not one.width]
+    known = [one.name for one in studied.columns if one.is_figure]
     for name in asked:
         if name not in known:
             raise UnknownName(Problem(name, "it is no figure or dimension of the study", nearest(name, known)))

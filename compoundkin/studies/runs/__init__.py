@@ -1,1 +1,1 @@
-"""Runs of studies: what they compute, in pieces, here or on other machines, kept in memory or in a folder, and found."""
+"""Runs of studies: what they compute, in pieces, here or elsewhere, kept in memory or a folder, and what is found."""

@@ -9,12 +9,13 @@ import numpy as np
 
 from compoundkin.base.series import Number
 from compoundkin.kinematics.configuration import label
+from compoundkin.kinematics.table import ASSEMBLED
 from compoundkin.model.attributes import DEGREES, after_number
 from compoundkin.studies.responses.assembled_range import AssembledRange, assembled_range
 from compoundkin.studies.responses.designs import Designs
 
-STATES = ("assembled", "branch", "circuit", "order_defect", "reason")
-ASSEMBLED, BRANCH, CIRCUIT, ORDER_DEFECT, REASON = STATES
+STATES = (ASSEMBLED, "branch", "circuit", "order_defect", "reason")
+_, BRANCH, CIRCUIT, ORDER_DEFECT, REASON = STATES
 # What the sign of a group becomes whose limit position lies within the motion: there both its modes meet.
 BOTH = "+-"
 
@@ -77,17 +78,15 @@ def _reasons(designs: Designs, found: AssembledRange) -> Number:
         return reasons
     bad = found.failed[lost] != 0
     first = np.argmax(bad, axis=1)
-    index = np.arange(len(lost))
     # the first run of poses that are not assembled: to its last one
     after = np.where(bad | (np.arange(designs.poses) < first[:, None]), designs.poses, np.arange(designs.poses))
-    last = np.minimum(after.min(axis=1), designs.poses) - 1
+    last = after.min(axis=1) - 1
     at_poses = bad.any(axis=1)
     group = np.where(at_poses, found.failed[lost, first], found.between[lost])
     begin = np.where(at_poses, first, found.after[lost])
     end = np.where(at_poses, last, -1)
     codes, which = np.unique(np.stack([group, begin, end], axis=1), axis=0, return_inverse=True)
-    texts = np.array([*_texts(designs, codes), ""], dtype=object)[:-1]
-    reasons[lost] = texts[np.ravel(which)[index]]
+    reasons[lost] = np.array(list(_texts(designs, codes)), dtype=object)[np.ravel(which)]
     return reasons
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.studies.runs.study_data import CALLED, ORDER, mechanism_from
-from compoundkin.studies.runs.study_plan import RATES, StudyPlan
+from compoundkin.studies.runs.study_plan import ASKED, StudyPlan
 from compoundkin.studies.samples import sample_from
 from compoundkin.studies.variations import variation_from
 
@@ -23,7 +23,7 @@ def plan_from(data: Mapping[str, Any]) -> StudyPlan:
     named = {name: data["dimensions"][name] for name in data[ORDER]}
     dimensions = {name: variation_from(f"dimensions.{name}", one) for name, one in named.items()}
     sample = sample_from(data["sample"])
-    rest: dict[str, Any] = {name: data.get(name) for name in ("values", *RATES, "modes", "given")}
+    rest: dict[str, Any] = {name: data.get(name) for name in ASKED}
     return StudyPlan(mechanism_from(data["mechanism"]), dimensions, tuple(data["outputs"]), sample, **rest)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -12,13 +12,15 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.display import counted
-from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
+from compoundkin.model.attributes import RATES, TIME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.responses import studied_path
+from compoundkin.studies.responses.freed_dimensions import freed_by
 from compoundkin.studies.runs.study_data import ORDER, digest, plain, plain_mechanism
 from compoundkin.studies.runs.study_program import ROW, StudyColumn, StudyProgram
 from compoundkin.studies.samples.contract import DesignSample
@@ -26,7 +28,8 @@ from compoundkin.studies.variations import hold_kinds
 from compoundkin.studies.variations.contract import Variation
 
 Outputs: TypeAlias = tuple[str, ...] | Mapping[str, Callable[..., Any] | None]
-RATES = ("speed", "acceleration", "jerk", "time")
+# What a study is told besides its dimensions and outputs: how drivers move, and what functions read.
+ASKED = ("values", *RATES, TIME, "modes", "given")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,14 +56,10 @@ class StudyPlan:
     @cached_property
     def program(self) -> StudyProgram:
         """What computes its rows."""
-        rates = {name: getattr(self, name) for name in RATES}
         outputs: Any = self.outputs
-        try:
-            path, responses = studied_path(
-                self.mechanism, list(self.dimensions), outputs, self.values, given=self.given, modes=self.modes, **rates
-            )
-        except CompoundkinError as error:
-            raise type(error)(map(_placed, error.problems), error.heading) from None
+        asked: dict[str, Any] = {"given": self.given, "modes": self.modes, **self._rates}
+        with freed_by("dimensions"):
+            path, responses = studied_path(self.mechanism, list(self.dimensions), outputs, self.values, **asked)
         return StudyProgram(self.dimensions, self.sample, path, responses)
 
     @property
@@ -80,8 +79,8 @@ class StudyPlan:
             "dimensions": {name: plain(one.data) for name, one in self.dimensions.items()},
             "sample": plain(self.sample.data),
         }
-        rest = ("outputs", "values", *RATES, "modes", "given")
-        return found | {name: plain(getattr(self, name)) for name in rest if getattr(self, name) is not None}
+        rest = {name: getattr(self, name) for name in ("outputs", *ASKED)}
+        return found | {name: plain(value) for name, value in rest.items() if value is not None}
 
     @cached_property
     def fingerprint(self) -> str:
@@ -106,8 +105,12 @@ class StudyPlan:
 
         Raises InvalidInput where there is no such row, NotAssembled where it has no pose at all.
         """
-        rates = {name: getattr(self, name) for name in RATES}
-        return solve(self.mechanism_of(row), self.values, modes=self.program.path.compiled.modes, **rates)
+        modes = self.program.path.compiled.modes
+        return solve(self.mechanism_of(row), self.values, modes=modes, **self._rates)
+
+    @property
+    def _rates(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in (*RATES, TIME)}
 
     def hold(self) -> None:
         """Try one design.
@@ -141,9 +144,3 @@ class StudyPlan:
 
     def __hash__(self) -> int:
         return hash(self.key)
-
-
-def _placed(problem: Problem) -> Problem:
-    """Return a problem of compilation in the words of a study, whose free dimensions are its dimensions."""
-    free, dot, name = problem.where.partition(".")
-    return replace(problem, where=f"dimensions.{name}") if dot and free == "free" else problem

@@ -38,6 +38,11 @@ class StudyColumn(NamedTuple):
     kind: ColumnKind
     width: int | None = None
 
+    @property
+    def is_figure(self) -> bool:
+        """Whether it is one number of each design: a dimension or a figure."""
+        return self.kind != "state" and not self.width
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyProgram(PrintsShort):

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from compoundkin.base.display import short
-from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.model.component_names import AXES
@@ -84,16 +82,6 @@ def freed(names: Sequence[str]) -> tuple[str, ...]:
 def _point(name: str) -> str:
     point, _, axis = name.rpartition(".")
     return point if axis in AXES else ""
-
-
-@contextmanager
-def told_of(argument: str) -> Iterator[None]:
-    """Tell what is wrong with dimensions by the argument that has them."""
-    try:
-        yield
-    except CompoundkinError as error:
-        told = (replace(one, where=one.where.replace("free.", f"{argument}.", 1)) for one in error.problems)
-        raise type(error)(told, error.heading) from None
 
 
 def _hold_one_motion(path: StudiedPath) -> None:

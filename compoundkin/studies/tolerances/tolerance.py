@@ -10,6 +10,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.responses import studied_path
+from compoundkin.studies.responses.freed_dimensions import freed_by
 from compoundkin.studies.tolerances.chances import Chances
 from compoundkin.studies.tolerances.found_outputs import found_outputs
 from compoundkin.studies.tolerances.given_errors import (
@@ -17,7 +18,6 @@ from compoundkin.studies.tolerances.given_errors import (
     error_sources,
     freed,
     given_tolerances,
-    told_of,
 )
 from compoundkin.studies.tolerances.loose_pins import given_clearances
 from compoundkin.studies.tolerances.stated_offsets import with_offsets
@@ -68,7 +68,7 @@ def tolerance(
     given = [*given_tolerances(tolerances, chances.sigmas), *given_clearances(mechanism, clearance or {})]
     _hold(names, given)
     rates = {"speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time}
-    with told_of("tolerances"):
+    with freed_by("tolerances"):
         free = freed([one.dimension for one in given])
         path, responses = studied_path(with_offsets(mechanism, free), free, names, values, modes=modes, **rates)
         sources = error_sources(path, given)

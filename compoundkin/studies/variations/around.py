@@ -58,10 +58,6 @@ class AroundCentre(Variation):
             return super().grid_steps(count)
         return np.linspace(0.0, 1.0, count)
 
-    def in_units(self, factor: float) -> Self:
-        """Return it with centre and bound times a factor."""
-        return type(self)(self.centre * factor, self.within * factor, self.sigmas)
-
     @property
     def data(self) -> Mapping[str, Any]:
         """Its centre and bound, and the number of standard deviations where there is one."""

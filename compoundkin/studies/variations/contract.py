@@ -62,10 +62,6 @@ class Variation(ABC):
         """Return numbers for a grid: the middles of parts that are as likely."""
         return (np.arange(count) + 0.5) / count
 
-    @abstractmethod
-    def in_units(self, factor: float) -> Self:
-        """Return the same in another unit: all values times a factor."""
-
     @property
     @abstractmethod
     def data(self) -> Mapping[str, Any]:

@@ -53,10 +53,6 @@ class Distribution(CopiesFields, Variation):
         """Return its quantiles at numbers between 0 and 1."""
         return self.loc + self.scale * np.asarray(self.standard.ppf(inner_units(units[:, 0])))
 
-    def in_units(self, factor: float) -> Self:
-        """Return it with place and scale times a factor."""
-        return type(self)(self.name, self.shape, self.loc * factor, self.scale * factor)
-
     @property
     def data(self) -> Mapping[str, Any]:
         """Its name, shape, place and scale."""

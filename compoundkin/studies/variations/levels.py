@@ -67,10 +67,6 @@ class Levels(PrintsShort, Variation):
         """Return how many values it has."""
         return len(self.listed)
 
-    def in_units(self, factor: float) -> Self:
-        """Return them times a factor."""
-        return type(self)(self.listed * factor)
-
     @property
     def data(self) -> Mapping[str, Any]:
         """The values."""

@@ -42,10 +42,6 @@ class ValueRange(Variation):
         """Return equal steps, with both ends; one step is the middle."""
         return np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
 
-    def in_units(self, factor: float) -> Self:
-        """Return the range with its ends times a factor."""
-        return type(self)(self.low * factor, self.high * factor)
-
     @property
     def data(self) -> Mapping[str, Any]:
         """Its ends."""

@@ -45,7 +45,7 @@ def _plots(found: object) -> Iterator[SectionPlot]:
 
 @_plots.register
 def _(found: StudyResult) -> Iterator[SectionPlot]:
-    if any(one.kind != "state" and not one.width for one in found.columns):
+    if any(one.is_figure for one in found.columns):
         told = "Dimensions and figures against each other; above the diagonal their rank correlations."
         yield "figures", scatter_matrix(found, title=""), told
     if any(one.width for one in found.columns):

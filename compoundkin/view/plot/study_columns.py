@@ -67,7 +67,7 @@ class StudyColumns(PrintsShort):
         Of no names they are all that there are. Raises UnknownName, InvalidInput for courses.
         """
         if not names:
-            return tuple(one for one in self.columns.values() if not one.width)
+            return tuple(one for one in self.columns.values() if one.is_figure)
         found = [one for name in dict.fromkeys(names) for one in self.named(name)]
         for one in found:
             if one.width:

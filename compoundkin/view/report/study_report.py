@@ -121,7 +121,7 @@ def _cell(row: dict[str, Any], column: StudyColumn) -> Cell:
 
 def _single(found: StudyResult) -> list[StudyColumn]:
     """Return the dimensions and the figures: one number for each design."""
-    return [one for one in found.columns if one.kind != "state" and not one.width]
+    return [one for one in found.columns if one.is_figure]
 
 
 def _shown(column: StudyColumn) -> tuple[float, str]:
