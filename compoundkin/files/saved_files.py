@@ -10,6 +10,7 @@ import io
 import json
 import os
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from math import isfinite
 from types import MappingProxyType
 from typing import Any, BinaryIO, ClassVar, Protocol, TypeAlias, runtime_checkable
@@ -21,6 +22,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import Kind, everything, form_of
 from compoundkin.files.atomic import write_atomically
 from compoundkin.files.mechanism_files import encoded
+from compoundkin.files.parquet_library import parquet
 from compoundkin.kinematics.table import ANGLES, Table
 from compoundkin.model.mechanism import Mechanism
 
@@ -79,11 +81,7 @@ def _npz(table: Table) -> Write:
 
 def _parquet(table: Table) -> Write:
     """Fields with their `unit` as metadata. The schema says what the table is of and how angles are counted."""
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise InvalidInput(Problem("", "this needs pyarrow", "pip install 'compoundkin[parquet]'")) from None
+    write_table, pyarrow = parquet().write_table, import_module("pyarrow")
     arrays = [pyarrow.array(column.values) for column in table.columns]
     fields = [
         pyarrow.field(column.name, array.type, metadata={"unit": column.unit} if column.unit else None)
@@ -91,7 +89,7 @@ def _parquet(table: Table) -> Write:
     ]
     schema = pyarrow.schema(fields, metadata={"title": table.title, "angles": ANGLES})
     whole = pyarrow.Table.from_arrays(arrays, schema=schema)
-    return lambda file: pyarrow.parquet.write_table(whole, file)
+    return lambda file: write_table(whole, file)
 
 
 # The writer of each form that the table of suffixes has for tables.

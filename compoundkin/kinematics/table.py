@@ -43,6 +43,20 @@ class AtPoses(HasQuantities, Protocol):
         """Which poses are assembled."""
 
 
+def data_frame(title: str, columns: Mapping[str, Any], units: Mapping[str, str]) -> Any:
+    """Return columns as a pandas DataFrame.
+
+    Its `attrs` hold the title, the units and how angles are counted. Raises InvalidInput where pandas is not installed.
+    """
+    try:
+        pandas = import_module("pandas")
+    except ImportError:
+        raise InvalidInput(Problem("", "this needs pandas", "pip install 'compoundkin[pandas]'")) from None
+    frame = pandas.DataFrame(columns)
+    frame.attrs = {"title": title, "angles": ANGLES, "units": dict(units)}
+    return frame
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Table:
     """Columns of real quantities, a row for each pose. The last axis of the motion, its poses, runs fastest.
@@ -89,13 +103,7 @@ class Table:
         Its `attrs` hold the title, the units and how angles are counted. Raises InvalidInput where pandas is not
         installed.
         """
-        try:
-            pandas = import_module("pandas")
-        except ImportError:
-            raise InvalidInput(Problem("", "this needs pandas", "pip install 'compoundkin[pandas]'")) from None
-        frame = pandas.DataFrame({column.name: column.values for column in self.columns})
-        frame.attrs = {"title": self.title, "angles": ANGLES, "units": dict(self.units)}
-        return frame
+        return data_frame(self.title, {column.name: column.values for column in self.columns}, self.units)
 
     def __repr__(self) -> str:
         return f"Table({self.title!r}: {len(self)} rows of {len(self.columns)} columns)"

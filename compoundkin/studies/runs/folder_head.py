@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, warn
 from compoundkin.base.suffixes import suffix_for
 from compoundkin.files.atomic import write_atomically
-from compoundkin.studies.runs.parquet_parts import parquet
+from compoundkin.files.parquet_library import parquet
 from compoundkin.studies.runs.study_data import ORDER, differences, digest
 from compoundkin.studies.runs.study_folder import StudyFolder
 from compoundkin.studies.runs.study_plan import StudyPlan
@@ -42,7 +42,7 @@ def prepared(path: str | os.PathLike[str], plan: StudyPlan) -> tuple[StudyFolder
     Raises InvalidInput for the folder of another study, for one with other files, and where it cannot be written.
     Warns LikelySlip where other versions have begun it.
     """
-    parquet()
+    parquet("folder")
     place = Path(os.path.abspath(path))
     own = FolderHead(plan.data, plan.columns, versions(plan.program), secrets.token_hex(8))
     if not os.path.exists(place / HEAD):

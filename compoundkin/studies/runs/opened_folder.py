@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.files.parquet_library import parquet
 from compoundkin.studies.runs.folder_head import HEAD, head_of
-from compoundkin.studies.runs.parquet_parts import parquet
 from compoundkin.studies.runs.recovered_plan import plan_from
 from compoundkin.studies.runs.rows_in_folder import RowsInFolder
 from compoundkin.studies.runs.study_data import digest
@@ -20,7 +20,7 @@ def opened(path: str | os.PathLike[str]) -> tuple[StudyPlan, RowsInFolder]:
 
     Raises InvalidInput where it is no folder of a study, or where the study has functions of a program.
     """
-    parquet()
+    parquet("folder")
     place = Path(os.path.abspath(path))
     head = head_of(place)
     try:

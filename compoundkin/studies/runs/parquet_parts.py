@@ -13,21 +13,13 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
+from compoundkin.files.parquet_library import parquet
 from compoundkin.studies.runs.study_program import StudyColumn
 
 # What every part says of the study that it belongs to.
 STUDY = b"study"
 # So many rows are read at once where one is asked for.
 ROWS_TOGETHER = 8192
-
-
-def parquet() -> Any:
-    """Return the library; raises InvalidInput where it is not installed."""
-    try:
-        return import_module("pyarrow.parquet")
-    except ImportError:
-        told = "a folder of parts needs pyarrow"
-        raise InvalidInput(Problem("folder", told, "pip install 'compoundkin[parquet]'")) from None
 
 
 def part_content(columns: Iterable[StudyColumn], found: Mapping[str, Any], fingerprint: str) -> bytes:

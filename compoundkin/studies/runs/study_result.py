@@ -6,7 +6,6 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest
 from compoundkin.base.series import Number
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity
-from compoundkin.kinematics.table import ANGLES, ASSEMBLED, Table
+from compoundkin.kinematics.table import ASSEMBLED, Table, data_frame
 from compoundkin.model.component_names import AXES
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.runs.opened_folder import opened
@@ -172,17 +171,10 @@ class StudyResult(Shows, PrintsShort):
         A course is an array in each row. Its `attrs` hold the title, the units and how angles are counted.
         Raises InvalidInput where pandas is not installed.
         """
-        try:
-            pandas = import_module("pandas")
-        except ImportError:
-            raise InvalidInput(Problem("", "this needs pandas", "pip install 'compoundkin[pandas]'")) from None
         columns = {name: self.rows.column(name) for name in self.names}
-        frame = pandas.DataFrame(
-            {name: values if values.ndim == 1 else list(values) for name, values in columns.items()}
-        )
         units = {name: column.unit for name, column in self._named.items() if column.unit}
-        frame.attrs = {"title": self.study.mechanism.title, "angles": ANGLES, "units": units}
-        return frame
+        listed = {name: values if values.ndim == 1 else list(values) for name, values in columns.items()}
+        return data_frame(self.study.mechanism.title, listed, units)
 
     def plot(self, *names: str, **options: Any) -> Any:
         """Plot columns against each other."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from compoundkin.base.arrays import whole_turns
 from compoundkin.base.display import counted
 from compoundkin.base.errors import FewDigits, NotAssembled, Problem, UnassembledPoses, warn
 from compoundkin.base.series import Number
@@ -63,7 +64,7 @@ def _near(name: str, values: Number, nominal: Number, unit: str) -> Number:
         what = f"it has no value in {np.count_nonzero(~has)} of {len(has)} random designs"
         raise NotAssembled(Problem(f"outputs.{name}", what, "give closer tolerances, or leave it out"))
     values = values if has.all() else values[has]
-    return values - 2.0 * np.pi * np.round((values - nominal) / (2.0 * np.pi)) if unit == RADIANS else values
+    return values - whole_turns(values - nominal) if unit == RADIANS else values
 
 
 def _tell_slopes(one: OutputTolerance) -> None:

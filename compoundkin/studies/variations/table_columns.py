@@ -6,6 +6,7 @@ import csv
 import os
 import re
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from types import MappingProxyType
 
 import numpy as np
@@ -14,6 +15,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.given_numbers import real_numbers
 from compoundkin.base.series import Number
 from compoundkin.base.suffixes import form_of
+from compoundkin.files.parquet_library import parquet
 from compoundkin.model.attributes import DEGREES
 
 # What heads of CSV files say, as `save` writes them: a name, and perhaps its unit.
@@ -66,14 +68,10 @@ def _told(error: str) -> str:
 
 
 def _parquet_columns(path: str | os.PathLike[str]) -> list[tuple[str, str, Number]]:
+    read_table, broken = parquet(str(path)).read_table, import_module("pyarrow").ArrowInvalid
     try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise InvalidInput(Problem(str(path), "this needs pyarrow", "pip install 'compoundkin[parquet]'")) from None
-    try:
-        whole = pyarrow.parquet.read_table(path)
-    except pyarrow.ArrowInvalid:
+        whole = read_table(path)
+    except broken:
         raise InvalidInput(Problem(str(path), "it is no Parquet file")) from None
     found = []
     for field in whole.schema:

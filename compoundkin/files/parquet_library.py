@@ -1,0 +1,16 @@
+"""The library of Parquet files, which comes with an extra of the package and is imported when it is needed."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from compoundkin.base.errors import InvalidInput, Problem
+
+
+def parquet(where: str = "") -> Any:
+    """Return `pyarrow.parquet`. Raises InvalidInput, which names a place, where it is not installed."""
+    try:
+        return import_module("pyarrow.parquet")
+    except ImportError:
+        raise InvalidInput(Problem(where, "this needs pyarrow", "pip install 'compoundkin[parquet]'")) from None
