@@ -32,9 +32,13 @@ def evolved(problem: DesignProblem, parts: Number, scales: Number, seed: int, te
 
     first = np.resize(parts, (max(len(parts), FEWEST), parts.shape[1]))
     first = np.clip(first, 0.0, 1.0)
+    # older versions of scipy know no `rng` and no `intermediate_result`, and tell the best design alone
+    source = np.random.default_rng(seed)
     found = differential_evolution(
-        value, [(0.0, 1.0)] * parts.shape[1], init=first, rng=seed, maxiter=GENERATIONS, vectorized=True,
-        updating="deferred", polish=False, callback=lambda intermediate_result: tell(),
+        value, [(0.0, 1.0)] * parts.shape[1], init=first, seed=source, maxiter=GENERATIONS, vectorized=True,
+        updating="deferred", polish=False, callback=lambda _, convergence: tell(),
     )  # fmt: skip
+    if "population" not in found:
+        return np.asarray(found.x[None, :])
     order = np.argsort(found.population_energies, kind="stable")
     return np.concatenate([found.x[None, :], found.population[order]])
