@@ -179,3 +179,13 @@ def test_what_does_not_fit_is_told_before_anything_is_searched(changed: dict[str
 def test_no_design_that_is_assembled_is_told_with_the_group_that_fails() -> None:
     with pytest.raises(ck.errors.NotAssembled, match=r"none of 65537 designs .* fails at RRR\(coupler\) in 65537"):
         ck.optimise(LINKAGE, {"coupler.C.x": (0.1, 0.2)}, "rocker.angle.stroke", values=TURN[:3])
+
+
+def test_guides_whose_ends_are_too_near_are_told_by_name() -> None:
+    """The piston goes from 2 to 4, and the guide from 2.4 to 3 at most."""
+    press = ck.Mechanism(
+        "Press", ck.link("frame", O=0), ck.link("crank", O=0, A=1), ck.link("rod", A=0, B=3), ck.link("piston", B=0),
+        ck.slide("piston", on="frame", at="B", through="O", angle=0, name="guide", reach=(2.4, 3.0)), ck.drive("crank"),
+    )  # fmt: skip
+    with pytest.raises(ck.errors.NotAssembled, match=r"none of 65537 designs .* fails at guide in 65537"):
+        ck.optimise(press, {"crank.A.x": (0.9, 1.1)}, "B.x.stroke", values=[0.0, np.pi])

@@ -10,8 +10,8 @@ import numpy as np
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.errors import NotAssembled, Problem
 from compoundkin.base.series import Number
-from compoundkin.kinematics.configuration import label
 from compoundkin.studies.optimisation.design_problem import DesignProblem, SearchedDesigns
+from compoundkin.studies.responses.failed_parts import failed_name
 from compoundkin.studies.samples.sobol import SobolSample
 
 # So many designs are looked at for each start, at least and at most so many in all.
@@ -94,14 +94,14 @@ def _promising(parts: Number, values: Number, held: Number) -> Number:
 
 
 def _failed(designs: SearchedDesigns) -> Counter[str]:
-    """Count designs by the group that first cannot be assembled."""
+    """Count designs by the group that first cannot be assembled, or the guide that is beyond an end."""
     counted: Counter[str] = Counter()
     path = designs.problem.path
     failed = designs.designs(path).found.failed
     if failed is not None:
         first = np.where(failed > 0, failed, np.iinfo(failed.dtype).max).min(axis=-1)
         for index, count in zip(*np.unique(first[(failed > 0).any(axis=-1)], return_counts=True), strict=True):
-            counted[label(path.reference.structure, int(index) - 1)] += int(count)
+            counted[failed_name(path.reference, int(index))] += int(count)
     return counted
 
 

@@ -13,6 +13,7 @@ from compoundkin.kinematics.table import ASSEMBLED
 from compoundkin.model.attributes import DEGREES, after_number
 from compoundkin.studies.responses.assembled_range import AssembledRange, assembled_range
 from compoundkin.studies.responses.designs import Designs
+from compoundkin.studies.responses.failed_parts import failed_name, is_at_end
 
 STATES = (ASSEMBLED, "branch", "circuit", "order_defect", "reason")
 _, BRANCH, CIRCUIT, ORDER_DEFECT, REASON = STATES
@@ -92,12 +93,11 @@ def _reasons(designs: Designs, found: AssembledRange) -> Number:
 
 def _texts(designs: Designs, codes: Number) -> Iterator[str]:
     """Yield what is said of a group that fails from a pose to another; after one pose where that is -1."""
-    structure, ends = designs.path.reference.structure, designs.path.reference.solving_order.guide_ends
+    motion = designs.path.reference
     driver, values, unit = _shown(designs)
     for group, begin, end in codes.tolist():
-        own = group - len(structure.groups) - 1
-        told = f"{ends.pairs[own].name} is beyond an end" if own >= 0 else (
-            f"{label(structure, group - 1)} cannot be assembled")  # fmt: skip
+        why = "is beyond an end" if is_at_end(motion, group) else "cannot be assembled"
+        told = f"{failed_name(motion, group)} {why}"
         if end < 0:
             yield f"{told} between {driver} {values[begin]} and {values[begin + 1]}{unit}"
         else:
