@@ -7,12 +7,15 @@ from compoundkin.kinematics.motion import Motion
 
 
 def is_at_end(motion: Motion, number: int) -> bool:
-    """Tell whether it is a guide that is beyond an end, and no group: those are numbered behind all groups."""
+    """Tell whether it is a guide that is beyond an end.
+
+    Those are numbered behind all groups.
+    """
     return number > len(motion.structure.groups)
 
 
 def failed_name(motion: Motion, number: int) -> str:
-    """Return the name of the group that does not close, or of the guide that is beyond an end."""
+    """Return the name of the group that does not close, or of the guide."""
     if is_at_end(motion, number):
         ends = motion.solving_order.guide_ends
         return str(ends.pairs[number - len(motion.structure.groups) - 1].name)
