@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -48,3 +50,13 @@ def test_a_path_of_few_places_ends_at_a_motion_that_can_be_made() -> None:
     assert found.check.passed
     assert ck.quantity(fine, "coupler.transmission_index").values.min() > 0.05 - 1e-6
     assert found.constraints[0].binds
+
+
+def test_a_design_that_is_lost_between_places_is_told() -> None:
+    with pytest.warns(ck.errors.UnassembledPoses, match="all along the motion.*assembles"):
+        found = ck.optimise(LINKAGE, FREE, ck.goals.path("P", PLACES), values=FEW, starts=2)
+    with warnings.catch_warnings(action="ignore"):
+        fine = ck.solve(found.mechanism, ck.deg(np.arange(-80, 65.1, 1.0)))
+    assert not fine.assembled.all()
+    assert not found.is_whole
+    assert "It cannot be assembled all along the motion" in ck.report(found).text()

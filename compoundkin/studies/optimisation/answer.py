@@ -16,6 +16,7 @@ from compoundkin.studies.optimisation.design_search import DesignSearch
 from compoundkin.studies.optimisation.local_minima import EndedSearch
 from compoundkin.studies.optimisation.optimum import ChangedDimension, HeldConstraint, LocalMinimum, Optimum
 from compoundkin.studies.optimisation.single_design import HELD
+from compoundkin.studies.responses.assembled_range import assembled_range
 
 # What ends so near to a bound, or to the end of a margin, as a part of its range or size, is bound by it.
 AT_END = 1e-4
@@ -44,6 +45,7 @@ def answer(search: DesignSearch, ends: list[EndedSearch], moved: Mapping[str, An
         seconds=perf_counter() - began,
         method=search.word,
         before=problem.path.reference,
+        is_whole=bool(assembled_range(best.designs(problem.path)).assembled[0]),
     )
 
 

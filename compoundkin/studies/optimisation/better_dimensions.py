@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem, UnmetConstraints, warn
+from compoundkin.base.errors import InvalidInput, Problem, UnassembledPoses, UnmetConstraints, warn
 from compoundkin.base.silence import silence
 from compoundkin.kinematics.configuration import Configuration
 from compoundkin.model.mechanism import Mechanism
@@ -49,7 +49,8 @@ def optimise(
     answer is the same for a `seed`. `progress(done, total)` is told of every step.
 
     Raises UnknownName for dimensions and figures that there are not, InvalidInput for what does not fit the mechanism,
-    NotAssembled where no design within the ranges is assembled; warns UnmetConstraints where they hold nowhere.
+    NotAssembled where no design within the ranges is assembled; warns UnmetConstraints where they hold nowhere,
+    UnassembledPoses where the best design goes through all that is asked, and is lost in between.
 
     >>> from compoundkin.files import shipped_mechanisms
     >>> from compoundkin.studies.goals.least_goal import least
@@ -66,10 +67,19 @@ def optimise(
         problem = stated_problem(mechanism, free, goals, constraints, **moved)
         search = DesignSearch(problem, starts, seed, method, progress)
         found = answer(search, search.ends(), moved, began)
+    _warn(found)
+    return found
+
+
+def _warn(found: Optimum) -> None:
+    """Warn of an answer that is not what was asked, or cannot be made."""
     if not found.is_held:
         broken = [one.told for one in found.constraints if not one.is_held]
         warn(f"no design was found at which all constraints hold: not {', '.join(broken)}", UnmetConstraints)
-    return found
+    # goals with driver values of their own may need a part of the motion only
+    if not found.is_whole and not all(one.has_own_poses for one in found.goals):
+        remedy = "subject_to=compoundkin.goals.assembles() leads to one that can"
+        warn(f"the design that was found cannot be assembled all along the motion; {remedy}", UnassembledPoses)
 
 
 def _hold(starts: int, seed: int) -> None:

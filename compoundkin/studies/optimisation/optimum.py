@@ -101,7 +101,8 @@ class Optimum(Shows, PrintsShort):
     say what it is; `changes` tell what became of the free numbers, `constraints` how they hold, `unknowns` what goals
     found beside the dimensions. Of `screened` designs `assembled` were; searches began at the best of them: `begun` are
     the objectives there, `ended` those where they ended. `minima` are all those designs, the best first. `evaluations`
-    designs were looked at in all, in so many `seconds`, by a `method` of SciPy.
+    designs were looked at in all, in so many `seconds`, by a `method` of SciPy. `is_whole` tells whether the best
+    design is assembled over the whole motion, between its poses too.
     """
 
     value: float
@@ -119,6 +120,7 @@ class Optimum(Shows, PrintsShort):
     seconds: float
     method: str
     before: Motion
+    is_whole: bool
 
     @property
     def mechanism(self) -> Mechanism:

@@ -48,6 +48,9 @@ def _about(found: Optimum) -> Iterator[Block]:
     if not found.is_held:
         broken = listed(one.told for one in found.constraints if not one.is_held)
         yield Alert(f"Not all constraints hold: {broken}", "widen the ranges of dimensions, or ask for less")
+    if not found.is_whole:
+        what = "It cannot be assembled all along the motion, between its poses too"
+        yield Alert(what, "subject_to=compoundkin.goals.assembles() leads to one that can")
     yield Paragraph(f"What keeps it from being better: {listed(found.binding)}." if found.binding
                     else "Nothing binds: no dimension is at a bound, no constraint at its limit.")  # fmt: skip
 
