@@ -123,7 +123,7 @@ def test_wrong_questions_to_a_result_are_told(figures: ck.results.StudyResult) -
 
 def test_what_differs_between_two_studies_is_told() -> None:
     one, other = six_bar(4), six_bar(8, 4.0)
-    assert sorted(differences(one.data, other.data)) == ["sample.count", "speed"]
+    assert sorted(differences(one.data, other.data)) == ["sample.count", "speed.crank"]
     assert (
         digest(one.data) == digest(six_bar(4).data) == pickle.loads(pickle.dumps(one)).fingerprint != other.fingerprint
     )

@@ -13,6 +13,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, LikelySlip
+from compoundkin.studies import load_study
 
 CRANK = {"crank.B.x": (1.8, 2.2)}
 PART = "rows-000000000-000004096.parquet"
@@ -158,3 +159,20 @@ def test_errors_given_as_values_are_likely_slips() -> None:
     options: Any = {"values": [0.0, 0.1], "count": 100, "percentiles": (50,)}
     with pytest.warns(LikelySlip, match=r"tolerances\.crank\.B\.x: the mechanism's own value is not among these"):
         ck.tolerance(mechanism, {"crank.B.x": ck.around(0.0, 0.01)}, "rocker.angle", **options)
+
+
+def test_a_saved_study_goes_on_with_the_folder_of_the_first(tmp_path: Path) -> None:
+    study = rocker(8, values=ck.deg(np.arange(0, 90, 7.3)), speed=5)
+    found = study.run(tmp_path / "rows")["rocker.angle"]
+    ck.save(study, tmp_path / "study.toml")
+    same = load_study(tmp_path / "study.toml")
+    assert same.data == study.data
+    np.testing.assert_array_equal(same.run(tmp_path / "rows")["rocker.angle"], found)
+
+
+def test_a_length_that_comes_to_zero_has_no_slope_there() -> None:
+    shaper = ck.catalog.load_named("crank-shaper")
+    least = "E.velocity.length.least"
+    found = ck.tolerance(shaper, {"crank.A.x": 0.05}, least, count=100, percentiles=(50,))[least]
+    assert (found.slopes["crank.A.x"], found.worst, found.deviation) == (0.0, 0.0, 0.0)
+    assert found.sample.deviation < 1e-6

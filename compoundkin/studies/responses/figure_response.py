@@ -14,6 +14,8 @@ from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.course_extremes import CourseExtreme, CourseSearch
 from compoundkin.studies.responses.designs import Designs
 
+# A length that is found by its square is known to this part of the greatest: the square root of rounding.
+ZERO = 1e-8
 # By how much each figure counts the greatest and the least value.
 PARTS_OF = {LEAST: ((-1.0, 1.0),), GREATEST: ((1.0, 1.0),), STROKE: ((1.0, 1.0), (-1.0, -1.0))}
 
@@ -47,6 +49,11 @@ class FigureResponse(Response):
         found = np.full((len(designs.path.coordinates), *places.shape), np.nan)
         if known.any():
             found[:, known] = designs.slopes_at(self.of, rows[known], places[known])
+        if self.squared:
+            # a length that comes to zero, as a speed at a dead centre, comes to zero still when dimensions change
+            most = np.abs(np.broadcast_to(designs.found[self.of], (designs.number, designs.poses))).max(axis=1)
+            values = np.stack([self.extreme(designs, sign).value for sign, _ in PARTS_OF[self.figure]], axis=1)
+            found[:, np.abs(values) <= ZERO * most[:, None]] = 0.0
         return found @ np.array([weight for _, weight in PARTS_OF[self.figure]])
 
     def extreme(self, designs: Designs, sign: float) -> CourseExtreme:

@@ -41,6 +41,17 @@ def plain(value: Any) -> Any:
     return _told(value)
 
 
+def plain_numbers(value: Any) -> Any:
+    """Return numbers, or tables of them by name, as plain floats.
+
+    >>> plain_numbers({"crank": range(2)}), plain_numbers(5)
+    ({'crank': [0.0, 1.0]}, 5.0)
+    """
+    if isinstance(value, Mapping):
+        return {str(key): plain_numbers(one) for key, one in value.items()}
+    return None if value is None else np.asarray(value, dtype=float).tolist()
+
+
 def _told(value: Any) -> Any:
     """Say of what cannot be written how it is called, and by what it differs from others."""
     if isinstance(value, Configuration):

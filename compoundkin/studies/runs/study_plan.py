@@ -21,7 +21,7 @@ from compoundkin.model.attributes import RATES, TIME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.responses import studied_path
 from compoundkin.studies.responses.freed_dimensions import freed_by
-from compoundkin.studies.runs.study_data import ORDER, digest, plain, plain_mechanism
+from compoundkin.studies.runs.study_data import ORDER, digest, plain, plain_mechanism, plain_numbers
 from compoundkin.studies.runs.study_program import ROW, StudyColumn, StudyProgram
 from compoundkin.studies.samples.contract import DesignSample
 from compoundkin.studies.variations import hold_kinds
@@ -79,8 +79,18 @@ class StudyPlan:
             "dimensions": {name: plain(one.data) for name, one in self.dimensions.items()},
             "sample": plain(self.sample.data),
         }
-        rest = {name: getattr(self, name) for name in ("outputs", *ASKED)}
-        return found | {name: plain(value) for name, value in rest.items() if value is not None}
+        moved = {name: self._by_driver(name) for name in ("values", *RATES, TIME)}
+        rest = moved | {name: plain(getattr(self, name)) for name in ("outputs", "modes", "given")}
+        return found | {name: value for name, value in rest.items() if value is not None}
+
+    def _by_driver(self, name: str) -> Any:
+        """Return what drives are given by the name of each, so that what is meant alike is the same."""
+        given = getattr(self, name)
+        if given is None or isinstance(given, str):
+            return given
+        drives = self.mechanism.drives
+        by_name = isinstance(given, Mapping) or name == TIME or len(drives) != 1
+        return plain_numbers(given if by_name else {drives[0].name: given})
 
     @cached_property
     def fingerprint(self) -> str:
