@@ -94,9 +94,8 @@ def _held(problem: DesignProblem, best: SearchedDesigns, scales: Number) -> tupl
         margins = one.term.margins(best.trial(one))[0]
         parts = margins / scales[place : place + len(margins)]
         place += len(margins)
-        least = int(np.argmin(parts))
-        is_held, binds = bool(parts[least] >= -HELD), bool(abs(parts[least]) < AT_END)
-        found.append(HeldConstraint(one.term.told, float(margins[least]), _unit(problem, one.term), is_held, binds))
+        is_held, binds = bool(parts.min() >= -HELD), bool(abs(parts.min()) < AT_END)
+        found.append(HeldConstraint(one.term.told, float(margins.min()), _unit(problem, one.term), is_held, binds))
     return tuple(found)
 
 

@@ -106,7 +106,11 @@ def _failed(designs: SearchedDesigns) -> Counter[str]:
 
 
 def _none(screened: int, failures: Counter[str]) -> NotAssembled:
-    told = ", ".join(f"{name} in {count}" for name, count in failures.most_common(3))
-    what = f"none of {screened} designs within the ranges can be assembled at all poses"
+    which = f"none of {screened} designs within the ranges"
     remedy = "give ranges around dimensions that can be assembled, or drive over a smaller range"
-    return NotAssembled(Problem("free", f"{what}{f': it fails at {told}' if told else ''}", remedy))
+    if not failures:
+        # at all poses each of them is: it is lost in between, or a number is beyond all bounds
+        what = f"{which} is assembled between all poses too, with a finite number for all that is asked"
+        return NotAssembled(Problem("free", what, remedy))
+    told = ", ".join(f"{name} in {count}" for name, count in failures.most_common(3))
+    return NotAssembled(Problem("free", f"{which} can be assembled at all poses: it fails at {told}", remedy))
