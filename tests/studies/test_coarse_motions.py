@@ -60,3 +60,14 @@ def test_a_design_that_is_lost_between_places_is_told() -> None:
     assert not fine.assembled.all()
     assert not found.is_whole
     assert "It cannot be assembled all along the motion" in ck.report(found).text()
+
+
+@pytest.mark.parametrize("step", [120.0, 90.0, 40.0])
+def test_figures_do_not_depend_on_the_step(step: float) -> None:
+    name = "coupler.transmission_angle.least"
+    asked = {"count": 8, "sample": "grid", "values": ck.deg(np.arange(0.0, 360.1, step))}
+    found = ck.study(LINKAGE, {"rocker.C.x": (3.6, 4.6)}, [name, "P.x.stroke"], **asked).run(threads=1)
+    for row in (0, 3, 7):
+        fine = ck.solve(found.mechanism(row), ck.deg(np.arange(0.0, 360.1, 1.0)))
+        for figure in (name, "P.x.stroke"):
+            assert abs(found[figure][row] - float(np.ravel(ck.quantity(fine, figure).values)[0])) < 1e-8

@@ -9,11 +9,9 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
+from compoundkin.studies.responses.close_places import close_places
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.designs import Designs
-
-# Constraints look at a motion in so many steps at least: ten degrees of a turn.
-CLOSE = 36
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -79,14 +77,13 @@ class DesignTrial(PrintsShort):
 
         What a motion does between two of its poses that are far apart is seen from neither.
         """
-        steps = self.designs.poses - 1
-        parts = -(-CLOSE // steps) if steps else 1
-        if parts == 1:
+        places = close_places(self.designs.poses)
+        if len(places) == self.designs.poses:
             return self
         key = (b"closely",)
         if key not in self._elsewhere:
-            places = np.broadcast_to(np.linspace(0.0, steps, parts * steps + 1), (self.number, parts * steps + 1))
-            self._elsewhere[key] = replace(self, designs=self.designs.between(np.arange(self.number), places))
+            every = np.broadcast_to(places, (self.number, len(places)))
+            self._elsewhere[key] = replace(self, designs=self.designs.between(np.arange(self.number), every))
         return self._elsewhere[key]
 
     def apart(self, driver: str, values: Number) -> PosesApart:

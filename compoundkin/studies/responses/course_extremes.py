@@ -13,6 +13,7 @@ from compoundkin.kinematics.extremes.extreme_search import MOST_ADDED, POLE
 from compoundkin.kinematics.extremes.measures import ROUNDING
 from compoundkin.kinematics.extremes.windows import AT_FINE, FINE, FIT, INNER, SAMPLES, TRUSTED, vertices
 from compoundkin.studies.responses.assembled_range import assembled_range
+from compoundkin.studies.responses.close_places import close_parts, close_places
 from compoundkin.studies.responses.designs import Designs
 
 # A window is narrowed so often at most: at a kink to 1e-10 of it.
@@ -52,21 +53,26 @@ class CourseSearch(PrintsShort):
     def found(self) -> CourseExtreme:
         """Return the greatest values, times the sign."""
         with np.errstate(all="ignore"):
-            course = self.sign * np.broadcast_to(self.designs.found[self.name], self._shape)
+            parts, course = self._course()
             best = course.argmax(axis=1)
-            offers = CourseOffers(course[np.arange(len(course)), best], best.astype(float))
-            self._search(course, offers)
+            offers = CourseOffers(course[np.arange(len(course)), best], best / parts)
+            self._search(course, parts, offers)
         value = np.where(assembled_range(self.designs).assembled, self.sign * offers.value, np.nan)
         return CourseExtreme(value, np.where(np.isnan(value), np.nan, offers.place))
 
-    @property
-    def _shape(self) -> tuple[int, int]:
-        return self.designs.number, self.designs.poses
+    def _course(self) -> tuple[int, Number]:
+        """Return the course, and in how many parts the steps between poses are cut for it."""
+        number, poses = self.designs.number, self.designs.poses
+        parts = close_parts(poses)
+        if parts == 1:
+            return 1, self.sign * np.broadcast_to(self.designs.found[self.name], (number, poses))
+        places = np.broadcast_to(close_places(poses), (number, parts * (poses - 1) + 1))
+        return parts, self.sign * self.designs.values_at(self.name, np.arange(number), places, self.is_angle)
 
-    def _search(self, course: Number, offers: CourseOffers) -> None:
+    def _search(self, course: Number, parts: int, offers: CourseOffers) -> None:
         """Offer the vertices of peaks: of polynomials through samples, in windows that narrow until they are right."""
         rows, k = np.nonzero(_peaks(course))
-        low, high = np.maximum(k - 1.0, 0.0), np.minimum(k + 1.0, course.shape[1] - 1.0)
+        low, high = np.maximum(k - 1.0, 0.0) / parts, np.minimum(k + 1.0, course.shape[1] - 1.0) / parts
         span, large = self._sizes(course)
         for _ in range(NARROWINGS):
             if not len(rows):
