@@ -107,6 +107,12 @@ def test_what_cannot_be_meant_is_told_before_anything_runs(options: dict[str, An
         ck.study(ck.catalog.load_named("six-bar"), **given)
 
 
+def test_a_result_tells_which_columns_it_has(figures: ck.results.StudyResult) -> None:
+    assert tuple(figures) == figures.names
+    assert "row" in figures
+    assert "crank.Z" not in figures
+
+
 def test_wrong_questions_to_a_result_are_told(figures: ck.results.StudyResult) -> None:
     for call, told in {
         (lambda: figures["bar.angle.strok"]): "did you mean 'bar.angle.stroke'",

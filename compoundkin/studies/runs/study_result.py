@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -102,6 +102,12 @@ class StudyResult(Shows, PrintsShort):
             return self.rows.column(name + _X) + 1j * self.rows.column(name + _Y)
         known = [*self.names, *self._vectors]
         raise UnknownName(Problem(name, "the study has no such column", nearest(name, known)))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._named or name in self._vectors
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
 
     @property
     def assembled(self) -> Number:
