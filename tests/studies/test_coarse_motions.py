@@ -71,3 +71,13 @@ def test_figures_do_not_depend_on_the_step(step: float) -> None:
         fine = ck.solve(found.mechanism(row), ck.deg(np.arange(0.0, 360.1, 1.0)))
         for figure in (name, "P.x.stroke"):
             assert abs(found[figure][row] - float(np.ravel(ck.quantity(fine, figure).values)[0])) < 1e-8
+
+
+def test_an_answer_at_a_limit_position_that_fails_its_verification_is_told() -> None:
+    shaper = ck.catalog.load_named("crank-shaper")
+    with pytest.warns(ck.errors.UnassembledPoses, match="does not pass its verification.*assembles"):
+        ck.optimise(shaper, {"slot.angle": (-3.5, 3.5)}, "ram.value.stroke", starts=2)
+    clear = ck.optimise(shaper, {"slot.angle": (-3.5, 3.5)}, "ram.value.stroke", ck.goals.assembles(), starts=2)
+    assert clear.check.passed
+    fine = ck.solve(clear.mechanism, np.linspace(0, 2 * np.pi, 361))
+    assert clear.value == pytest.approx(ck.quantity(fine, "ram.value.stroke").values.ravel()[0], rel=1e-6)

@@ -80,6 +80,11 @@ def _warn(found: Optimum) -> None:
     if not found.is_whole and not all(one.has_own_poses for one in found.goals):
         remedy = "subject_to=compoundkin.goals.assembles() leads to one that can"
         warn(f"the design that was found cannot be assembled all along the motion; {remedy}", UnassembledPoses)
+    if found.is_whole and not found.check.passed:
+        # so near to a limit position the motion goes on in another branch, or not, by how its poses lie
+        failed = ", ".join(found.check.failed)
+        remedy = "subject_to=compoundkin.goals.assembles() keeps clear of limit positions"
+        warn(f"the design that was found does not pass its verification ({failed}); {remedy}", UnassembledPoses)
 
 
 def _hold(starts: int, seed: int) -> None:
