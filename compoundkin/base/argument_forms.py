@@ -62,6 +62,11 @@ def is_whole(value: object) -> bool:
     return isinstance(value, Integral) and not isinstance(value, _NO_NUMBERS) and abs(int(value)) < GREATEST
 
 
+def is_beyond(value: object) -> bool:
+    """Tell whether a value is a whole number, and too large for one."""
+    return isinstance(value, Integral) and not isinstance(value, _NO_NUMBERS) and abs(int(value)) >= GREATEST
+
+
 def is_real(value: object) -> bool:
     """Tell whether a value is one real number, no date, text, True or False."""
     if isinstance(value, np.ndarray):

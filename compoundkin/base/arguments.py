@@ -5,10 +5,9 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from functools import wraps
-from numbers import Integral
 from typing import Any, ParamSpec, TypeVar
 
-from compoundkin.base.argument_forms import GREATEST, Annotation, Form, is_called
+from compoundkin.base.argument_forms import Annotation, Form, is_beyond, is_called
 from compoundkin.base.display import short
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.base.texts import unseen
@@ -86,7 +85,7 @@ def refused(where: str, value: object, form: Form) -> InvalidInput:
         return InvalidInput(Problem(where, unseen(value), "leave it out"))
     if isinstance(value, list | tuple) and form.fits(""):
         remedy = "write one text for each, without a list"
-    if isinstance(value, Integral) and abs(int(value)) >= GREATEST and form.fits(1):
+    if is_beyond(value) and form.fits(1):
         return InvalidInput(Problem(where, f"{short(value)} is too large", remedy))
     return InvalidInput(Problem(where, f"{short(value)} is no {form.called}", remedy))
 
