@@ -11,7 +11,7 @@ CLOSE = 36
 
 
 def close_parts(poses: int) -> int:
-    """Return in how many parts the steps between so many poses are cut to be looked at closely.
+    """Return in how many parts steps between poses are cut, to look closely.
 
     >>> close_parts(4), close_parts(361), close_parts(1)
     (12, 1, 1)

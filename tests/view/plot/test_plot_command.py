@@ -107,7 +107,7 @@ def test_the_examples_of_the_page_run(tmp_path: Path, monkeypatch: pytest.Monkey
     code = "\n".join(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL))
     exec(compile(code, "plots.md", "exec"), {})
     named = re.findall(r'save\(\s*"(.*?)"\s*\)', code)
-    assert len(named) == 14
+    assert len(named) == 15
     for name in named:
         assert Path(name).read_bytes().startswith(BEGINS[Path(name).suffix])
 
