@@ -11,6 +11,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 def parquet(where: str = "") -> Any:
     """Return `pyarrow.parquet`. Raises InvalidInput, which names a place, where it is not installed."""
     try:
+        import_module("pyarrow")
         return import_module("pyarrow.parquet")
     except ImportError:
         raise InvalidInput(Problem(where, "this needs pyarrow", "pip install 'compoundkin[parquet]'")) from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from time import time
@@ -79,5 +80,7 @@ class StudyFolder:
     def sweep(self, is_complete: bool) -> None:
         """Remove what killed writers left; where rows are missing, only what is old."""
         for path in self.path.glob(_LEFT):
-            if is_complete or time() - path.stat().st_mtime > _YOUNG:
-                path.unlink(missing_ok=True)
+            # another run may finish its file meanwhile
+            with suppress(FileNotFoundError):
+                if is_complete or time() - path.stat().st_mtime > _YOUNG:
+                    path.unlink()
