@@ -15,6 +15,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import POSITION
 from compoundkin.studies.goals.contract import Goal
 from compoundkin.studies.goals.design_trial import DesignTrial, real_parts
+from compoundkin.studies.variations.given_values import planar
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +77,7 @@ def places_of(where: str, given: object) -> Number:
         raise InvalidInput(Problem(where, f"{given} is one point, and no list of them", f"[{given}, ...]"))
     try:
         found = np.asarray(given)
-        found = found[:, 0] + 1j * found[:, 1] if found.ndim == 2 and found.shape[1] == 2 else found + 0j
+        found = planar(found) if found.ndim == 2 and found.shape[1] == 2 else found + 0j
     except (TypeError, ValueError, OverflowError):
         found = np.empty((0, 0))
     if found.ndim != 1 or not found.size or not np.isfinite(found).all():

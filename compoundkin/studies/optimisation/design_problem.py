@@ -5,43 +5,42 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Generic, TypeAlias, TypeVar
 
 import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
-from compoundkin.studies.goals.contract import DesignConstraint, Goal
+from compoundkin.studies.goals.contract import DesignConstraint, Goal, Term
 from compoundkin.studies.goals.design_trial import DesignTrial
 from compoundkin.studies.optimisation.search_space import SearchSpace
 from compoundkin.studies.responses.contract import Response
 from compoundkin.studies.responses.designs import Designs, StudiedPath
 
+AnyTerm = TypeVar("AnyTerm", bound=Term)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AskedGoal(PrintsShort):
-    """A goal with its weight and the path that it asks.
+class AskedTerm(PrintsShort, Generic[AnyTerm]):
+    """A goal or a constraint with the path that it asks.
 
     `own` are the numbers of the space that are its unknowns.
     """
 
-    term: Goal
+    term: AnyTerm
     path: StudiedPath
     responses: Mapping[str, Response]
     own: range
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AskedGoal(AskedTerm[Goal]):
+    """A goal with its weight in the sum."""
+
     weight: float = 1.0
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class AskedConstraint(PrintsShort):
-    """A constraint with the path that it asks.
-
-    `own` are the numbers of the space that are its unknowns.
-    """
-
-    term: DesignConstraint
-    path: StudiedPath
-    responses: Mapping[str, Response]
-    own: range
+AskedConstraint: TypeAlias = AskedTerm[DesignConstraint]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
