@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from compoundkin.kinematics import Motion
 from compoundkin.view.page.html_document import POLICY, asset, palette
+from compoundkin.view.page.live.live_assets import scripts_of, styles_of
 from compoundkin.view.page.markup import data_script, element, lines, safe
 from compoundkin.view.page.moving_data import MotionData
 from compoundkin.view.page.viewer import player_html
@@ -35,7 +36,7 @@ def player(motion: Motion, design: int = 0) -> str:
 
 def _document(moving: MotionData) -> str:
     data = moving.data
-    styles = palette(), page_css(), asset("page.css"), asset("player.css"), STYLE
+    styles = palette(), page_css(), asset("page.css"), *map(asset, styles_of(data)), STYLE
     head = [
         '<meta charset="utf-8">',
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
@@ -47,7 +48,7 @@ def _document(moving: MotionData) -> str:
         scripted,
         player_html(moving, data),
         data_script("ck-motion", data),
-        f"<script>{asset('player.js')}</script>",
+        *(f"<script>{asset(name)}</script>" for name in scripts_of(data)),
     ]
     return f'<!DOCTYPE html>\n<html lang="en">\n<head>{lines(head)}</head>\n<body>{lines(body)}</body>\n</html>\n'
 

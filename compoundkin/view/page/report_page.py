@@ -20,6 +20,7 @@ from compoundkin.structure import Structure
 from compoundkin.view.page.html_blocks import ABOUT, Blocks
 from compoundkin.view.page.html_document import Document, asset, vendored
 from compoundkin.view.page.html_tables import names_of
+from compoundkin.view.page.live.live_assets import scripts_of, styles_of
 from compoundkin.view.page.markup import data_script, element, safe
 from compoundkin.view.page.study_pictures import study_pictures
 from compoundkin.view.page.viewer import Viewer, viewer_of
@@ -194,8 +195,9 @@ def _with_viewer(document: Document, moving: Viewer) -> Document:
     plots = (moving.section, *document.sections) if moving.plots else document.sections
     before = (("motion", "Motion"),) if moving.plots else ()
     data = (*document.data, data_script("ck-motion", moving.data))
-    scripts = asset("player.js"), vendored("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot"), asset("plots.js")
-    styles = asset("vendor/uPlot.min.css"), asset("player.css")
+    library = vendored("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot")
+    scripts = *map(asset, scripts_of(moving.data)), library, asset("plots.js")
+    styles = asset("vendor/uPlot.min.css"), *map(asset, styles_of(moving.data))
     changed = replace(document, viewer=moving.html, sections=plots, before=before)
     return replace(changed, data=data, scripts=scripts, styles=styles)
 

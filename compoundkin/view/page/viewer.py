@@ -79,6 +79,7 @@ def player_html(moving: MotionData, data: dict[str, Any]) -> str:
                 _transport(moving),
                 _switches(moving, data),
                 element("p", "", class_="said", role="status"),
+                element("p", "", class_="reason"),
                 element("table", _unseen_caption("Numbers at the pose shown") + "<tbody></tbody>", class_="reading"),
                 *_notes(moving),
             ]

@@ -1,4 +1,5 @@
 // The player: the sketch moves with its links, pose by pose as they were solved; nothing here computes a mechanism.
+// On a live page its `design` does, with other dimensions, and the player takes what was computed in place of that.
 (() => {
   "use strict";
   const page = (window.compoundkin = window.compoundkin || {});
@@ -47,6 +48,14 @@
     return Math.abs(sum) < ROUNDING * Math.max(...terms.map(Math.abs)) ? 0 : sum;
   };
 
+  const filled = (values, from) => (from ? values.set(from) : values.fill(NaN));
+
+  // as outputs are told: angles in degrees, zero what is rounding
+  const cleaned = (values, { unit, floor }) => {
+    const by = unit === "deg" ? DEGREE : 1;
+    for (let k = 0; k < values.length; k++) values[k] = Math.abs(values[k]) <= floor ? 0 : values[k] * by;
+  };
+
   class Player {
     constructor(root, data) {
       this.root = root;
@@ -77,6 +86,7 @@
       this.view = { left: 0, bottom: data.window.height };
       this.find();
       this.listen();
+      this.design = null; // of a live page: design.js
       this.show(data.start);
       new ResizeObserver(() => this.fit()).observe(this.svg);
     }
@@ -88,7 +98,7 @@
       this.placed = [];
       this.names = this.parts.map((part) => (part.classList.contains("name") ? this.box(part) : null));
       this.layers = Object.fromEntries(["traces", "rays", "velocities", "accelerations", "forces", "dots"].map((k) => [k, one(`svg .${k}`)]));
-      Object.assign(this, { slider: one(".slider"), play: one(".play"), where: one(".where"), said: one(".said") });
+      Object.assign(this, { slider: one(".slider"), play: one(".play"), where: one(".where"), said: one(".said"), reason: one(".reason") });
       this.reading = one(".reading tbody");
       this.rows = this.outputs.map((output) => {
         const row = this.reading.insertRow();
@@ -103,6 +113,50 @@
           cell.append(place, " ");
           return { place, values, name, unit: output.unit };
         });
+      });
+    }
+
+    // --- other dimensions: what was computed, or null for what the page came with ----------------------------------------
+    // the arrays stay the same ones, so that whoever holds them sees the new numbers
+    take(solved) {
+      this.given ??= this.copied();
+      const { assembled, links, outputs } = solved || this.given;
+      this.assembled.set(assembled);
+      this.links.forEach((link, k) => {
+        for (const key of ["x", "y", "angle"]) link[key].set(links[k][key]);
+        for (const key of ["v", "a"]) if (link[key]) link[key].forEach((values, part) => filled(values, links[k][key] && links[k][key][part]));
+      });
+      for (const output of this.outputs) {
+        for (const part in output.parts) {
+          filled(output.parts[part], outputs && outputs[output.name] && outputs[output.name][part]);
+          if (solved) cleaned(output.parts[part], output);
+        }
+      }
+      this.lettered();
+      this.showAgain();
+      if ([...this.shown].some((name) => name.startsWith("path "))) this.trace();
+    }
+    copied() {
+      const links = this.links.map(({ x, y, angle, v, a }) => ({
+        x: x.slice(), y: y.slice(), angle: angle.slice(), v: v && v.map((one) => one.slice()), a: a && a.map((one) => one.slice()),
+      }));
+      const parts = (output) => Object.fromEntries(Object.entries(output.parts).map(([name, values]) => [name, values.slice()]));
+      return { assembled: this.assembled.slice(), links, outputs: Object.fromEntries(this.outputs.map((one) => [one.name, parts(one)])) };
+    }
+    // points, and the pins and letters drawn there, are where the dimensions have them on their links
+    lettered() {
+      const { design } = this, at = (link, letter) => {
+        const base = `${this.links[link].name}.${letter}`;
+        return [design.value(`${base}.x`), design.value(`${base}.y`)];
+      };
+      for (const letter in this.points) {
+        const point = this.points[letter], [x, y] = at(point.link, letter);
+        if (x !== undefined && y !== undefined) Object.assign(point, { x, y });
+      }
+      this.parts.forEach((part, index) => {
+        const own = this.data.parts[index], { letter } = part.dataset;
+        const [x, y] = letter ? at(own[0], letter) : [];
+        if (x !== undefined && y !== undefined) [own[1], own[2]] = [x, y];
       });
     }
 
@@ -174,6 +228,11 @@
     show(k) {
       if (k === this.pose) return;
       this.pose = k;
+      this.showAgain();
+      document.dispatchEvent(new CustomEvent("compoundkin:pose", { detail: { pose: this.indices[k], player: this } }));
+    }
+    showAgain() {
+      const k = this.pose;
       const known = this.assembled[k] === 1;
       this.svg.classList.toggle("unassembled", !known);
       this.slider.value = k;
@@ -183,13 +242,14 @@
       // said once, not again at every pose of a gap
       const said = known ? "" : "The mechanism cannot be assembled here.";
       if (this.said.textContent !== said) this.said.textContent = said;
+      const why = known || !this.design ? "" : this.design.why(k);
+      if (this.reason && this.reason.textContent !== why) this.reason.textContent = why;
       if (known) this.move(k);
       this.overlay();
       for (const row of this.rows) {
         for (const { place, values, name, unit } of row) place.textContent = `${name ? `${name} ` : ""}${withUnit(values[k], unit)}`;
       }
       for (const heard of this.listeners) heard(k);
-      document.dispatchEvent(new CustomEvent("compoundkin:pose", { detail: { pose: this.indices[k], player: this } }));
     }
     step(by) {
       const last = this.poses - 1;

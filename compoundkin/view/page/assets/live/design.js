@@ -1,0 +1,160 @@
+// The design: the numbers of the dimensions, what is computed of them, and the way back. Who follows a change listens here.
+(() => {
+  "use strict";
+  const page = window.compoundkin;
+  const MOST_STEPS = 200; // of undo
+  const KEPT = 4e6; // numbers of computed motions that the history may hold; older ones are computed again
+
+  class Design {
+    // `player` shows what `path` computes
+    constructor(player, path) {
+      Object.assign(this, { player, path, names: path.names, own: path.own });
+      this.index = new Map(path.names.map((name, k) => [name, k]));
+      this.numbers = Float64Array.from(path.own);
+      this.carried = this.byLetter(player.data.live.dimensions);
+      this.listeners = { change: [], commit: [] };
+      this.wanted = null; // what the next picture shall show
+      this.at = 0; // the step of the history that it is, or was before what was changed since
+    }
+
+    // computed when it is first asked for: most who read a page change nothing
+    get original() {
+      return (this.computed ??= this.path.solved(this.own, null));
+    }
+    get solved() {
+      return this.current || this.original;
+    }
+    get history() {
+      return (this.steps ??= [{ numbers: Float64Array.from(this.own), solved: this.original, words: "" }]);
+    }
+    get isChanged() {
+      return this.numbers.some((value, k) => value !== this.own[k]);
+    }
+
+    // --- what it is ---------------------------------------------------------------------------------------------------
+    value(name) {
+      return this.numbers[this.index.get(name)];
+    }
+    // the point on every link whose coordinates of it can be changed: in the link's own frame
+    point(letter) {
+      const found = this.carried.get(letter) || [];
+      return found.map(({ link, x, y }) => ({ link, x: this.numbers[x], y: this.numbers[y] }));
+    }
+    // why the pose shown cannot be assembled, in words
+    why(k = this.player.pose) {
+      const found = this.path.why(this.numbers, this.solved, k);
+      return found ? `${found.group}: ${found.text}` : "";
+    }
+    // by letters: the links, and which numbers the two coordinates are
+    byLetter(dimensions) {
+      const found = new Map();
+      dimensions.forEach(({ name, owner, word, part, kind }) => {
+        const base = name.slice(0, -2);
+        if (kind !== "point" || part !== "x" || !this.index.has(`${base}.y`)) return;
+        if (!found.has(word)) found.set(word, []);
+        found.get(word).push({ link: owner, base, x: this.index.get(name), y: this.index.get(`${base}.y`) });
+      });
+      return found;
+    }
+
+    // --- change: seen at once, no step of its own yet -----------------------------------------------------------------
+    change(values) {
+      const numbers = Float64Array.from(this.numbers);
+      for (const [name, value] of Object.entries({ ...this.wanted, ...values })) {
+        if (this.index.has(name) && Number.isFinite(value)) numbers[this.index.get(name)] = value;
+      }
+      this.wanted = null;
+      this.take(numbers, null);
+    }
+    // the same, once for each picture that the screen shows, however often a pointer tells
+    soon(values) {
+      const waits = this.wanted;
+      this.wanted = { ...this.wanted, ...values };
+      if (!waits) requestAnimationFrame(() => this.settle());
+    }
+    settle() {
+      if (this.wanted) this.change({});
+    }
+    take(numbers, solved) {
+      if (numbers.every((value, k) => value === this.numbers[k])) return;
+      const near = this.solved;
+      void this.history; // the first step is the original
+      this.numbers = numbers;
+      this.current = this.isChanged ? solved || this.path.solved(numbers, near) : this.original;
+      this.player.take(this.isChanged ? this.current : null);
+      this.tell("change");
+    }
+
+    // --- steps, and the way back --------------------------------------------------------------------------------------
+    commit(words) {
+      this.settle();
+      const { history } = this, before = history[this.at].numbers;
+      if (this.numbers.every((value, k) => value === before[k])) return;
+      history.length = this.at + 1;
+      history.push({ numbers: this.numbers, solved: this.solved, words });
+      if (history.length > MOST_STEPS) history.shift();
+      this.at = history.length - 1;
+      this.thin();
+      this.tell("commit");
+    }
+    thin() {
+      const each = this.player.poses * Math.max(1, this.player.links.length) * 9;
+      const most = Math.max(2, Math.floor(KEPT / each));
+      this.history.forEach((step, k) => { if (k && Math.abs(this.at - k) > most) step.solved = null; });
+    }
+    undo() {
+      this.commit("");
+      return this.go(this.at - 1);
+    }
+    redo() {
+      this.commit("");
+      return this.go(this.at + 1);
+    }
+    // to a step of the history; tells whether there is such a one
+    go(at) {
+      const step = this.history[at];
+      if (!step) return false;
+      this.at = at;
+      this.take(Float64Array.from(step.numbers), step.solved);
+      step.solved = this.solved;
+      this.tell("commit");
+      return true;
+    }
+    // what was changed since the last step is taken back
+    revert() {
+      this.wanted = null;
+      const step = this.history[this.at];
+      this.take(Float64Array.from(step.numbers), step.solved);
+    }
+    reset() {
+      this.load({}, "original dimensions");
+    }
+    // these numbers, all others as they were made
+    load(values, words) {
+      this.wanted = null;
+      const numbers = Float64Array.from(this.own);
+      for (const [name, value] of Object.entries(values)) {
+        if (this.index.has(name) && Number.isFinite(value)) numbers[this.index.get(name)] = value;
+      }
+      this.take(numbers, null);
+      this.commit(words);
+    }
+    get canUndo() { return this.at > 0; }
+    get canRedo() { return Boolean(this.steps) && this.at < this.steps.length - 1; }
+
+    // --- who listens --------------------------------------------------------------------------------------------------
+    on(kind, heard) {
+      this.listeners[kind].push(heard);
+    }
+    tell(kind) {
+      for (const heard of this.listeners[kind]) heard(this);
+    }
+  }
+
+  page.Design = Design;
+  for (const player of page.players) {
+    const { live } = player.data;
+    player.design = live && !live.why ? new Design(player, new page.Path(player.data)) : null;
+  }
+  page.design = page.players.length ? page.players[0].design : null;
+})();

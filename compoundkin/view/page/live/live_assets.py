@@ -1,0 +1,39 @@
+"""The scripts and style sheets of a moving sketch: those of the player, and more where its dimensions can be changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+PLAYER = "player"
+# In this order: each uses those before it.
+SCRIPTS = ("live/design.js",)
+STYLES = ("live/live.css",)
+
+
+def is_live(data: Mapping[str, Any]) -> bool:
+    """Tell whether the data of a motion hold its program, so that the browser can compute it.
+
+    >>> is_live({"live": None}), is_live({"live": {"why": "profiles"}}), is_live({"live": {"dimensions": []}})
+    (False, False, True)
+    """
+    live = data.get("live")
+    return live is not None and "why" not in live
+
+
+def scripts_of(data: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of the scripts of a motion's data.
+
+    >>> scripts_of({"live": None})
+    ('player.js',)
+    """
+    return (f"{PLAYER}.js", *(SCRIPTS if is_live(data) else ()))
+
+
+def styles_of(data: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of the style sheets of a motion's data.
+
+    >>> styles_of({"live": None})
+    ('player.css',)
+    """
+    return (f"{PLAYER}.css", *(STYLES if is_live(data) else ()))
