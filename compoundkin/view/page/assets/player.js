@@ -53,7 +53,7 @@
   // as outputs are told: angles in degrees, zero what is rounding
   const cleaned = (values, { unit, floor }) => {
     const by = unit === "deg" ? DEGREE : 1;
-    for (let k = 0; k < values.length; k++) values[k] = Math.abs(values[k]) <= floor ? 0 : values[k] * by;
+    for (let k = 0; k < values.length; k++) values[k] = Math.abs(values[k]) <= floor ? 0 : values[k] * by + 0;
   };
 
   class Player {

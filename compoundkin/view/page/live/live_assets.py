@@ -1,18 +1,18 @@
-"""The scripts and style sheets of a moving sketch: those of the player, and more where its dimensions can be changed."""
+"""Scripts and style sheets of a moving sketch, and of dimensions that can be changed."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-PLAYER = "player"
+PLAYER_SCRIPT, PLAYER_STYLE = "player.js", "player.css"
 # In this order: each uses those before it.
 SCRIPTS = ("live/design.js",)
 STYLES = ("live/live.css",)
 
 
 def is_live(data: Mapping[str, Any]) -> bool:
-    """Tell whether the data of a motion hold its program, so that the browser can compute it.
+    """Tell whether the data of a motion hold its program.
 
     >>> is_live({"live": None}), is_live({"live": {"why": "profiles"}}), is_live({"live": {"dimensions": []}})
     (False, False, True)
@@ -27,7 +27,7 @@ def scripts_of(data: Mapping[str, Any]) -> tuple[str, ...]:
     >>> scripts_of({"live": None})
     ('player.js',)
     """
-    return (f"{PLAYER}.js", *(SCRIPTS if is_live(data) else ()))
+    return (PLAYER_SCRIPT, *(SCRIPTS if is_live(data) else ()))
 
 
 def styles_of(data: Mapping[str, Any]) -> tuple[str, ...]:
@@ -36,4 +36,4 @@ def styles_of(data: Mapping[str, Any]) -> tuple[str, ...]:
     >>> styles_of({"live": None})
     ('player.css',)
     """
-    return (f"{PLAYER}.css", *(STYLES if is_live(data) else ()))
+    return (PLAYER_STYLE, *(STYLES if is_live(data) else ()))
