@@ -18,6 +18,7 @@ from compoundkin.synthesis.chains.coloured_graphs import (
     Canonical,
     Cells,
     Coloured,
+    JoinedOrbits,
     Permutation,
     bits_of,
     orbits,
@@ -86,8 +87,9 @@ class _CanonicalSearch:
         if not target:
             return self._leaf(_Leaf(trace, _adjacency(self.masks, cells), tuple(c.bit_length() - 1 for c in cells)))
         tried: list[int] = []
+        joined = JoinedOrbits(len(self.masks))
         for vertex in vertices_of(target):
-            if tried and self._alike(prefix, vertex, tried):
+            if tried and self._alike(prefix, vertex, tried, joined):
                 continue
             if not self.leaves:
                 self.singled.append(vertex)
@@ -104,11 +106,12 @@ class _CanonicalSearch:
         depth = len(trace)
         return bool(self.leaves) and trace > self.best.trace[:depth] and trace != self.leaves[0].trace[:depth]
 
-    def _alike(self, prefix: Sequence[int], vertex: int, tried: Sequence[int]) -> bool:
-        fixing = [g for g in self.generators if all(g[p] == p for p in prefix)]
-        return bool(fixing) and any(
-            vertex in members and any(t in members for t in tried) for members in orbits(len(self.masks), fixing)
-        )
+    def _alike(self, prefix: Sequence[int], vertex: int, tried: Sequence[int], joined: JoinedOrbits) -> bool:
+        """Return whether a symmetry that fixes the prefix carries a vertex that was tried to this one."""
+        for generator in self.generators[joined.count :]:
+            joined.join(generator if all(generator[p] == p for p in prefix) else ())
+        own = joined.leader_of(vertex)
+        return any(joined.leader_of(t) == own for t in tried)
 
     def _leaf(self, leaf: _Leaf) -> bool:
         for other in self.leaves:
@@ -132,14 +135,17 @@ class _CanonicalSearch:
 def _profile(masks: Sequence[int], cells: Cells) -> tuple[int, ...]:
     """Return what two nodes of the tree must share for a symmetry between them.
 
-    Sizes of cells, and how they are joined.
+    Sizes of cells, and how they are joined: of each cell the numbers of neighbours in the others, zeros left out.
+    It orders as whole rows of numbers would: what is joined to an earlier cell is greater.
     """
     place, joined = _places(cells), list(map(int.bit_count, cells))
     for cell in cells:
-        counts = [0] * len(cells)
+        counts: dict[int, int] = {}
         for vertex in vertices_of(masks[cell.bit_length() - 1]):
-            counts[place[vertex]] += 1
-        joined += counts
+            counts[place[vertex]] = counts.get(place[vertex], 0) + 1
+        for other in sorted(counts):
+            joined += (-other, counts[other])
+        joined.append(-len(masks))
     return tuple(joined)
 
 

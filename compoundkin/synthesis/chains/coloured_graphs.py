@@ -60,20 +60,38 @@ class Canonical:
         return orbits(len(self.order), self.generators)
 
 
+class JoinedOrbits:
+    """The classes into which permutations part their points, while more permutations are found."""
+
+    def __init__(self, size: int) -> None:
+        self.count = 0
+        self._leader = list(range(size))
+
+    def join(self, generator: Sequence[int]) -> None:
+        """Take one more permutation into account; an empty one changes nothing but the count."""
+        self.count += 1
+        for point, image in enumerate(generator):
+            if point != image:
+                first, second = find(self._leader, point), find(self._leader, image)
+                self._leader[max(first, second)] = min(first, second)
+
+    def leader_of(self, point: int) -> int:
+        """Return the least point of a point's class."""
+        return find(self._leader, point)
+
+
 def orbits(size: int, generators: Sequence[Sequence[int]]) -> tuple[tuple[int, ...], ...]:
     """Return the classes into which permutations of 0, 1, ... part their points. They are in the order of their least.
 
     >>> orbits(4, [(1, 0, 2, 3), (0, 1, 3, 2)])
     ((0, 1), (2, 3))
     """
-    leader = list(range(size))
+    joined = JoinedOrbits(size)
     for generator in generators:
-        for point, image in enumerate(generator):
-            first, second = find(leader, point), find(leader, image)
-            leader[max(first, second)] = min(first, second)
+        joined.join(generator)
     classes: dict[int, list[int]] = {}
     for point in range(size):
-        classes.setdefault(find(leader, point), []).append(point)
+        classes.setdefault(joined.leader_of(point), []).append(point)
     return tuple(tuple(members) for members in classes.values())
 
 
@@ -83,8 +101,12 @@ def refined(masks: Sequence[int], cells: Cells, splitters: Sequence[int]) -> Cel
     while waiting:
         splitter = waiting.pop(0)
         parted: Cells = []
+        near = 0
+        for vertex in vertices_of(splitter):
+            near |= masks[vertex]
         for cell in cells:
-            parts = _parts(masks, cell, splitter) if cell & (cell - 1) else [cell]
+            # a cell that nothing joins to the splitter has no neighbours there, all alike
+            parts = _parts(masks, cell, splitter) if cell & near and cell & (cell - 1) else [cell]
             parted += parts
             if len(parts) > 1:
                 waiting += parts
