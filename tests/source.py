@@ -34,13 +34,16 @@ def room(path: Path) -> str:
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
-def imports(path: Path) -> Iterator[str]:
+@cache
+def imports(path: Path) -> tuple[str, ...]:
     """The modules and names of the package that a file imports: also in functions, also for types only."""
+    found: list[str] = []
     for node in nodes(path):
         if isinstance(node, ast.ImportFrom) and node.module:
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+            found += (f"{node.module}.{alias.name}" for alias in node.names)
         elif isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found += (alias.name for alias in node.names)
+    return tuple(found)
 
 
 def rooms_used(path: Path) -> set[str]:
@@ -90,6 +93,7 @@ def length(function: Function) -> int:
     return (function.end_lineno or 0) - function.lineno + 1 - documented
 
 
+@cache
 def code_without_text(path: Path) -> str:
     """The names and string constants of a file's code, its docstrings and comments left out."""
     docs = {docstring_of(node) for node in nodes(path)}
