@@ -17,6 +17,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import ANGULAR_ACCELERATION, ANGULAR_VELOCITY, unit_of
 from compoundkin.view.page.force_data import force_data
+from compoundkin.view.page.live.live_data import live_data
 from compoundkin.view.page.markup import brief, exact
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.centre_pictures import centre_name
@@ -109,6 +110,7 @@ class MotionData:
             "parts": self._parts,
             **self._overlays(),
             "outputs": [self._quantity(self.sample.quantity(name), brief) for name in self.outputs],
+            "live": live_data(self.sample, self.chosen, self.links, self.outputs),
         }
 
     @cached_property

@@ -7,7 +7,7 @@ from typing import Any
 
 PLAYER_SCRIPT, PLAYER_STYLE = "player.js", "player.css"
 # In this order: each uses those before it.
-SCRIPTS = ("live/design.js",)
+SCRIPTS = ("live/machine.js", "live/path.js", "live/design.js")
 STYLES = ("live/live.css",)
 
 

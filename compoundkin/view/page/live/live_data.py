@@ -1,0 +1,152 @@
+"""What a page needs to solve its mechanism anew: dimensions, drivers at its poses, the program, words for gaps."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.errors import CompoundkinError
+from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.one_design import motion_of_design
+from compoundkin.model.attributes import RADIANS, coordinate_dimension, unit_of
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.recording.recorded_outputs import ProgramOutput, output_of
+from compoundkin.programs.sources.operation_table import CODES
+from compoundkin.programs.sources.page_program import PageProgram
+from compoundkin.view.page.live.followed_quantities import followed_quantities
+from compoundkin.view.page.markup import exact
+from compoundkin.view.report.shown_poses import Sample
+
+# Whole numbers up to this are written in two bytes.
+SHORT = 2**15
+
+
+def live_data(sample: Sample, chosen: Any, links: Sequence[str], outputs: Sequence[str]) -> dict[str, Any] | None:
+    """Return what a page needs to be live, or why it cannot be.
+
+    It is of some poses of a sample. None is that of a single pose, or of a mechanism without drivers.
+    """
+    if len(chosen) < 2 or not sample.motion.mechanism.drives:
+        return None
+    try:
+        return LiveData(motion_of_design(sample.motion, sample.design), chosen, links, outputs).data
+    except CompoundkinError as error:
+        return {"why": f"This mechanism cannot be changed here: {error.problems[0].what}."}
+
+
+@dataclass(frozen=True, eq=False)
+class LiveData:
+    """One design of a motion at the poses of a page. `links` and `outputs` are those of the page."""
+
+    motion: Motion
+    chosen: Any
+    links: Sequence[str]
+    names: Sequence[str]
+
+    @cached_property
+    def stated(self) -> StatedDimensions:
+        """All dimensions of its mechanism."""
+        return StatedDimensions(self.motion.mechanism, self.motion.inputs.ends)
+
+    @cached_property
+    def dimensions(self) -> tuple[FreeDimension, ...]:
+        """Those that may be changed: single numbers, of no law."""
+        return tuple(one for one in self.stated.known.values() if not one.is_of_law and not one.is_vector)
+
+    @cached_property
+    def program(self) -> PageProgram:
+        """What computes it."""
+        return PageProgram.of(self.motion, self.dimensions, [*self._told()])
+
+    def _told(self) -> Iterator[ProgramOutput]:
+        """Yield the page's outputs, and what its figures are made of."""
+        followed = followed_quantities(self.motion, self.names) if self.names else ()
+        for name in dict.fromkeys((*self.names, *followed)):
+            try:
+                yield output_of(self.motion, name)
+            except CompoundkinError:
+                # forces, and figures of whole motions, are no outputs of a program
+                continue
+
+    @cached_property
+    def places(self) -> Mapping[int, int]:
+        """The places of nodes."""
+        return self.program.table.places
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """All of it for a script: lengths in the user's unit, angles in radians."""
+        program, table = self.program, self.program.table
+        if program.seeds:
+            return {"why": "This mechanism cannot be changed here: it has groups without a closed form."}
+        return {
+            "dimensions": [self._dimension(one) for one in self.dimensions],
+            "drives": [self._drive(name) for name in program.mechanism.drives],
+            "groups": [{"name": group.name, "links": list(group.links)} for group in self.motion.structure.groups],
+            "program": {
+                "codes": list(CODES),
+                "constants": list(map(_number, table.constants)),
+                "numbers": table.numbers,
+                "rows": table.rows,
+                "before": whole(table.before),
+                "along": whole(table.along),
+                "positions": table.positions,
+                "goods": [[index, self.places[node]] for index, node in program.goods],
+                "links": [self._link(name) for name in self.links],
+                "outputs": list(self._outputs()),
+            },
+        }
+
+    def _dimension(self, one: FreeDimension) -> dict[str, Any]:
+        unit = self.stated.unit(one)
+        kind = "point" if one.is_of_link else "angle" if unit == RADIANS else "length" if unit else "ratio"
+        value = float(np.ravel(self.stated.own(one))[0])
+        return {
+            "name": one.name,
+            "owner": one.owner,
+            "word": one.word,
+            "part": one.part,
+            "kind": kind,
+            "unit": unit,
+            "value": value,
+        }
+
+    def _drive(self, name: str) -> dict[str, Any]:
+        values = [
+            np.broadcast_to(v, self.motion.failed.shape)[0][self.chosen] for v in self.motion.inputs.drives[name][:3]
+        ]
+        dimension = coordinate_dimension(self.motion.structure.driven_angles[name])
+        unit = unit_of(self.motion.mechanism.unit, dimension)
+        return {"name": name, "unit": unit, "value": exact(values[0]), "rates": [exact(v) for v in values[1:]]}
+
+    def _link(self, name: str) -> dict[str, Any]:
+        orders = range(self.program.order + 1)
+        at = [[self.places[node] for node in self.program.link(name, k)] for k in orders]
+        return {"at": at, "wrapped": self.program.mechanism.block.world[name].theta is None}
+
+    def _outputs(self) -> Iterator[dict[str, Any]]:
+        for output, number in zip(self.program.outputs, self.program.recorded, strict=True):
+            nodes = {"": number.x} if number.y is None else {"x": number.x, "y": number.y}
+            parts = {part: self.places[node] for part, node in nodes.items()}
+            yield {"name": output.name, "parts": parts, "wrapped": output.is_wrapped}
+
+
+def _number(value: float) -> float | str:
+    """Return a number as JSON has it; what is not finite as a text that a script reads."""
+    return value if np.isfinite(value) else str(value).replace("inf", "Infinity").replace("nan", "NaN")
+
+
+def whole(numbers: Sequence[int]) -> str:
+    """Pack whole numbers, two bytes each where these are enough, else four.
+
+    >>> whole([1, -2])
+    'h:AQD+/w=='
+    """
+    form, mark = ("<i2", "h:") if max(map(abs, numbers), default=0) < SHORT else ("<i4", "i:")
+    return mark + b64encode(np.array(numbers, form).tobytes()).decode("ascii")
