@@ -103,6 +103,12 @@
       const told = ({ name, parts }) => [name, Object.fromEntries(Object.entries(parts).map(([part, place]) => [part, known(place)]))];
       return { assembled: !failed[0], failed: failed[0], links: links.map(moved), outputs: Object.fromEntries(outputs.map(told)) };
     }
+
+    // why a pose is not assembled: the group, and words for it; "" where it is
+    why(numbers, solved, k) {
+      const group = this.data.groups[solved.failed[k] - 1];
+      return group ? { group: `${group.name}(${group.links.join(", ")})`, text: "cannot be assembled" } : "";
+    }
   }
 
   Object.assign(page, { Path, Solved });
