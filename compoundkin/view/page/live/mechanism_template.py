@@ -1,0 +1,159 @@
+"""A mechanism file with holes for its dimensions, which a page fills with those that it was changed to."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeAlias
+
+from compoundkin.files import toml_text
+from compoundkin.files.document import GRAVITY, HEAD
+from compoundkin.files.exact_numbers import plain
+from compoundkin.files.writer import document
+from compoundkin.model.component_names import AXES
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import WRITTEN, pairs_among
+from compoundkin.model.written import CYLINDERS
+from compoundkin.programs.dimensions.designed_mechanism import designed
+from compoundkin.programs.dimensions.free_dimension import FreeDimension
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+
+# Texts in TOML do not hold it: there a character of control is written as an escape.
+_EDGE = "\x00"
+_HOLE = re.compile(f"{_EDGE}(\\d+)(d?){_EDGE}")
+LINKS, POINTS = "links", "points"
+# What comes before the links: single entries, and tables of the whole.
+_HEAD = ("format", *(key.name for key in HEAD), GRAVITY.name)
+_IN_DEGREES = ("angle", "turn", "sweep")
+_ENDS = ("from", "to")
+
+# A text in pieces: texts, indices of dimensions, and lists of one index where degrees are written.
+Pieces: TypeAlias = list[str | int | list[int]]
+# Whether it is a link, and its name: pairs may have the names of links.
+Owner: TypeAlias = tuple[bool, str]
+
+
+@dataclass(frozen=True)
+class Hole:
+    """The place of a dimension's number, where a document has a number."""
+
+    index: int
+    in_degrees: bool = False
+
+    def __repr__(self) -> str:
+        return f"{_EDGE}{self.index}{'d' if self.in_degrees else ''}{_EDGE}"
+
+
+def mechanism_template(stated: StatedDimensions, names: Sequence[str]) -> list[Any]:
+    """Return the text of a mechanism's file in pieces, for other values of these dimensions.
+
+    A piece is text, or what the file says of one link or pair: `own` unless one of the dimensions `of` it has changed,
+    any of all where `of` is null; then `changed`, whose numbers are indices of dimensions, and whose lists of one
+    number those that are written in degrees. Together they say what `designed` makes.
+
+    >>> from compoundkin.files.shipped_mechanisms import load_named
+    >>> from compoundkin.kinematics import solve
+    >>> bars = load_named("four-bar-meriam")
+    >>> pieces = mechanism_template(StatedDimensions(bars, solve(bars).inputs.ends), ["AB.B.x"])
+    >>> next(piece["changed"] for piece in pieces if isinstance(piece, dict))
+    """
+    found = [stated.known[name] for name in names]
+    whole = designed(stated, {one: stated.own(one) for one in found})
+    changed = _Holed(document(whole), whole, stated.items)
+    for index, one in enumerate(found):
+        (changed.hold_point if one.is_of_link else changed.hold_number)(one, index)
+    return _merged(_pieces(document(stated.mechanism), changed, _owners(stated, found)))
+
+
+def _owners(stated: StatedDimensions, found: Sequence[FreeDimension]) -> Mapping[Owner, list[int] | None]:
+    """The dimensions of each owner. None for what reads numbers off the drawing, which any change states."""
+    owners: dict[Owner, list[int] | None] = {}
+    for index, one in enumerate(found):
+        owners[_owner(one)] = [*(owners.get(_owner(one)) or ()), index]
+    return owners | {(False, name): None for name, numbers in stated.read_off.items() if numbers}
+
+
+def _owner(one: FreeDimension) -> Owner:
+    return one.is_of_link, one.owner
+
+
+@dataclass(frozen=True)
+class _Holed:
+    """A document of a mechanism in which numbers are replaced by holes."""
+
+    document: dict[str, Any]
+    mechanism: Mechanism
+    items: Mapping[str, Any]
+
+    @cached_property
+    def places(self) -> dict[str, tuple[str, int]]:
+        """The tables of pairs and cylinders and their places there, by name."""
+        pairs = pairs_among(self.mechanism.items)
+        tables = {table: [one.name for one in pairs if one.table == table] for table in WRITTEN}
+        tables[CYLINDERS] = list(self.mechanism.cylinders)
+        return {name: (table, k) for table, names in tables.items() for k, name in enumerate(names)}
+
+    def hold_point(self, one: FreeDimension, index: int) -> None:
+        """Put a hole in the place of a coordinate; the point may be written in another form."""
+        points = self.document[LINKS][one.owner][POINTS]
+        at, held = complex(self.mechanism.geometry.points[one.owner][one.word]), points[one.word]
+        x, y = held if isinstance(held, list) else (plain(at.real), plain(at.imag))
+        points[one.word] = [Hole(index), y] if one.part == AXES[0] else [x, Hole(index)]
+
+    def hold_number(self, one: FreeDimension, index: int) -> None:
+        """Put a hole in the place of a pair's number, which may be left out where it is the default."""
+        table, place = self.places[one.owner]
+        entry, item = self.document[table][place], self.items[one.owner]
+        key = next(key for key in item.keys if key.name == one.word)
+        hole = Hole(index, key.kind in _IN_DEGREES)
+        if one.part:
+            # a guide that is open at one end has a table of the other
+            both = entry[one.word] if one.word in entry else [plain(value) for value in getattr(item, one.word)]
+            both[_ENDS[int(one.part)] if isinstance(both, dict) else int(one.part)] = hole
+        entry[one.word] = both if one.part else hole
+        self.document[table][place] = {key.name: entry[key.name] for key in item.keys if key.name in entry}
+
+
+def _pieces(own: Mapping[str, Any], changed: _Holed, owners: Mapping[Owner, list[int] | None]) -> Iterator[Any]:
+    """Yield a piece for the head, each link, pair and cylinder, and each other table."""
+    yield toml_text.dumps({name: value for name, value in own.items() if name in _HEAD})
+    names = {place: name for name, place in changed.places.items()}
+    for table, value in own.items():
+        other = changed.document[table]
+        if table == LINKS:
+            for link in value:
+                yield _piece((True, link), owners, {LINKS: {link: value[link]}}, {LINKS: {link: other[link]}})
+        elif (table, 0) in names:
+            for k, entry in enumerate(value):
+                yield _piece((False, names[table, k]), owners, {table: [entry]}, {table: [other[k]]})
+        elif table not in _HEAD:
+            yield toml_text.dumps({table: value})
+
+
+def _piece(
+    owner: Owner, owners: Mapping[Owner, list[int] | None], own: dict[str, Any], changed: dict[str, Any]
+) -> Any:
+    text = toml_text.dumps(own)
+    return {"of": owners[owner], "own": text, "changed": _filled(toml_text.dumps(changed))} if owner in owners else text
+
+
+def _filled(text: str) -> Pieces:
+    """Split a text at its holes."""
+    parts = _HOLE.split(text)
+    found: Pieces = [parts[0]]
+    for index, degrees, after in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
+        found += [[int(index)] if degrees else int(index), after]
+    return found
+
+
+def _merged(pieces: Iterator[Any]) -> list[Any]:
+    """Join texts that follow each other."""
+    found: list[Any] = []
+    for piece in pieces:
+        if found and isinstance(piece, str) and isinstance(found[-1], str):
+            found[-1] += piece
+        else:
+            found.append(piece)
+    return found
