@@ -47,7 +47,7 @@ class Hole:
 
 
 def mechanism_template(stated: StatedDimensions, names: Sequence[str]) -> list[Any]:
-    """Return the text of a mechanism's file in pieces, for other values of these dimensions.
+    r"""Return a mechanism's file in pieces, for other values of these dimensions.
 
     A piece is text, or what the file says of one link or pair: `own` unless one of the dimensions `of` it has changed,
     any of all where `of` is null; then `changed`, whose numbers are indices of dimensions, and whose lists of one
@@ -58,6 +58,7 @@ def mechanism_template(stated: StatedDimensions, names: Sequence[str]) -> list[A
     >>> bars = load_named("four-bar-meriam")
     >>> pieces = mechanism_template(StatedDimensions(bars, solve(bars).inputs.ends), ["AB.B.x"])
     >>> next(piece["changed"] for piece in pieces if isinstance(piece, dict))
+    ['\n[links.AB]\npoints = { A = [0, 0], B = [', 0, ', 0] }\n']
     """
     found = [stated.known[name] for name in names]
     whole = designed(stated, {one: stated.own(one) for one in found})
@@ -109,9 +110,10 @@ class _Holed:
         key = next(key for key in item.keys if key.name == one.word)
         hole = Hole(index, key.kind in _IN_DEGREES)
         if one.part:
-            # a guide that is open at one end has a table of the other
             both = entry[one.word] if one.word in entry else [plain(value) for value in getattr(item, one.word)]
-            both[_ENDS[int(one.part)] if isinstance(both, dict) else int(one.part)] = hole
+            # a guide that is open at one end has a table of the other
+            place_in: Any = _ENDS[int(one.part)] if isinstance(both, dict) else int(one.part)
+            both[place_in] = hole
         entry[one.word] = both if one.part else hole
         self.document[table][place] = {key.name: entry[key.name] for key in item.keys if key.name in entry}
 
@@ -132,9 +134,7 @@ def _pieces(own: Mapping[str, Any], changed: _Holed, owners: Mapping[Owner, list
             yield toml_text.dumps({table: value})
 
 
-def _piece(
-    owner: Owner, owners: Mapping[Owner, list[int] | None], own: dict[str, Any], changed: dict[str, Any]
-) -> Any:
+def _piece(owner: Owner, owners: Mapping[Owner, list[int] | None], own: dict[str, Any], changed: dict[str, Any]) -> Any:
     text = toml_text.dumps(own)
     return {"of": owners[owner], "own": text, "changed": _filled(toml_text.dumps(changed))} if owner in owners else text
 
