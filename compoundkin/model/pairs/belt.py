@@ -8,7 +8,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from compoundkin.base.arrays import first_entry
 from compoundkin.base.errors import InvalidMechanism, Problem
 from compoundkin.base.series import Number
 from compoundkin.base.wrenches import Wrench
@@ -17,7 +16,7 @@ from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contract import Ends, Poses
 from compoundkin.model.pairs.force_answers import Strapped
 from compoundkin.model.pairs.geared import Geared
-from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, strap_line
+from compoundkin.model.pairs.symbols import Mark, Strap, Wheel, reach, strap_line
 from compoundkin.model.pairs.wheel_lines import axes_of, line_of_action
 
 
@@ -110,12 +109,13 @@ class Belt(Geared, Strapped):
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return the pulleys and the belt around them."""
-        one, two = (abs(float(end.measure)) for end in ends[:2])
-        unit = float(self.reach(one, two, self.apart(ends, poses)))
+        one, two = (abs(end.measure) for end in ends[:2])
+        unit = self.reach(one, two, self.apart(ends, poses))
         radii = one * unit, two * unit
         back = poses[2].inverse()
         middles = [back.at(pose.at(end.point)).c[0] for pose, end in zip(poses[:2], ends[:2], strict=True)]
-        first, second = (complex(first_entry(middle)) for middle in middles)
+        # the carrier is rigid: they are where they are at every pose
+        first, second = (reach(np.real(middle))[0] + reach(np.imag(middle))[0] * 1j for middle in middles)
         discs = (Wheel(k, ends[k].point, radii[k]) for k in range(2))
         return *discs, Strap(2, strap_line((first, second), radii, self.crossed))
 

@@ -138,7 +138,7 @@ class Gear(Geared, Accompanied):
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return the pitch circles."""
-        one, two = (abs(float(end.measure)) for end in ends[:2])
+        one, two = (abs(end.measure) for end in ends[:2])
         unit = self.apart(ends, poses) / (two - one if self.internal else two + one)
         tooth = 1.0 if self.teeth is not None else min(one, two) / UNCOUNTED
         return (

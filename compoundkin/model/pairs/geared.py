@@ -18,6 +18,7 @@ from compoundkin.model.pairs.contract import Ends, Pair, Point, Poses, table
 from compoundkin.model.pairs.loop_terms import Auxiliary, LoopTerms
 from compoundkin.model.pairs.loop_vectors import angle_of, difference
 from compoundkin.model.pairs.optional_answers import DrawnPair, Osculation, Replaceable, TurnCounting, as_drivable
+from compoundkin.model.pairs.symbols import reach
 from compoundkin.model.pairs.wheel_lines import axes_of, line_of_action, ratio
 from compoundkin.model.pairs.wheel_sizes import Sizes, Two, size_problems, two_of, wheel_problems
 
@@ -209,9 +210,9 @@ class Geared(TurnCounting, Replaceable):
         return type(self), one / two
 
     def apart(self, ends: Ends, poses: Poses) -> float:
-        """Return the distance of the axes at the first pose."""
+        """Return the distance of the axes, the same at all poses."""
         first, second = axes_of(ends, poses)
-        return float(abs(first_entry(second) - first_entry(first)))
+        return reach(abs(second - first))[0]
 
 
 def as_geared(pair: Pair) -> Geared | None:

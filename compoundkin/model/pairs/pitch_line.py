@@ -192,7 +192,7 @@ class OnLine(TurnCounting):
         """Return the part of the line on which the wheel rolls, and the wheel."""
         line, wheel = ends
         low, high = reach(self.coordinate(ends, poses).c[0])
-        radius = abs(float(wheel.measure))
+        radius = abs(wheel.measure)
         track = Track(0, line.point, line.along.c[0], low, high, float(self.side), self.pitch)
         teeth = round(2.0 * np.pi * radius / self.pitch) if self.pitch else 0
         return track, Wheel(1, wheel.point, radius, teeth)

@@ -212,8 +212,8 @@ class RollingOnCircle(Rolls, TurnCounting, Drivable):
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return the circle, a ring around a wheel inside, and the wheel."""
-        distance = float(abs(ends[0].along.c[0]))
-        radius = distance / float(ends[1].measure)  # negative inside
+        distance = abs(ends[0].along.c[0])
+        radius = distance / ends[1].measure  # negative inside
         return Wheel(0, ends[0].point, distance - radius, 0, self.inside), Wheel(1, ends[1].point, abs(radius))
 
 

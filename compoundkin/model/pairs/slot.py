@@ -23,7 +23,7 @@ from compoundkin.model.pairs.guide_ends import Ended, Reach, reach_key
 from compoundkin.model.pairs.optional_answers import Equivalent, Guided, Osculation
 from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.model.pairs.revolute import Revolute
-from compoundkin.model.pairs.symbols import Groove, Mark, Stud, reach
+from compoundkin.model.pairs.symbols import Groove, Mark, Stud, line_of, reach
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,16 +137,19 @@ class Slot(RubbingContact, Guided, Ended):
 
     def glyph(self, ends: Ends, poses: Poses) -> tuple[Mark, ...]:
         """Return a groove as long as the pin's way, and the pin."""
-        travel = np.linspace(*reach(self.coordinate(ends, poses).c[0]), 2)
-        return Groove(0, ends[0].point + ends[0].along.c[0] * travel), Stud(1, ends[1].point)
+        return Groove(0, _way(ends, *reach(self.coordinate(ends, poses).c[0]))), Stud(1, ends[1].point)
 
     def with_ends(
         self, marks: tuple[Mark, ...], bounds: tuple[Number, Number], ends: Ends, poses: Poses
     ) -> tuple[Mark, ...]:
         """Return the whole groove, and the pin."""
         low, high, stops = self.way_shown(bounds, self.coordinate(ends, poses).c[0])
-        line = ends[0].point + ends[0].along.c[0] * np.array([low, high])
-        return (Groove(0, line, stops), *marks[1:])
+        return (Groove(0, _way(ends, low, high), stops), *marks[1:])
+
+
+def _way(ends: Ends, low: float, high: float) -> Number:
+    """The middle line of a slot, as far as it is used."""
+    return line_of(ends[0].point + ends[0].along.c[0] * place for place in (low, high))
 
 
 slot = word("slot", Slot)

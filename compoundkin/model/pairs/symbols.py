@@ -5,6 +5,7 @@ A pair tells what there is to see of it (`Pair.glyph`); `view/sketch/` decides w
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -107,7 +108,18 @@ def reach(values: Number) -> tuple[float, float]:
     """
     known = np.ravel(values)
     known = known[np.isfinite(known)]
-    return (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
+    return (known.min().item(), known.max().item()) if known.size else (0.0, 0.0)
+
+
+def line_of(points: Iterable[Number]) -> Number:
+    """Return points as an array; numbers of another kind, such as those that note what is done with them, stay so.
+
+    >>> line_of([0j, 1.0])
+    array([0.+0.j, 1.+0.j])
+    """
+    found = list(points)
+    is_plain = all(type(point) in (int, float, complex) or isinstance(point, np.generic) for point in found)
+    return np.array(found, dtype=complex if is_plain else object)
 
 
 def arc_line(centre: Number, radius: Number, start: float, stop: float) -> Number:
@@ -117,7 +129,12 @@ def arc_line(centre: Number, radius: Number, start: float, stop: float) -> Numbe
     [(1+0j), (-1+0j)]
     """
     count = max(2, int(np.ceil(abs(stop - start) / (2.0 * np.pi) * AROUND)) + 1)
-    return centre + radius * np.exp(1j * np.linspace(start, stop, count))
+    shares = np.linspace(0.0, 1.0, count)
+    return line_of(centre + radius * _unit(start + (stop - start) * share) for share in shares)
+
+
+def _unit(angle: Number) -> Number:
+    return np.cos(angle) + np.sin(angle) * 1j
 
 
 def strap_line(centres: tuple[complex, complex], radii: tuple[float, float], crossed: bool) -> Number:
@@ -129,9 +146,9 @@ def strap_line(centres: tuple[complex, complex], radii: tuple[float, float], cro
     np.float64(1.0)
     """
     line = centres[1] - centres[0]
-    toward = float(np.angle(line))
+    toward = np.angle(line)
     cosine = (radii[0] + radii[1] if crossed else radii[0] - radii[1]) / abs(line)
-    half = float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    half = np.arccos(np.clip(cosine, -1.0, 1.0))
     around = arc_line(centres[0], radii[0], toward + half, toward + 2.0 * np.pi - half)
     if crossed:
         # from the lower side of the first pulley to the upper side of the second, and around it clockwise

@@ -51,7 +51,7 @@ class Window:
 
     def at(self, place: Number) -> Number:
         """Tell where a place is on the picture, y downward."""
-        return np.conjugate((place - self.corner) * self.scale)
+        return ((place - self.corner) * self.scale).conjugate()
 
     def line(self, places: Number) -> tuple[complex, ...]:
         """Return a line through places as points of the picture. Those that it does not need are left out."""

@@ -20,6 +20,7 @@ from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.guide_ends import as_ended, bounds_name
 from compoundkin.model.pairs.symbols import Mark, Sliding
 from compoundkin.structure import DrivenPair, Structure
+from compoundkin.view.sketch.noted_numbers import as_place
 
 # Two poses are one if no link differs by more than this, in parts of the mechanism's size and in radians.
 SAME_PLACE = 1e-6
@@ -59,11 +60,11 @@ class Scene:
 
     def at(self, link: str, p: Number) -> complex:
         """Tell where a point of a link is at the pose shown."""
-        return complex(self.here[link].at(p).c[0])
+        return as_place(self.here[link].at(p).c[0])
 
     def turned(self, link: str, along: Number) -> complex:
         """Return a direction on a link, in the world."""
-        return complex((self.here[link].u * along).c[0])
+        return as_place((self.here[link].u * along).c[0])
 
     def places(self, letter: str) -> Number:
         """Tell where a point is along the motion, (poses,)."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Sliding
+from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene, Seen
 from compoundkin.view.sketch.shapes import Polygon, Polyline, Shape, box, direction, hatching
@@ -60,7 +61,7 @@ class Painter:
 
     def place(self, link: str, p: Any) -> complex:
         """Tell where a point of a link is on the picture."""
-        return complex(self.window.at(self.scene.at(link, p)))
+        return as_place(self.window.at(self.scene.at(link, p)))
 
     def line(self, link: str, points: Any) -> tuple[complex, ...]:
         """Return a line of a link on the picture."""
@@ -68,7 +69,7 @@ class Painter:
 
     def along(self, link: str, e: Any) -> complex:
         """Return a direction of a link on the picture."""
-        return direction(np.conjugate(self.scene.turned(link, e)))
+        return direction(self.scene.turned(link, e).conjugate())
 
     def style(self, kind: str, link: str) -> str:
         """Return the style of a shape that belongs to a link. The frame has its own."""

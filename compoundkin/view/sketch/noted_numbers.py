@@ -1,0 +1,241 @@
+"""Numbers that note what is done with them while a sketch is painted: a value, and the node of a graph for it.
+
+Painters compute with them as with any other numbers, and every branch is taken by the values. What the notes of a
+vertex say is how it is computed from the mechanism's dimensions, so that a page can draw it anew. A function that takes
+no notes gives the plain value: what is drawn of it is carried by its link as it is.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compoundkin.base.series import Number
+
+# Functions that give an array along the poses as it is.
+SAME = (np.ravel, np.atleast_1d)
+
+if TYPE_CHECKING:
+    from compoundkin.programs.recording.recorded_number import RecordedNumber
+
+
+class Noted:
+    """What noted numbers have in common: their note, and how NumPy's functions are answered."""
+
+    note: RecordedNumber
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        from compoundkin.programs.recording.recorded_functions import UFUNCS
+
+        values = [plain(one) for one in inputs]
+        found = getattr(ufunc, method)(*values, **{key: plain(one) for key, one in options.items()})
+        recorded = UFUNCS.get(ufunc) if method == "__call__" and not options else None
+        return _answered(found, inputs, lambda notes: recorded(*notes)) if recorded else found
+
+    def __array_function__(self, function: Callable[..., Any], types: Any, args: Any, options: Any) -> Any:
+        from compoundkin.programs.recording.recorded_functions import FUNCTIONS
+
+        found = function(*plain(args), **{key: plain(one) for key, one in options.items()})
+        recorded = FUNCTIONS.get(function)
+        if function in SAME:
+            return noted(found, self.note)
+        if recorded is None or options:
+            return found
+        return _answered(found, args, lambda notes: recorded(self.note, *notes))
+
+
+def _answered(value: Any, operands: Any, recorded: Callable[[list[Any]], Any]) -> Any:
+    """A value with its note; the value alone where truths are asked for or an operand has no note."""
+    if isinstance(value, tuple | bool | np.bool_) or getattr(value, "dtype", None) == bool:
+        return value
+    own = next(one.note for one in operands if isinstance(one, Noted))
+    if any(_is_array(one) and not isinstance(one, Noted) for one in operands):
+        return value
+    try:
+        note = recorded([one.note if isinstance(one, Noted) else own.like(one) for one in operands])
+    except TypeError:
+        return value
+    return noted(value, note) if isinstance(note, type(own)) else value
+
+
+def _binary(name: str, swapped: bool = False) -> Callable[[Any, Any], Any]:
+    operation = getattr(operator, name)
+
+    def method(self: Any, other: Any) -> Any:
+        if not isinstance(other, int | float | complex | np.number | NotedLength):
+            return NotImplemented
+        one, two = (other, self) if swapped else (self, other)
+        return noted(operation(plain(one), plain(two)), operation(_note(one), _note(two)))
+
+    return method
+
+
+def _is_array(value: Any) -> bool:
+    return isinstance(value, np.ndarray) and value.ndim > 0
+
+
+def _note(value: Any) -> Any:
+    return value.note if isinstance(value, Noted) else value
+
+
+class _Scalar(Noted):
+    """The arithmetic of single numbers."""
+
+    ndim = 0
+
+    # a number with a note equals no other: they are another two at other dimensions
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    def __hash__(self) -> int:
+        return id(self)
+
+    __add__, __radd__ = _binary("add"), _binary("add", True)
+    __sub__, __rsub__ = _binary("sub"), _binary("sub", True)
+    __mul__, __rmul__ = _binary("mul"), _binary("mul", True)
+    __truediv__, __rtruediv__ = _binary("truediv"), _binary("truediv", True)
+
+    def __neg__(self) -> Any:
+        return noted(-plain(self), -self.note)
+
+    def __pos__(self) -> Any:
+        return self
+
+    def __abs__(self) -> Any:
+        return noted(abs(plain(self)), abs(self.note))
+
+    def __pow__(self, exponent: float) -> Any:
+        return noted(plain(self) ** exponent, self.note**exponent)
+
+    def conjugate(self) -> Any:
+        """Return the complex conjugate."""
+        return noted(plain(self).conjugate(), self.note.conjugate())
+
+    @property
+    def real(self) -> Any:
+        """The real part."""
+        return noted(plain(self).real, self.note.real)
+
+    @property
+    def imag(self) -> Any:
+        """The imaginary part."""
+        return noted(plain(self).imag, self.note.imag)
+
+    def item(self) -> Any:
+        """Return itself: it is a single number."""
+        return self
+
+
+class NotedPlace(_Scalar, complex):  # type: ignore[misc]
+    """A place or direction with its note."""
+
+
+class NotedLength(_Scalar):
+    """A real number with its note. It is no `float`, of which Python's complex numbers would take the value alone."""
+
+    def __init__(self, value: float) -> None:
+        self.value = float(value)
+
+    def __float__(self) -> float:
+        return self.value
+
+    def __array__(self, *args: Any, **options: Any) -> Number:
+        return np.array(self.value)
+
+    def __lt__(self, other: Any) -> bool:
+        return self.value < plain(other)
+
+    def __le__(self, other: Any) -> bool:
+        return self.value <= plain(other)
+
+    def __gt__(self, other: Any) -> bool:
+        return self.value > plain(other)
+
+    def __ge__(self, other: Any) -> bool:
+        return self.value >= plain(other)
+
+    def __bool__(self) -> bool:
+        return bool(self.value)
+
+    def __round__(self, digits: int | None = None) -> Any:
+        return round(self.value, digits)
+
+    def __format__(self, form: str) -> str:
+        return format(self.value, form)
+
+
+class NotedCourse(Noted, np.ndarray):
+    """An array along the poses of a motion with its note, that of one pose."""
+
+    def __array_finalize__(self, of: Any) -> None:
+        self.note = getattr(of, "note", None)  # type: ignore[assignment]
+
+    @property
+    def real(self) -> Any:
+        """The real parts."""
+        return noted(plain(self).real, self.note.real)
+
+    @property
+    def imag(self) -> Any:
+        """The imaginary parts."""
+        return noted(plain(self).imag, self.note.imag)
+
+    def conjugate(self) -> Any:  # type: ignore[override]
+        """Return the complex conjugates."""
+        return noted(plain(self).conjugate(), self.note.conjugate())
+
+    def min(self, *args: Any, **options: Any) -> Any:
+        """Return the least of real numbers, over the poses."""
+        return noted(plain(self).min(*args, **options), self.note.of("least", self.note.x))
+
+    def max(self, *args: Any, **options: Any) -> Any:
+        """Return the greatest of real numbers, over the poses."""
+        opposite = -self.note
+        return noted(plain(self).max(*args, **options), -opposite.of("least", opposite.x))
+
+
+def noted(value: Number, note: RecordedNumber) -> Any:
+    """Return a number, or an array along the poses, with a note."""
+    if _is_array(value):
+        found: Any = np.asarray(value).view(NotedCourse)
+    else:
+        single = value.item() if isinstance(value, np.ndarray) else value
+        found = NotedPlace(single) if isinstance(single, complex) else NotedLength(single)
+    found.note = note
+    return found
+
+
+def plain(value: Any) -> Any:
+    """Return numbers without their notes.
+
+    >>> plain((1.0, [2j]))
+    (1.0, [2j])
+    """
+    if isinstance(value, tuple | list):
+        return type(value)(plain(one) for one in value)
+    if not isinstance(value, Noted):
+        return value
+    if isinstance(value, np.ndarray):
+        return np.asarray(value)
+    return complex(value) if isinstance(value, complex) else float(value)
+
+
+def as_place(value: Number) -> complex:
+    """Return a place as a complex number, its note with it where it has one.
+
+    >>> as_place(np.float64(2.0))
+    (2+0j)
+    """
+    return value if isinstance(value, NotedPlace) else complex(value)
+
+
+def as_length(value: Number) -> Any:
+    """Return a real number as a plain one, its note with it where it has one.
+
+    >>> as_length(np.float64(2.0))
+    2.0
+    """
+    return value if isinstance(value, NotedLength) else float(value)
