@@ -61,7 +61,10 @@ class Ended(Pair):
         It goes to its ends, or as far as it is used.
         """
         used = reach(values)
-        low, high = (one if np.isfinite(one) else other for one, other in zip((1.0 * bound for bound in bounds), used, strict=True))
+        low, high = (
+            one if np.isfinite(one) else other
+            for one, other in zip((1.0 * bound for bound in bounds), used, strict=True)
+        )
         return low, high, (bool(np.isfinite(bounds[0])), bool(np.isfinite(bounds[1])))
 
     @abstractmethod

@@ -10,6 +10,8 @@ from compoundkin.model.attributes import ANGLE
 from compoundkin.model.elements import Lead
 from compoundkin.model.pairs.symbols import Sliding, Track
 from compoundkin.structure import DrivenPair
+from compoundkin.view.sketch.noted_numbers import as_place
+from compoundkin.view.sketch.scene import Seen
 from compoundkin.view.sketch.shapes import (
     HEAD,
     ArcShape,
@@ -37,18 +39,26 @@ def drives(painter: Painter) -> Iterator[Laid]:
         marks = [s for s in painter.scene.seen if s.pair.name == step.pair.name]
         straight = next((s for s in marks if isinstance(s.mark, Sliding | Track)), None)
         letter = step.pair.letters[0]
-        at = complex(painter.window.at(painter.scene.letters[letter]))
+        at = painter.pin(step.link, letter)
         if straight is None or step.pair.free_is_angle:
             shapes = turning(painter, step, at, float(np.sign(speed)))
         else:
-            mark, link = straight.mark, straight.members[0]
-            e = painter.along(link, mark.along) * float(np.sign(speed))  # type: ignore[union-attr]
+            e = _way(painter, straight, step.link) * float(np.sign(speed))
             shapes = pushing(painter, at, e)
         # the arrow beside a wheel that is pushed along its track does not turn with it
         rolls = straight is not None and isinstance(straight.mark, Track) and letter in painter.scene.points[step.link]
         yield from (Laid(Layer.PIN, shape, step.link, letter if rolls else "") for shape in shapes)
     for lead in scene.mechanism.leads.values() if painter.only is None else ():
         yield from led(painter, lead)
+
+
+def _way(painter: Painter, seen: Seen, link: str) -> complex:
+    """The direction of a slide or track, as the link with the arrow carries it."""
+    mark, guide = seen.mark, seen.members[0]
+    if isinstance(mark, Sliding) and link != guide:
+        return painter.along(link, mark.turn)
+    assert isinstance(mark, Sliding | Track)
+    return painter.along(guide, mark.along) if link == guide else complex(painter.along(guide, mark.along))
 
 
 def led(painter: Painter, lead: Lead) -> Iterator[Laid]:
@@ -82,8 +92,8 @@ def turning(painter: Painter, step: DrivenPair, at: complex, sense: float, link:
     back = HEAD / TURN_RADIUS
     end = at + stop * np.exp(-1j * way * back * 0.8) * TURN_RADIUS
     heading = 1j * way * stop * np.exp(-1j * way * back / 2.0)
-    arc = ArcShape(at + start * TURN_RADIUS, complex(end), TURN_RADIUS, way > 0, "drive")
-    return arc, arrow_head(complex(tip), complex(heading), "drive-head")
+    arc = ArcShape(at + start * TURN_RADIUS, as_place(end), TURN_RADIUS, way > 0, "drive")
+    return arc, arrow_head(as_place(tip), as_place(heading), "drive-head")
 
 
 def pushing(painter: Painter, at: complex, e: complex) -> tuple[Shape, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Pin
+from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene
 from compoundkin.view.sketch.shapes import (
@@ -41,18 +42,22 @@ def body(scene: Scene, window: Window, link: str, extra: Places = ()) -> tuple[S
     if link == FRAME:
         return ()
     group = scene.groups[link]
-    corners = skeleton(scene, window, link, extra)
+    among = (*_own(scene, window, link), *extra)
+    corners = tuple(outline(among))
     if len(corners) < 2:
         return ()
     if len(corners) == 2:
-        return (Polyline(tuple(corners), style_of("bar", group)),)
-    return (Polygon(tuple(corners), style_of("plate", group)),)
+        return (Polyline(corners, style_of("bar", group), among),)
+    return (Polygon(corners, style_of("plate", group), among),)
 
 
 def skeleton(scene: Scene, window: Window, link: str, extra: Places = ()) -> list[complex]:
     """Return the points between which a link is drawn. The ends of a bar, or the corners of a plate."""
-    own = [complex(window.at(scene.at(link, p))) for p in scene.points[link].values()]
-    return outline([*own, *extra])
+    return outline([*_own(scene, window, link), *extra])
+
+
+def _own(scene: Scene, window: Window, link: str) -> list[complex]:
+    return [as_place(window.at(scene.at(link, p))) for p in scene.points[link].values()]
 
 
 def outline(points: Places) -> list[complex]:
@@ -104,10 +109,10 @@ def pins(painter: Painter) -> Iterator[Laid]:
         carriers = [link for link in scene.mechanism.carriers[letter] if painter.shows(link)]
         if not carriers:
             continue
-        at = complex(window.at(place))
+        at = as_place(window.at(place))
         joined = joints(painter, letter)
         if FRAME in carriers and joined:
-            yield from pivot(painter, letter, at)
+            yield from pivot(painter, letter, painter.pin(FRAME, letter))
         if letter in painter.outer:
             yield Laid(Layer.PIN, CircleShape(at, OUTER, "outer"), carriers[0], letter)
         if len(joined) > 1 and painter.only is None:

@@ -86,13 +86,6 @@ class _Scalar(Noted):
 
     ndim = 0
 
-    # a number with a note equals no other: they are another two at other dimensions
-    def __eq__(self, other: object) -> bool:
-        return self is other
-
-    def __hash__(self) -> int:
-        return id(self)
-
     __add__, __radd__ = _binary("add"), _binary("add", True)
     __sub__, __rsub__ = _binary("sub"), _binary("sub", True)
     __mul__, __rmul__ = _binary("mul"), _binary("mul", True)
@@ -130,7 +123,13 @@ class _Scalar(Noted):
 
 
 class NotedPlace(_Scalar, complex):  # type: ignore[misc]
-    """A place or direction with its note."""
+    """A place or direction with its note. It equals no other, not even zero: at other dimensions it is elsewhere."""
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    def __hash__(self) -> int:
+        return id(self)
 
 
 class NotedLength(_Scalar):
@@ -144,6 +143,15 @@ class NotedLength(_Scalar):
 
     def __array__(self, *args: Any, **options: Any) -> Number:
         return np.array(self.value)
+
+    def __int__(self) -> int:
+        return int(self.value)
+
+    def __eq__(self, other: object) -> bool:
+        return bool(self.value == plain(other))
+
+    def __hash__(self) -> int:
+        return hash(self.value)
 
     def __lt__(self, other: Any) -> bool:
         return self.value < plain(other)

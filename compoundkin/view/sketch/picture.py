@@ -13,6 +13,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
+from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.shapes import Shape
 from compoundkin.view.sketch.svg import NATURAL, converted, inline, svg
 
@@ -105,7 +106,7 @@ def simplified(points: Number, deviation: float = DEVIATION) -> tuple[complex, .
     >>> simplified(np.array([0, 1, 2, 2 + 1j]))
     (0j, (2+0j), (2+1j))
     """
-    points = np.asarray(points, dtype=complex)
+    own, points = points, np.asarray(points, dtype=complex)
     keep = np.zeros(len(points), dtype=bool)
     keep[[0, -1]] = True
     parts = [(0, len(points) - 1)]
@@ -122,7 +123,7 @@ def simplified(points: Number, deviation: float = DEVIATION) -> tuple[complex, .
             middle = first + 1 + worst
             keep[middle] = True
             parts += [(first, middle), (middle, last)]
-    return tuple(complex(p) for p in points[keep])
+    return tuple(as_place(p) for p in np.asarray(own)[keep])
 
 
 def thinned(places: Number) -> Number:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -19,26 +19,44 @@ SLANT = np.exp(2.4j)  # direction of a hatching as seen from its line
 
 @dataclass(frozen=True, repr=False)
 class Polyline(PrintsShort):
-    """A line through points."""
+    """A line through points. Where it is the outline of points, `among` are all of these."""
 
     points: tuple[complex, ...]
     style: str
+    among: tuple[complex, ...] = ()
 
 
 @dataclass(frozen=True, repr=False)
 class Polygon(PrintsShort):
-    """A closed line through points, filled as its style says."""
+    """A closed line through points, filled as its style says. Of an outline of points `among` are all of these."""
 
     points: tuple[complex, ...]
     style: str
+    among: tuple[complex, ...] = ()
+
+
+class Row(NamedTuple):
+    """A row of equal strokes: the foot of the first, the way to the next foot, a stroke from its foot, their number."""
+
+    first: complex
+    step: complex
+    stroke: complex
+    count: float
+
+    @property
+    def lines(self) -> tuple[tuple[complex, complex], ...]:
+        """All strokes."""
+        feet = [self.first + self.step * k for k in range(round(self.count))]
+        return tuple((foot, foot + self.stroke) for foot in feet)
 
 
 @dataclass(frozen=True, repr=False)
 class Strokes(PrintsShort):
-    """Several lines of one style that belong together, such as a hatching."""
+    """Several lines of one style that belong together, such as a hatching. Equal ones tell their `row`."""
 
     lines: tuple[tuple[complex, ...], ...]
     style: str
+    row: Row | None = None
 
 
 @dataclass(frozen=True)
@@ -145,9 +163,14 @@ def _moved(shape: Shape, by: complex, turn: complex) -> Shape:
     if isinstance(shape, ArcShape):
         return replace(shape, start=shape.start * turn + by, stop=shape.stop * turn + by)
     if isinstance(shape, Polyline | Polygon):
-        return replace(shape, points=tuple(p * turn + by for p in shape.points))
+        points, among = (tuple(p * turn + by for p in places) for places in (shape.points, shape.among))
+        return replace(shape, points=points, among=among)
     if isinstance(shape, Strokes):
-        return replace(shape, lines=tuple(tuple(p * turn + by for p in line) for line in shape.lines))
+        lines = tuple(tuple(p * turn + by for p in line) for line in shape.lines)
+        row = shape.row and Row(
+            shape.row.first * turn + by, shape.row.step * turn, shape.row.stroke * turn, shape.row.count
+        )
+        return replace(shape, lines=lines, row=row)
     return replace(shape, at=shape.at * turn + by)
 
 
@@ -171,11 +194,11 @@ def sheet(width: float, height: float) -> Polygon:
 
 def hatching(start: complex, stop: complex, side: float) -> Strokes:
     """Draw a hatching along a line on one of its sides. That of ``1j * side`` as seen along it."""
-    length, e = abs(stop - start), direction(stop - start)
-    count = max(2, round(length / HATCH))
-    slant = e * SLANT.real + 1j * e * side * SLANT.imag
-    roots = [start + e * length * (k + 0.7) / count for k in range(count)]
-    return Strokes(tuple((root, root + slant * HATCH) for root in roots), "hatch")
+    line, e = stop - start, direction(stop - start)
+    count = np.maximum(2.0, np.rint(abs(line) / HATCH))
+    slant = e * SLANT.real + e * 1j * side * SLANT.imag
+    row = Row(start + line * 0.7 / count, line / count, slant * HATCH, count)
+    return Strokes(row.lines, "hatch", row)
 
 
 def arrow(start: complex, stop: complex, style: str) -> tuple[Shape, ...]:

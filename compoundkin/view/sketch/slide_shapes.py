@@ -63,6 +63,11 @@ class Painter:
         """Tell where a point of a link is on the picture."""
         return as_place(self.window.at(self.scene.at(link, p)))
 
+    def pin(self, link: str, letter: str) -> complex:
+        """Tell where a letter is on the picture. A link that carries it says so, else any that does."""
+        own = self.scene.points[link]
+        return self.place(link, own[letter]) if letter in own else as_place(self.window.at(self.scene.letters[letter]))
+
     def line(self, link: str, points: Any) -> tuple[complex, ...]:
         """Return a line of a link on the picture."""
         return self.window.line(self.scene.here[link].at(points).c[0])
@@ -124,7 +129,7 @@ def sliding(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
         yield painter.block_at(guide, painter.place(guide, mark.at), painter.along(guide, mark.along))
     else:
         yield from _guide(painter, guide, mark)
-        yield painter.block_at(block, painter.place(block, mark.block), painter.along(guide, mark.along))
+        yield painter.block_at(block, painter.place(block, mark.block), painter.along(block, mark.turn))
 
 
 def _half(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
@@ -140,16 +145,16 @@ def _half(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
 
 def rod_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
     """Return the two ends of a rod that runs through a block."""
-    ends = [painter.place(link, mark.block - mark.turn * s) for s in (mark.low, mark.high)]
-    e = painter.along(link, mark.turn)
+    middle, e, scale = painter.place(link, mark.block), painter.along(link, mark.turn), painter.window.scale
     before, after = (STOP if stop else BEYOND for stop in mark.stops[::-1])
-    return _spanned((ends[1] - e * before, ends[0] + e * after, painter.place(link, mark.block)), e)
+    back, forth = np.maximum(mark.high * scale + before, 0.0), np.maximum(after - mark.low * scale, 0.0)
+    return middle - e * back, middle + e * forth
 
 
 def guide_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
     """Return the two ends of a guide on a moving link. It reaches as far as the block goes."""
     e = painter.along(link, mark.along)
-    span = min(mark.low, 0.0), max(mark.high, 0.0)
+    span = np.minimum(mark.low, 0.0), np.maximum(mark.high, 0.0)
     start, stop = (painter.place(link, mark.at + mark.along * s) for s in span)
     before, after = (STOP if stopped else BEYOND for stopped in mark.stops)
     return start - e * (before if mark.low < 0 else 0.0), stop + e * (after if mark.high > 0 else 0.0)
@@ -170,12 +175,6 @@ def stops(
         across = 1j * direction(place - inner) * BLOCK[1] * 0.8
         if is_shown:
             yield Laid(layer, Polyline((place - across, place + across), painter.style("line", link)), link)
-
-
-def _spanned(points: tuple[complex, ...], e: complex) -> tuple[complex, complex]:
-    """The outermost of points on a line."""
-    ordered = sorted(points, key=lambda p: (np.conjugate(e) * p).real)
-    return ordered[0], ordered[-1]
 
 
 def _guide(painter: Painter, link: str, mark: Sliding) -> Iterator[Laid]:

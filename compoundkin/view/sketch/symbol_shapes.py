@@ -9,8 +9,9 @@ import numpy as np
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Sliding, Strap, Stud, Track, Wheel
+from compoundkin.view.sketch.noted_numbers import as_length
 from compoundkin.view.sketch.scene import Seen
-from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Strokes, box, direction, hatching, ticks
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Row, Strokes, box, direction, hatching, ticks
 from compoundkin.view.sketch.sketch_style import BLOCK, PIN, STUD
 from compoundkin.view.sketch.slide_shapes import BEYOND, Laid, Layer, Painter, sliding, stops
 
@@ -74,7 +75,7 @@ def _stud(painter: Painter, seen: Seen, mark: Stud) -> Iterator[Laid]:
 
 def _disc(painter: Painter, seen: Seen, mark: Wheel) -> Iterator[Laid]:
     link = seen.members[mark.member]
-    middle, radius = painter.place(link, mark.at), float(mark.radius * painter.window.scale)
+    middle, radius = painter.place(link, mark.at), as_length(mark.radius * painter.window.scale)
     e = painter.along(link, 1 + 0j)
     if mark.is_ring:
         yield Laid(Layer.WHEEL, CircleShape(middle, radius, painter.style("line", link)), link)
@@ -100,7 +101,7 @@ def _disc(painter: Painter, seen: Seen, mark: Wheel) -> Iterator[Laid]:
 def _track(painter: Painter, seen: Seen, mark: Track) -> Iterator[Laid]:
     link = seen.members[mark.member]
     e = painter.along(link, mark.along)
-    low, high = (mark.low, mark.high) if link == FRAME else (min(mark.low, 0.0), max(mark.high, 0.0))
+    low, high = (mark.low, mark.high) if link == FRAME else (np.minimum(mark.low, 0.0), np.maximum(mark.high, 0.0))
     start, stop = (painter.place(link, mark.at + mark.along * s) for s in (low, high))
     start, stop = start - e * BEYOND, stop + e * BEYOND
     # what runs on it is to the left, which on paper, y downward, is -1j
@@ -115,11 +116,10 @@ def _track(painter: Painter, seen: Seen, mark: Track) -> Iterator[Laid]:
         step = mark.pitch * painter.window.scale
         step *= max(1, int(np.ceil(CLOSEST / step)))
         origin = painter.place(link, mark.at)
-        first = int(np.ceil((np.conjugate(e) * (start - origin)).real / step))
-        last = int(np.floor((np.conjugate(e) * (stop - origin)).real / step))
-        feet = [origin + e * step * k for k in range(first, last + 1)]
-        teeth = Strokes(tuple((p - under * TOOTH, p + under * TOOTH) for p in feet), painter.style("thin", link))
-        yield Laid(Layer.BAR, teeth, link)
+        first = np.ceil((e.conjugate() * (start - origin)).real / step)
+        last = np.floor((e.conjugate() * (stop - origin)).real / step)
+        row = Row(origin + e * step * first - under * TOOTH, e * step, under * 2.0 * TOOTH, last - first + 1)
+        yield Laid(Layer.BAR, Strokes(row.lines, painter.style("thin", link), row), link)
 
 
 def _strap(painter: Painter, seen: Seen, mark: Strap) -> Iterator[Laid]:
@@ -161,13 +161,15 @@ def cylinder(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
     foot, eye, e = painter.place(barrel, mark.at), painter.place(rod, mark.block), painter.along(barrel, mark.along)
     scale = painter.window.scale
     shortest, longest = sorted((abs(mark.low) * scale, abs(mark.high) * scale))
-    out = e if (np.conjugate(e) * (eye - foot)).real >= 0 else -e
-    length = BARREL * shortest if shortest > 2.0 * BLOCK[0] else max(0.6 * longest, BLOCK[0])
+    sense = 1.0 if (np.conjugate(e) * (eye - foot)).real >= 0 else -1.0
+    out, inward = e * sense, painter.along(rod, mark.turn) * -sense
     here = float((np.conjugate(out) * (eye - foot)).real)
-    piston = min(max(PISTON + here - shortest, PISTON), length - PISTON)
+    length = BARREL * shortest if shortest > 2.0 * BLOCK[0] else max(0.6 * longest, BLOCK[0])
     rim = box(foot + out * length / 2.0, out, length, CYLINDER)
     yield Laid(Layer.BAR, Polygon(rim, painter.style("plate", barrel)), barrel)
     style = painter.style("bar", rod)
-    yield Laid(Layer.BAR, Polyline((foot + out * piston, eye), style), rod)
-    across = 1j * out * (CYLINDER / 2.0 - 1.5)
-    yield Laid(Layer.BAR, Polyline((foot + out * piston - across, foot + out * piston + across), style), rod)
+    # at the shortest length the piston is near the bottom, and at this one it is not out of the barrel
+    piston = eye + inward * np.maximum(np.minimum(shortest, here) - PISTON, PISTON + (here - length))
+    yield Laid(Layer.BAR, Polyline((piston, eye), style), rod)
+    across = 1j * inward * (CYLINDER / 2.0 - 1.5)
+    yield Laid(Layer.BAR, Polyline((piston + across, piston - across), style), rod)

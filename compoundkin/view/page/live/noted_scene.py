@@ -1,0 +1,75 @@
+"""A scene in numbers with notes: points, sides of pairs and poses as inputs of what draws a mechanism anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from compoundkin.base.poses import End, Pose
+from compoundkin.base.series import Number, Series, constant
+from compoundkin.kinematics import Motion
+from compoundkin.model.elements import FRAME
+from compoundkin.model.pairs.contract import Ends
+from compoundkin.programs.dimensions.named_dimensions import free_dimensions
+from compoundkin.programs.dimensions.stated_dimensions import StatedDimensions
+from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.recording.recorded_dimensions import recorded_ends, recorded_geometry
+from compoundkin.programs.recording.recorded_number import RecordedNumber
+from compoundkin.view.sketch.noted_numbers import noted
+from compoundkin.view.sketch.scene import Scene
+
+# What the pose of a link is told by: the place of its origin, the unit vector of its angle.
+POSE = "pose"
+PLACE, TURN = ("x", "y"), ("cos", "sin")
+
+
+def noted_scene(scene: Scene, motion: Motion, names: Iterable[str]) -> tuple[Scene, OperationGraph]:
+    """Return a scene whose numbers note what is done with them, and the graph of the notes.
+
+    Inputs are the dimensions of these names, which may change, and the poses of the links along the motion.
+    """
+    graph, stated = OperationGraph(), StatedDimensions(motion.mechanism, motion.inputs.ends)
+    free = free_dimensions(stated, tuple(names))
+    geometry = recorded_geometry(graph, motion.mechanism.geometry, free)
+    ends = recorded_ends(graph, motion.solving_order, geometry, free, motion.inputs.ends)
+    points = {
+        link: {letter: _noted(graph, p, geometry.points[link][letter]) for letter, p in own.items()}
+        for link, own in scene.points.items()
+    }
+    sides = {name: _sides(graph, own, ends.get(name, own)) for name, own in scene.ends.items()}
+    whole = {name: _along(graph, name, pose) for name, pose in scene.whole.items()}
+    return replace(scene, points=points, ends=sides, whole=whole), graph
+
+
+def _noted(graph: OperationGraph, value: Number, recorded: Any) -> Any:
+    """A number with its note; the mechanism's own number where it cannot change."""
+    if value is None or np.ndim(value):
+        return value
+    note = recorded.c[0] if isinstance(recorded, Series) else recorded
+    if not isinstance(note, RecordedNumber):
+        note = RecordedNumber(graph, graph.constant(0.0)).like(value)
+    return noted(value, note)
+
+
+def _sides(graph: OperationGraph, own: Ends, recorded: Ends) -> Ends:
+    both = zip(own, recorded, strict=True)
+    return tuple(End(*(_noted(graph, *parts) for parts in zip(one, other, strict=True))) for one, other in both)
+
+
+def _along(graph: OperationGraph, link: str, pose: Pose) -> Pose:
+    """The poses of a link along the motion. Those of the frame are no inputs, nor are counted turns."""
+    if link == FRAME:
+        return pose
+    z, u = (
+        constant(noted(one.c[0], RecordedNumber.given(graph, *(InputNumber(POSE, link, part) for part in parts))))
+        for one, parts in ((pose.z, PLACE), (pose.u, TURN))
+    )
+    return Pose(z, u, pose.theta)
+
+
+def inputs_of(graph: OperationGraph, nodes: Iterable[int]) -> Mapping[int, InputNumber]:
+    """Return the inputs that some nodes are computed from."""
+    return {k: given for k in graph.inputs(nodes) if (given := graph.nodes[k].given) is not None}
