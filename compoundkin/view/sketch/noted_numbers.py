@@ -49,7 +49,7 @@ class Noted:
 
 def _answered(value: Any, operands: Any, recorded: Callable[[list[Any]], Any]) -> Any:
     """A value with its note; the value alone where truths are asked for or an operand has no note."""
-    if isinstance(value, tuple | bool | np.bool_) or getattr(value, "dtype", None) == bool:
+    if isinstance(value, tuple | bool | np.bool_) or np.asarray(value).dtype.kind == "b":
         return value
     own = next(one.note for one in operands if isinstance(one, Noted))
     if any(_is_array(one) and not isinstance(one, Noted) for one in operands):
@@ -154,16 +154,16 @@ class NotedLength(_Scalar):
         return hash(self.value)
 
     def __lt__(self, other: Any) -> bool:
-        return self.value < plain(other)
+        return bool(self.value < plain(other))
 
     def __le__(self, other: Any) -> bool:
-        return self.value <= plain(other)
+        return bool(self.value <= plain(other))
 
     def __gt__(self, other: Any) -> bool:
-        return self.value > plain(other)
+        return bool(self.value > plain(other))
 
     def __ge__(self, other: Any) -> bool:
-        return self.value >= plain(other)
+        return bool(self.value >= plain(other))
 
     def __bool__(self) -> bool:
         return bool(self.value)
@@ -181,17 +181,17 @@ class NotedCourse(Noted, np.ndarray):
     def __array_finalize__(self, of: Any) -> None:
         self.note = getattr(of, "note", None)  # type: ignore[assignment]
 
-    @property
+    @property  # type: ignore[misc]
     def real(self) -> Any:
         """The real parts."""
         return noted(plain(self).real, self.note.real)
 
-    @property
+    @property  # type: ignore[misc]
     def imag(self) -> Any:
         """The imaginary parts."""
         return noted(plain(self).imag, self.note.imag)
 
-    def conjugate(self) -> Any:  # type: ignore[override]
+    def conjugate(self) -> Any:
         """Return the complex conjugates."""
         return noted(plain(self).conjugate(), self.note.conjugate())
 
@@ -228,7 +228,7 @@ def plain(value: Any) -> Any:
         return value
     if isinstance(value, np.ndarray):
         return np.asarray(value)
-    return complex(value) if isinstance(value, complex) else float(value)
+    return complex(value) if isinstance(value, complex) else float(value)  # type: ignore[arg-type]
 
 
 def as_place(value: Number) -> complex:

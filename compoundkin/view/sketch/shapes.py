@@ -41,13 +41,17 @@ class Row(NamedTuple):
     first: complex
     step: complex
     stroke: complex
-    count: float
+    number: float
 
     @property
     def lines(self) -> tuple[tuple[complex, complex], ...]:
         """All strokes."""
-        feet = [self.first + self.step * k for k in range(round(self.count))]
+        feet = [self.first + self.step * k for k in range(round(self.number))]
         return tuple((foot, foot + self.stroke) for foot in feet)
+
+    def moved(self, by: complex, turn: complex) -> Row:
+        """Return it turned about zero, then moved."""
+        return Row(self.first * turn + by, self.step * turn, self.stroke * turn, self.number)
 
 
 @dataclass(frozen=True, repr=False)
@@ -167,10 +171,7 @@ def _moved(shape: Shape, by: complex, turn: complex) -> Shape:
         return replace(shape, points=points, among=among)
     if isinstance(shape, Strokes):
         lines = tuple(tuple(p * turn + by for p in line) for line in shape.lines)
-        row = shape.row and Row(
-            shape.row.first * turn + by, shape.row.step * turn, shape.row.stroke * turn, shape.row.count
-        )
-        return replace(shape, lines=lines, row=row)
+        return replace(shape, lines=lines, row=None if shape.row is None else shape.row.moved(by, turn))
     return replace(shape, at=shape.at * turn + by)
 
 
