@@ -9,6 +9,7 @@ import numpy as np
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Pin
+from compoundkin.view.sketch.guide_points import shown_points
 from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene
@@ -104,12 +105,11 @@ def _hull(points: Places) -> list[complex]:
 
 def pins(painter: Painter) -> Iterator[Laid]:
     """Draw open circles for pins; dots for other points. A second circle is around those of more than two links."""
-    scene, window = painter.scene, painter.window
-    for letter, place in scene.letters.items():
+    scene = painter.scene
+    for letter, at in shown_points(painter.scene, painter.window).items():
         carriers = [link for link in scene.mechanism.carriers[letter] if painter.shows(link)]
         if not carriers:
             continue
-        at = as_place(window.at(place))
         joined = joints(painter, letter)
         if FRAME in carriers and joined:
             yield from pivot(painter, letter, painter.pin(FRAME, letter))
@@ -155,7 +155,7 @@ def _free_side(painter: Painter, letter: str, at: complex) -> complex:
         if link != FRAME:
             others = (painter.place(link, p) for k, p in painter.scene.points[link].items() if k != letter)
             away += [direction(p - at) for p in others if abs(p - at) > PIN]
-    near = [painter.window.at(p) for k, p in painter.scene.letters.items() if k != letter]
+    near = [painter.window.at(p) for k, p in painter.scene.carried.items() if k != letter]
     away += [direction(p - at) for p in near if PIN < abs(p - at) < 2.0 * PIVOT]
 
     def blocked(down: complex) -> float:

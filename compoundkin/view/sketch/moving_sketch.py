@@ -141,7 +141,7 @@ def moving_sketch(
     """
     _check_rigid(motion)
     scene = scene_in(motion, None, None, design)
-    window = window_on(scene, _sample(scene), tuple(scene.letters))
+    window = window_on(scene, _sample(scene), tuple(scene.carried))
     painter = Painter(scene, window)
     lines = [line for letter in paths for line in path(scene, window, letter)]
     laid = [one for one in in_layers(painter) if one.link not in scene.mechanism.led_links]

@@ -89,6 +89,16 @@ class Scene:
         return found
 
     @cached_property
+    def carried(self) -> Mapping[str, complex]:
+        """The places of points that carry something.
+
+        Without those of the frame alone, which tell where a guide is.
+        """
+        carriers = self.mechanism.carriers
+        needed = {pair.letters[0] for pair in self.structure.pairs}
+        return {k: place for k, place in self.letters.items() if k in needed or carriers[k] != (FRAME,)}
+
+    @cached_property
     def seen(self) -> tuple[Seen, ...]:
         """The marks of all pairs."""
         return tuple(Seen(pair, mark, pair.members) for pair in self.structure.pairs for mark in self._marks(pair))

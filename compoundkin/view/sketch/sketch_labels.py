@@ -8,6 +8,7 @@ import numpy as np
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Sliding, Wheel
+from compoundkin.view.sketch.guide_points import shown_points
 from compoundkin.view.sketch.label_places import Label, around, text_half
 from compoundkin.view.sketch.link_shapes import edges, joints, skeleton
 from compoundkin.view.sketch.scene import Scene
@@ -37,10 +38,9 @@ ON_EDGE = 8.0
 def letters(painter: Painter) -> list[Label]:
     """Return a label for every point, away from the middle of the mechanism."""
     found = []
-    for letter, place in painter.scene.letters.items():
+    for letter, at in shown_points(painter.scene, painter.window).items():
         if not any(map(painter.shows, painter.scene.mechanism.carriers[letter])):
             continue
-        at = complex(painter.window.at(place))
         away = at - painter.middle
         prefer = away / abs(away) + 0.4 * (0.7 - 0.7j) if abs(away) > 1.0 else 1 - 1j
         clear = PIN + (6.0 if len(joints(painter, letter)) > 1 else 3.0)

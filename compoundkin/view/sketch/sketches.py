@@ -70,7 +70,8 @@ def nearby(points: Number, wishes: Sequence[complex]) -> list[complex]:
 
 def _extent(scene: Scene) -> Iterator[Number]:
     """Places that must be on the picture."""
-    yield np.array(list(scene.letters.values()))
+    yield np.array(list(scene.carried.values()))
+    guides = Painter(scene, Window(1.0, 0j, 0.0, 0.0))
     for seen in scene.seen:
         mark = seen.mark
         if isinstance(mark, Wheel):
@@ -80,8 +81,12 @@ def _extent(scene: Scene) -> Iterator[Number]:
             yield scene.here[seen.members[mark.member]].at(mark.line).c[0]
         elif isinstance(mark, Track):
             yield scene.here[seen.members[mark.member]].at(mark.at + mark.along * np.array([mark.low, mark.high])).c[0]
-        elif isinstance(mark, Sliding) and seen.members[0] == FRAME:
-            yield mark.at + mark.along * np.array([mark.low, mark.high])
+        elif isinstance(mark, Sliding):
+            way = np.array([mark.low, mark.high])
+            if guides.is_rod(seen):
+                yield scene.here[seen.members[1]].at(mark.block - mark.turn * way).c[0]
+            elif not guides.is_cylinder(seen):
+                yield scene.here[seen.members[0]].at(mark.at + mark.along * way).c[0]
 
 
 def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:

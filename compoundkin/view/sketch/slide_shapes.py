@@ -12,16 +12,17 @@ import numpy as np
 
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Sliding
+from compoundkin.view.sketch.block_sizes import block_size
 from compoundkin.view.sketch.noted_numbers import as_place
 from compoundkin.view.sketch.picture import Window
 from compoundkin.view.sketch.scene import Scene, Seen
 from compoundkin.view.sketch.shapes import Polygon, Polyline, Shape, box, direction, hatching
-from compoundkin.view.sketch.sketch_style import BLOCK, PIN, style_of
+from compoundkin.view.sketch.sketch_style import PIN, style_of
 
 # A guide goes on by this much beyond the places that the block takes, in picture units.
 BEYOND = 22.0
-# Its stop is so far beyond the last place of the block's middle.
-STOP = BLOCK[0] / 2.0 + 2.0
+# A stop keeps this distance from a block that is at its end.
+STOP = 2.0
 
 
 class Layer(IntEnum):
@@ -84,8 +85,14 @@ class Painter:
 
     @cached_property
     def middle(self) -> complex:
-        """The middle of all points on the picture."""
-        return complex(np.mean([self.window.at(p) for p in self.scene.letters.values()] or [0j]))
+        """The middle on the picture of points that carry something."""
+        return complex(np.mean([self.window.at(p) for p in self.scene.carried.values()] or [0j]))
+
+    @cached_property
+    def block(self) -> tuple[float, float]:
+        """The length and width of the blocks."""
+        slides = [s for s in self.scene.seen if isinstance(s.mark, Sliding) and not self.is_cylinder(s)]
+        return block_size(self.scene, float(self.window.scale), slides)
 
     @cached_property
     def driven(self) -> frozenset[str]:
@@ -106,7 +113,7 @@ class Painter:
     def block_at(self, link: str, middle: complex, along: complex) -> Laid:
         """Draw a block."""
         style = "pin frame" if link == FRAME else f"pin {style_of('ring', self.scene.groups[link])}"
-        return Laid(Layer.BLOCK, Polygon(box(middle, along, *BLOCK), style), link)
+        return Laid(Layer.BLOCK, Polygon(box(middle, along, *self.block), style), link)
 
     def stub(self, link: str, foot: complex) -> Iterator[Laid]:
         """Draw a bar from a place to its link's nearest point. It is drawn where the place is none of them."""
@@ -146,7 +153,8 @@ def _half(painter: Painter, seen: Seen, mark: Sliding) -> Iterator[Laid]:
 def rod_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, complex]:
     """Return the two ends of a rod that runs through a block."""
     middle, e, scale = painter.place(link, mark.block), painter.along(link, mark.turn), painter.window.scale
-    before, after = (STOP if stop else BEYOND for stop in mark.stops[::-1])
+    stop_at = painter.block[0] / 2.0 + STOP
+    before, after = (stop_at if is_end else BEYOND for is_end in mark.stops[::-1])
     back, forth = np.maximum(mark.high * scale + before, 0.0), np.maximum(after - mark.low * scale, 0.0)
     return middle - e * back, middle + e * forth
 
@@ -156,7 +164,8 @@ def guide_line(painter: Painter, link: str, mark: Sliding) -> tuple[complex, com
     e = painter.along(link, mark.along)
     span = np.minimum(mark.low, 0.0), np.maximum(mark.high, 0.0)
     start, stop = (painter.place(link, mark.at + mark.along * s) for s in span)
-    before, after = (STOP if stopped else BEYOND for stopped in mark.stops)
+    stop_at = painter.block[0] / 2.0 + STOP
+    before, after = (stop_at if stopped else BEYOND for stopped in mark.stops)
     return start - e * (before if mark.low < 0 else 0.0), stop + e * (after if mark.high > 0 else 0.0)
 
 
@@ -164,7 +173,8 @@ def _stopped(painter: Painter, link: str, mark: Sliding) -> tuple[complex, compl
     """Return where a guide has its stops: a block at its end touches them."""
     e = painter.along(link, mark.along)
     low, high = (painter.place(link, mark.at + mark.along * s) for s in (mark.low, mark.high))
-    return low - e * STOP, high + e * STOP
+    beyond = painter.block[0] / 2.0 + STOP
+    return low - e * beyond, high + e * beyond
 
 
 def stops(
@@ -172,7 +182,7 @@ def stops(
 ) -> Iterator[Laid]:
     """Draw bars across the ends of a line, those that are shown."""
     for place, inner, is_shown in ((line[0], line[1], shown[0]), (line[-1], line[-2], shown[1])):
-        across = 1j * direction(place - inner) * BLOCK[1] * 0.8
+        across = 1j * direction(place - inner) * painter.block[1] * 0.8
         if is_shown:
             yield Laid(layer, Polyline((place - across, place + across), painter.style("line", link)), link)
 
@@ -186,8 +196,9 @@ def _guide(painter: Painter, link: str, mark: Sliding) -> Iterator[Laid]:
         return
     low, high = (painter.place(link, mark.at + mark.along * s) for s in (mark.low, mark.high))
     side = _outer_side(e, (low + high) / 2.0, painter.middle)
-    down = 1j * e * side * BLOCK[1] / 2.0
-    before, after = (STOP if stop else BEYOND for stop in mark.stops)
+    down = e * side * painter.block[1] / 2.0 * 1j
+    stop_at = painter.block[0] / 2.0 + STOP
+    before, after = (stop_at if is_end else BEYOND for is_end in mark.stops)
     start, stop = low - e * before, high + e * after
     yield from stops(painter, FRAME, _stopped(painter, link, mark), mark.stops, Layer.FRAME)
     yield Laid(Layer.FRAME, Polyline((start + down, stop + down), "frame"), FRAME)
