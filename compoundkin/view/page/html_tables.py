@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from math import isfinite
 
+from compoundkin.model.attributes import readable
 from compoundkin.structure import Structure, roman
 from compoundkin.view.page.markup import broken, element, hidden, lines, safe
 from compoundkin.view.report.report_data import Cell, Column, TableBlock
@@ -20,6 +21,8 @@ Links = tuple[str, ...]
 RESULTS = {True: ("good", "✓", "pass"), False: ("bad", "✗", "FAIL")}
 # Cells with more letters than this are broken into lines, and get room for them.
 LONG = 24
+# The column that tells the units of others.
+UNIT = "unit"
 
 
 @dataclass(frozen=True)
@@ -134,7 +137,7 @@ def _head(shown: ShownTable) -> str:
 
 def _heading(column: Column, names: Names) -> str:
     name = broken(column.name) if column.name else hidden("result")
-    unit = f' <span class="unit">[{safe(column.unit)}]</span>' if column.unit else ""
+    unit = f' <span class="unit">[{safe(readable(column.unit))}]</span>' if column.unit else ""
     button = element("button", f"{name}{unit}", type="button", class_="sort")
     kind = "number" if column.is_number else None
     return f'<th scope="col"{_of(kind)}{_links(names.about(column.name))}>{button}</th>'
@@ -186,7 +189,7 @@ def _cell(column: Column, cell: Cell, text: str) -> str:
         inside = f'<span class="{result}"><span aria-hidden="true">{mark}</span> {word}</span>'
         return f'<td data-sort="{int(cell)}" data-copy="{word}">{inside}</td>'
     kind = "number" if column.is_number else "long" if len(text) > LONG else None
-    inside = "<br>".join(map(safe, text.split("\n")))
+    inside = "<br>".join(map(safe, (readable(text) if column.name == UNIT else text).split("\n")))
     return f"<td{_of(kind)}{''.join(_exact(column, cell, text))}>{inside}</td>"
 
 

@@ -39,6 +39,16 @@ def brief(values: Number) -> str | float | None:
     return _packed(values, "<f4", "f:")
 
 
+def shown_parts(values: Number, floor: float) -> dict[str, Number]:
+    """Return the components of a quantity. What is rounding is zero, as in the report's tables.
+
+    >>> shown_parts(np.array([2.0 + 1e-15j]), 1e-12)
+    {'x': array([2.]), 'y': array([0.])}
+    """
+    parts = {"x": values.real, "y": values.imag} if np.iscomplexobj(values) else {"": values}
+    return {name: np.where(np.abs(part) <= floor, 0.0, part) for name, part in parts.items()}
+
+
 def _packed(values: Number, form: str, mark: str) -> str | float | None:
     given = np.asarray(values, dtype=float)
     if not np.isfinite(given).any():

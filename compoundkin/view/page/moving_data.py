@@ -18,7 +18,7 @@ from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import ANGULAR_ACCELERATION, ANGULAR_VELOCITY, unit_of
 from compoundkin.view.page.force_data import force_data
 from compoundkin.view.page.live.live_data import live_data
-from compoundkin.view.page.markup import brief, exact
+from compoundkin.view.page.markup import brief, exact, shown_parts
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.centre_pictures import centre_name
 from compoundkin.view.sketch.moving_sketch import MovingSketch, moving_sketch
@@ -137,12 +137,9 @@ class MotionData:
         return float(np.clip(lasts, QUICKEST, SLOWEST)) / lasts
 
     def _quantity(self, found: Quantity, packed: Any) -> dict[str, Any]:
-        values = np.asarray(found.values)[self.chosen]
-        # what is rounding is zero, as in the report's tables
-        values = np.where(np.abs(values) <= self.sample.floor(found), 0.0, values)
-        parts = {"x": values.real, "y": values.imag} if found.is_vector else {"": values}
-        kept = {name: packed(part) for name, part in parts.items()}
-        return {"name": found.name, "unit": found.unit, "order": found.order, "parts": kept}
+        floor, values = self.sample.floor(found), np.asarray(found.values)[self.chosen]
+        kept = {name: packed(part) for name, part in shown_parts(values, floor).items()}
+        return {"name": found.name, "unit": found.unit, "order": found.order, "floor": floor, "parts": kept}
 
     @cached_property
     def _numbers(self) -> Mapping[str, int]:

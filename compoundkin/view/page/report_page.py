@@ -48,6 +48,8 @@ VIEWS = {
     "derivation": ("circle", "The circle diagram: a line for each instant centre, numbered in the order of the steps."),
 }
 OUTPUTS = "outputs"
+# What draws the plots.
+PLOTS = ("quantities.js", "curves.js", "plot_axis.js", "axes.js", "plots.js")
 # More cells than these make a page slow and large: the table then has the poses of the report.
 MOST_CELLS = 12_000
 
@@ -196,7 +198,7 @@ def _with_viewer(document: Document, moving: Viewer) -> Document:
     before = (("motion", "Motion"),) if moving.plots else ()
     data = (*document.data, data_script("ck-motion", moving.data))
     library = vendored("uPlot.iife.min.js", "uPlot.LICENSE.txt", "uPlot")
-    scripts = *map(asset, scripts_of(moving.data)), library, asset("plots.js")
+    scripts = *map(asset, scripts_of(moving.data)), library, *map(asset, PLOTS)
     styles = asset("vendor/uPlot.min.css"), *map(asset, styles_of(moving.data))
     changed = replace(document, viewer=moving.html, sections=plots, before=before)
     return replace(changed, data=data, scripts=scripts, styles=styles)

@@ -15,6 +15,7 @@ from compoundkin.model.attributes import ACCELERATION, OF_LINKS, OF_POINTS, VELO
 from compoundkin.model.elements import FRAME
 from compoundkin.view.page.markup import element, hidden, lines, safe
 from compoundkin.view.page.moving_data import MotionData
+from compoundkin.view.page.plot_data import plot_data
 from compoundkin.view.report.shown_poses import Sample
 from compoundkin.view.sketch.moving_sketch import MovingPart, MovingSketch
 from compoundkin.view.sketch.svg import FONT, NATURAL, elements, link_names, number
@@ -65,7 +66,7 @@ def viewer(motion: Motion, design: int = 0, outputs: Sequence[str] = ()) -> View
     Raises NotAssembled where no pose is assembled, InvalidInput where links change their dimensions along the motion.
     """
     moving = MotionData(Sample(motion, design), tuple(outputs))
-    data = moving.data
+    data = {**moving.data, "plots": plot_data(moving)}
     return Viewer(player_html(moving, data), _plots(moving) if len(moving.chosen) > 1 else "", data)
 
 

@@ -510,7 +510,7 @@
     }
   }
 
-  Object.assign(page, { Player, written, withUnit, raised, players: [] });
+  Object.assign(page, { Player, written, withUnit, raised, unpacked, players: [] });
   for (const root of document.querySelectorAll(".player")) {
     const data = JSON.parse(document.getElementById("ck-motion").textContent);
     page.players.push(new Player(root, data));

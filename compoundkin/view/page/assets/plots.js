@@ -6,173 +6,255 @@
   const place = document.querySelector(".plots");
   if (!player || !place) return;
   const HEIGHT = 190;
-  const ROUNDING = 3e-7;
-  const TURNS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720, 1080, 3600];
   const PARTS = { "": "g1", x: "g1", y: "g2", length: "g0" };
+  const DASH = [5, 4];
+  const DOT = 3.5; // the radius of a mark
+  const AIR = 0.1; // free space above and below the curves
+  const FONT = "13px system-ui, sans-serif";
 
-  // uPlot wants numbers that only grow along x; a driver that goes back and forth is drawn over the poses
-  const grows = (values) => values.every((value, k) => k === 0 || value > values[k - 1]);
-  const falls = (values) => values.every((value, k) => k === 0 || value < values[k - 1]);
-  const along = player.along;
-  const turned = player.poses > 1 && falls(along.values);
-  const known = player.poses > 1 && (grows(along.values) || turned);
-  const order = [...along.values.keys()];
-  if (turned) order.reverse();
-  const xs = known ? order.map((k) => along.values[k]) : order;
-  const xLabel = known ? `${along.name}${along.unit ? ` [${page.raised(along.unit)}]` : ""}` : "pose";
-
-  const inDegrees = known && along.unit === "deg";
+  const axis = page.plotAxis(player);
+  const { xs, order, known } = axis;
 
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-  const panels = [];
+  const make = (tag, name, parent) => {
+    const element = document.createElement(tag);
+    element.className = name;
+    parent.append(element);
+    return element;
+  };
 
-  // --- a quantity by its name: one that came with the page, or one of any point or link -------------------------------
-  const ofPoint = (letter, word) => {
-    const order = ["position", "velocity", "acceleration"].indexOf(word);
-    const unit = player.data.unit + ["", "/s", "/s^2"][order];
-    const pairs = [...along.values.keys()].map((k) => (order ? player.rate(letter, order, k) : player.place(letter, k)));
-    return { name: `${letter}.${word}`, unit, order, parts: { x: pairs.map((p) => p[0]), y: pairs.map((p) => p[1]) } };
-  };
-  const ofLink = (link, word) => {
-    const order = ["angle", "angular_velocity", "angular_acceleration"].indexOf(word);
-    const values = order ? (order === 1 ? link.v : link.a)[2] : [...link.angle].map((a) => (a * 180) / Math.PI);
-    return { name: `${link.name}.${word}`, unit: ["deg", "rad/s", "rad/s^2"][order], order, parts: { "": values } };
-  };
-  // rates are packed with seven digits: what is smaller beside the largest of them is rounding
-  const cleaned = (quantity) => {
-    const largest = Math.max(...Object.values(quantity.parts).flatMap((values) => [...values]).filter(Number.isFinite).map(Math.abs), 0);
-    const clean = (value) => (Math.abs(value) < ROUNDING * largest ? 0 : value);
-    const parts = Object.fromEntries(Object.entries(quantity.parts).map(([name, values]) => [name, [...values].map(clean)]));
-    return { ...quantity, parts };
-  };
-  const named = (name) => {
-    const [owner, word] = [name.slice(0, name.lastIndexOf(".")), name.slice(name.lastIndexOf(".") + 1)];
-    const link = player.links.find((one) => one.name === owner);
-    return cleaned(link && word.startsWith("ang") ? ofLink(link, word) : ofPoint(owner, word));
-  };
+  // --- extremes that the page tells: lasting, found between the poses ---------------------------------------------------
+  const cell = (name) => document.querySelector(`[data-figure="${CSS.escape(name)}"]`);
+  const told = (name) => ["least", "greatest"].flatMap((end) => {
+    const [y, x] = [`${name}.${end}`, `${name}.${end} at`].map(cell).map((one) => one && Number(one.dataset.sort ?? one.textContent));
+    return known && Number.isFinite(x) && Number.isFinite(y) && !cell(`${name}.${end}`).closest(".behind") ? [{ x, y }] : [];
+  });
 
   // --- one plot -------------------------------------------------------------------------------------------------------
-  const add = (quantity, removable) => {
-    const parts = { ...quantity.parts };
-    // the length of a rate says more than its parts; that of a position says nothing
-    if (parts.x && quantity.order > 0) parts.length = [...parts.x].map((x, k) => Math.hypot(x, parts.y[k]));
-    const figure = document.createElement("figure");
-    figure.className = "plot";
-    const head = document.createElement("figcaption");
-    const title = document.createElement("strong");
-    title.textContent = quantity.name;
-    const value = document.createElement("span");
-    value.className = "value";
-    head.append(title, " ", value);
-    const box = document.createElement("div");
-    box.className = "canvas";
-    figure.append(head, box);
-    place.querySelector(".panels").append(figure);
+  class Panel {
+    constructor(name, removable) {
+      this.name = name;
+      this.limits = { x: null, y: null };
+      this.log = false;
+      this.figure = make("figure", "plot", place.querySelector(".panels"));
+      this.head = make("figcaption", "", this.figure);
+      make("strong", "", this.head).textContent = name;
+      this.head.append(" ");
+      const value = make("span", "value", this.head);
+      this.box = make("div", "canvas", this.figure);
+      this.box.setAttribute("role", "img");
+      this.read();
+      this.labels = Object.keys(this.quantity.parts).map((part) => {
+        const label = make("span", `part${part === "length" ? " dashed" : ""}`, value);
+        label.style.setProperty("--own", `var(--${PARTS[part]})`);
+        value.append(" ");
+        return { label, part, called: part === "length" ? `|${name.split(".").pop()}| ` : part ? `${part} ` : "" };
+      });
+      this.build();
+      page.axisControls(this);
+      if (removable) this.removable();
+      this.follow(player.pose);
+    }
 
-    const names = Object.keys(parts);
-    const rows = names.map((name) => order.map((k) => (Number.isFinite(parts[name][k]) ? parts[name][k] : null)));
-    const axis = { stroke: () => colour("quiet"), grid: { stroke: () => colour("rule"), width: 1 }, ticks: { stroke: () => colour("rule"), width: 1 }, font: "13px system-ui, sans-serif", labelFont: "13px system-ui, sans-serif" };
-    const wide = (u, values) => (values || []).map((v) => (v === null ? "" : page.written(v)));
-    const plot = new page.uPlot({
-      width: box.clientWidth || 480, height: HEIGHT, legend: { show: false },
-      scales: { x: { time: false, range: (u, low, high) => (low === high ? [low - 1, high + 1] : [low, high]) } },
-      cursor: { x: false, y: false, points: { show: false }, drag: { x: false, y: false } },
-      axes: [
-        { ...axis, values: wide, label: xLabel, labelSize: 20, size: 34, ...(inDegrees ? { incrs: TURNS } : {}) },
-        { ...axis, values: wide, label: quantity.unit === "deg" ? "degrees" : page.raised(quantity.unit), labelSize: 20, size: 58 },
-      ],
-      series: [{}, ...names.map((name) => ({
-        stroke: () => colour(PARTS[name]), width: name === "length" ? 1.5 : 2, dash: name === "length" ? [5, 4] : undefined,
-        points: { show: true, size: 7, fill: () => colour("paper"), filter: (u, index) => extremes(u.data[index]) },
-      }))],
-    }, [xs, ...rows], box);
+    // the quantity as it is now
+    read() {
+      this.quantity = page.quantity(player, this.name);
+      const { parts, slopes, floor } = this.quantity;
+      const ordered = (values) => values && order.map((k) => values[k]);
+      const isOwn = !player.design?.isChanged;
+      const curve = (part, extremes) => new page.Curve(xs, ordered(parts[part]), {
+        slopes: ordered(slopes[part]), jumps: axis.jumps(this.name, part, isOwn), floor, extremes,
+      });
+      this.curves = Object.keys(parts).map((part) => {
+        const extremes = told(part ? `${this.name}.${part}` : this.name);
+        return part === "length" ? page.Curve.ofLength(curve("x", []), curve("y", []), extremes, floor) : curve(part, extremes);
+      });
+      this.rows = Object.values(parts).map((values) => order.map((k) => (Number.isFinite(values[k]) ? values[k] : null)));
+      if (isOwn) this.before = this.curves;
+      this.box.setAttribute("aria-label", this.words);
+    }
+    get words() {
+      const { parts, unit } = this.quantity;
+      const ranges = Object.keys(parts).map((part, k) => {
+        const { low, high } = this.curves[k].ends;
+        return `${part ? `${part} ` : ""}${low ? `from ${page.written(low.y)} to ${page.written(high.y)}` : "not known"}`;
+      });
+      return `${this.name} over ${axis.name}: ${ranges.join("; ")} ${page.raised(unit)}`;
+    }
+    // what there is to be seen of all curves, the ones before a change too
+    get whole() {
+      const ends = [...this.curves, ...this.before].map((curve) => curve.ends).filter(({ low }) => low);
+      const low = Math.min(...ends.map((one) => one.low.y)), high = Math.max(...ends.map((one) => one.high.y));
+      if (!ends.length) return { x: axis.range, y: [-1, 1], low };
+      const some = this.curves.concat(this.before).some((curve) => curve.marks.length);
+      // what does not change is drawn in the middle of a range that does not tell of rounding
+      const room = some ? AIR * (high - low) : Math.max(0.1 * Math.abs(high), this.quantity.floor) || 1;
+      const y = this.log ? page.uPlot.rangeLog(low, high, 10, true) : [low - room, high + room];
+      return { x: axis.range, y, low };
+    }
+    get mayLog() { return this.whole.low > 0; }
 
-    const cursor = document.createElement("div");
-    cursor.className = "cursor";
-    plot.over.append(cursor);
-    plot.over.style.touchAction = "pan-y";
-    const take = (event) => {
-      const left = event.clientX - plot.over.getBoundingClientRect().left;
-      player.stop();
-      player.show(order[plot.valToIdx(plot.posToVal(left, "x"))]);
-    };
-    plot.over.addEventListener("pointerdown", (event) => { plot.over.setPointerCapture(event.pointerId); take(event); });
-    plot.over.addEventListener("pointermove", (event) => { if (event.buttons) take(event); });
+    build() {
+      const { parts, unit } = this.quantity;
+      const line = { stroke: () => colour("rule"), width: 1 };
+      const style = { stroke: () => colour("quiet"), grid: line, ticks: line, font: FONT, labelFont: FONT, labelSize: 20 };
+      const wide = (u, values) => (values || []).map((v) => (v === null ? "" : page.written(v)));
+      const curve = (k) => (u) => ({
+        stroke: this.drawn(u, this.curves[k]), fill: null, clip: null, band: null, gaps: null, flags: 1,
+      });
+      // dragging moves the cursor; with Shift it chooses a part of the axis, a double click shows all again
+      const bind = {
+        mousedown: (u, target, act) => (event) => { if (event.shiftKey) act(event); },
+        dblclick: () => () => this.show({ x: null, y: null }),
+      };
+      this.plot = new page.uPlot({
+        width: this.box.clientWidth || 480, height: HEIGHT, pxAlign: 0, legend: { show: false },
+        scales: { x: { time: false, range: () => this.limits.x ?? this.whole.x }, y: { distr: this.log ? 3 : 1, range: () => this.limits.y ?? this.whole.y } },
+        cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, bind },
+        axes: [
+          { ...style, values: wide, label: axis.label, size: 34, ...axis.incrs },
+          { ...style, values: wide, label: unit === "deg" ? "degrees" : page.raised(unit), size: 58 },
+        ],
+        series: [{}, ...Object.keys(parts).map((part, k) => ({
+          stroke: () => colour(PARTS[part]), width: part === "length" ? 1.5 : 2, dash: part === "length" ? DASH.map((long) => long * devicePixelRatio) : undefined,
+          pxAlign: 0, points: { show: false }, paths: curve(k),
+        }))],
+        hooks: { drawAxes: [() => this.drawBefore()], draw: [() => this.drawMarks()], setSelect: [(u) => this.chosen(u.select)] },
+      }, [xs, ...this.rows], this.box);
+      this.scale();
+      this.cursor = make("div", "cursor", this.plot.over);
+      this.plot.over.style.touchAction = "pan-y";
+      const take = (event) => {
+        const left = event.clientX - this.plot.over.getBoundingClientRect().left;
+        player.stop();
+        player.show(order[this.plot.valToIdx(this.plot.posToVal(left, "x"))]);
+      };
+      this.plot.over.addEventListener("pointerdown", (event) => {
+        if (event.shiftKey) return;
+        this.plot.over.setPointerCapture(event.pointerId);
+        take(event);
+      });
+      this.plot.over.addEventListener("pointermove", (event) => { if (event.buttons && !event.shiftKey) take(event); });
+    }
+    drawn(u, curve) {
+      return curve.path((x) => u.valToPos(x, "x", true), (y) => u.valToPos(y, "y", true), !this.log);
+    }
+    clipped(draw) {
+      const { ctx, bbox } = this.plot;
+      ctx.save();
+      ctx.beginPath();
+      const air = (DOT + 1) * devicePixelRatio;
+      ctx.rect(bbox.left - air, bbox.top - air, bbox.width + 2 * air, bbox.height + 2 * air);
+      ctx.clip();
+      draw(ctx, devicePixelRatio);
+      ctx.restore();
+    }
+    // the curves of the original, pale behind those of a changed design
+    drawBefore() {
+      if (this.before === this.curves) return;
+      this.clipped((ctx, pixels) => {
+        ctx.strokeStyle = colour("quiet");
+        ctx.globalAlpha = 0.5;
+        ctx.lineWidth = pixels;
+        ctx.setLineDash([]);
+        for (const curve of this.before) ctx.stroke(this.drawn(this.plot, curve));
+      });
+    }
+    drawMarks() {
+      this.clipped((ctx, pixels) => {
+        ctx.lineWidth = 1.5 * pixels;
+        ctx.setLineDash([]);
+        ctx.fillStyle = colour("paper");
+        this.curves.forEach((curve, k) => {
+          ctx.strokeStyle = colour(PARTS[this.labels[k].part]);
+          for (const { x, y } of curve.marks) {
+            ctx.beginPath();
+            ctx.arc(this.plot.valToPos(x, "x", true), this.plot.valToPos(y, "y", true), DOT * pixels, 0, 2 * Math.PI);
+            ctx.fill();
+            ctx.stroke();
+          }
+        });
+      });
+    }
 
-    const labels = names.map((name) => {
-      const label = document.createElement("span");
-      label.className = "part";
-      label.style.setProperty("--own", `var(--${PARTS[name]})`);
-      value.append(label, " ");
-      const called = name === "length" ? `|${quantity.name.split(".").pop()}| ` : name ? `${name} ` : "";
-      return { label, called, own: parts[name] };
-    });
-    const panel = {
-      plot, figure, box,
-      follow: (k) => {
-        const x = plot.valToPos(known ? along.values[k] : k, "x");
-        cursor.style.transform = `translateX(${x}px)`;
-        for (const { label, called, own } of labels) label.textContent = `${called}${page.withUnit(own[k], quantity.unit)}`;
-      },
-    };
-    box.setAttribute("role", "img");
-    box.setAttribute("aria-label", told(quantity, parts));
-    if (removable) {
-      const remove = document.createElement("button");
+    // --- what part of it is seen --------------------------------------------------------------------------------------
+    show(limits) {
+      Object.assign(this.limits, limits);
+      this.scale();
+      this.follow(player.pose);
+      this.told?.();
+    }
+    // each scale asks for its range anew
+    scale() {
+      this.plot.batch(() => ["x", "y"].forEach((axis) => this.plot.setScale(axis, { min: null, max: null })));
+    }
+    chosen({ left, width }) {
+      if (width < 4) return;
+      const ends = [left, left + width].map((at) => this.plot.posToVal(at, "x"));
+      this.plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+      this.show({ x: ends });
+    }
+    setLog(log) {
+      this.log = log && this.mayLog;
+      this.plot.destroy();
+      this.build();
+      this.follow(player.pose);
+    }
+
+    // --- pose and design ----------------------------------------------------------------------------------------------
+    follow(k) {
+      const x = this.plot.valToPos(axis.at(k), "x");
+      this.cursor.style.transform = `translateX(${x}px)`;
+      this.cursor.hidden = !(x >= 0 && x <= this.plot.over.clientWidth + 1);
+      const { parts, unit } = this.quantity;
+      for (const { label, called, part } of this.labels) label.textContent = `${called}${page.withUnit(parts[part][k], unit)}`;
+    }
+    refresh() {
+      this.read();
+      if (this.log && !this.mayLog) return this.setLog(false);
+      this.plot.setData([xs, ...this.rows], false);
+      this.scale();
+      this.follow(player.pose);
+    }
+    removable() {
+      const remove = make("button", "remove", this.head);
       remove.type = "button";
-      remove.className = "remove";
       remove.textContent = "Remove";
-      remove.setAttribute("aria-label", `Remove the plot of ${quantity.name}`);
+      remove.setAttribute("aria-label", `Remove the plot of ${this.name}`);
       remove.addEventListener("click", () => {
-        panels.splice(panels.indexOf(panel), 1);
-        plot.destroy();
-        figure.remove();
+        panels.splice(panels.indexOf(this), 1);
+        this.plot.destroy();
+        this.figure.remove();
         place.querySelector(".quantity").focus();
       });
-      head.append(remove);
     }
-    panels.push(panel);
-    panel.follow(player.pose);
-    return panel;
-  };
-  // where a curve is highest and lowest: those places are marked
-  const extremes = (values) => {
-    let low = -1, high = -1;
-    values.forEach((value, k) => {
-      if (value === null) return;
-      if (low < 0 || value < values[low]) low = k;
-      if (high < 0 || value > values[high]) high = k;
-    });
-    return low < 0 || values[low] === values[high] ? [] : [Math.min(low, high), Math.max(low, high)];
-  };
-  const told = (quantity, parts) => {
-    const ranges = Object.entries(parts).map(([name, values]) => {
-      const good = [...values].filter(Number.isFinite);
-      return `${name ? `${name} ` : ""}from ${page.written(Math.min(...good))} to ${page.written(Math.max(...good))}`;
-    });
-    return `${quantity.name} over ${known ? along.name : "poses"}: ${ranges.join("; ")} ${quantity.unit}`;
-  };
+  }
 
-  for (const output of player.outputs) add(output, false);
-  player.listeners.push((k) => panels.forEach((panel) => panel.follow(k)));
+  const panels = [];
+  const add = (name, removable) => {
+    panels.push(new Panel(name, removable));
+    return panels.at(-1);
+  };
+  for (const output of player.outputs) add(output.name, false);
+  const follow = () => panels.forEach((panel) => panel.follow(player.pose));
+  player.listeners.push(follow);
   const button = place.querySelector(".add");
   if (button) {
-    button.addEventListener("click", () => {
-      const panel = add(named(place.querySelector(".quantity").value), true);
-      panel.figure.scrollIntoView({ block: "nearest" });
-    });
+    button.addEventListener("click", () => add(place.querySelector(".quantity").value, true).figure.scrollIntoView({ block: "nearest" }));
   }
 
   // --- canvases follow the page: its width, its colours, paper ---------------------------------------------------------
-  const fitted = new ResizeObserver(() => panels.forEach(({ plot, box }) => {
-    if (box.clientWidth && Math.abs(box.clientWidth - plot.width) > 1) plot.setSize({ width: box.clientWidth, height: HEIGHT });
-  }));
+  const fitted = new ResizeObserver(() => {
+    for (const { plot, box } of panels) {
+      if (box.clientWidth && Math.abs(box.clientWidth - plot.width) > 1) plot.setSize({ width: box.clientWidth, height: HEIGHT });
+    }
+    follow();
+  });
   fitted.observe(place);
-  const paint = () => panels.forEach(({ plot, follow }) => { plot.redraw(); follow(player.pose); });
-  fitted && new ResizeObserver(() => panels.forEach(({ follow }) => follow(player.pose))).observe(place);
+  const paint = () => { panels.forEach(({ plot }) => plot.redraw()); follow(); };
   document.addEventListener("compoundkin:theme", paint);
   matchMedia("print").addEventListener("change", paint);
   addEventListener("beforeprint", paint);
   addEventListener("afterprint", paint);
-  page.plots = { panels, add: (name) => add(named(name), true) };
+  page.plots = { panels, add: (name) => add(name, true), refresh: () => panels.forEach((panel) => panel.refresh()) };
 })();
