@@ -112,7 +112,7 @@ def reach(values: Number) -> tuple[float, float]:
 
 
 def line_of(points: Iterable[Number]) -> Number:
-    """Return points as an array; numbers of another kind, such as those that note what is done with them, stay so.
+    """Return points as an array. Numbers of another kind, such as those with notes, stay so.
 
     >>> line_of([0j, 1.0])
     array([0.+0.j, 1.+0.j])

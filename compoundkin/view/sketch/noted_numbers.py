@@ -27,6 +27,20 @@ class Noted:
 
     note: RecordedNumber
 
+    def conjugate(self) -> Any:
+        """Return the complex conjugate."""
+        return noted(plain(self).conjugate(), self.note.conjugate())
+
+    @property
+    def real(self) -> Any:
+        """The real part."""
+        return noted(plain(self).real, self.note.real)
+
+    @property
+    def imag(self) -> Any:
+        """The imaginary part."""
+        return noted(plain(self).imag, self.note.imag)
+
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         from compoundkin.programs.recording.recorded_functions import UFUNCS
 
@@ -73,6 +87,11 @@ def _binary(name: str, swapped: bool = False) -> Callable[[Any, Any], Any]:
     return method
 
 
+def _compared(name: str) -> Callable[[Any, Any], bool]:
+    operation = getattr(operator, name)
+    return lambda self, other: bool(operation(plain(self), plain(other)))
+
+
 def _is_array(value: Any) -> bool:
     return isinstance(value, np.ndarray) and value.ndim > 0
 
@@ -94,28 +113,11 @@ class _Scalar(Noted):
     def __neg__(self) -> Any:
         return noted(-plain(self), -self.note)
 
-    def __pos__(self) -> Any:
-        return self
-
     def __abs__(self) -> Any:
         return noted(abs(plain(self)), abs(self.note))
 
     def __pow__(self, exponent: float) -> Any:
         return noted(plain(self) ** exponent, self.note**exponent)
-
-    def conjugate(self) -> Any:
-        """Return the complex conjugate."""
-        return noted(plain(self).conjugate(), self.note.conjugate())
-
-    @property
-    def real(self) -> Any:
-        """The real part."""
-        return noted(plain(self).real, self.note.real)
-
-    @property
-    def imag(self) -> Any:
-        """The imaginary part."""
-        return noted(plain(self).imag, self.note.imag)
 
     def item(self) -> Any:
         """Return itself: it is a single number."""
@@ -153,17 +155,7 @@ class NotedLength(_Scalar):
     def __hash__(self) -> int:
         return hash(self.value)
 
-    def __lt__(self, other: Any) -> bool:
-        return bool(self.value < plain(other))
-
-    def __le__(self, other: Any) -> bool:
-        return bool(self.value <= plain(other))
-
-    def __gt__(self, other: Any) -> bool:
-        return bool(self.value > plain(other))
-
-    def __ge__(self, other: Any) -> bool:
-        return bool(self.value >= plain(other))
+    __lt__, __le__, __gt__, __ge__ = (_compared(name) for name in ("lt", "le", "gt", "ge"))
 
     def __bool__(self) -> bool:
         return bool(self.value)
@@ -176,24 +168,10 @@ class NotedLength(_Scalar):
 
 
 class NotedCourse(Noted, np.ndarray):
-    """An array along the poses of a motion with its note, that of one pose."""
+    """An array along the poses of a motion. Its note is that of one pose."""
 
     def __array_finalize__(self, of: Any) -> None:
         self.note = getattr(of, "note", None)  # type: ignore[assignment]
-
-    @property  # type: ignore[misc]
-    def real(self) -> Any:
-        """The real parts."""
-        return noted(plain(self).real, self.note.real)
-
-    @property  # type: ignore[misc]
-    def imag(self) -> Any:
-        """The imaginary parts."""
-        return noted(plain(self).imag, self.note.imag)
-
-    def conjugate(self) -> Any:
-        """Return the complex conjugates."""
-        return noted(plain(self).conjugate(), self.note.conjugate())
 
     def min(self, *args: Any, **options: Any) -> Any:
         """Return the least of real numbers, over the poses."""
@@ -217,11 +195,7 @@ def noted(value: Number, note: RecordedNumber) -> Any:
 
 
 def plain(value: Any) -> Any:
-    """Return numbers without their notes.
-
-    >>> plain((1.0, [2j]))
-    (1.0, [2j])
-    """
+    """Return numbers without their notes."""
     if isinstance(value, tuple | list):
         return type(value)(plain(one) for one in value)
     if not isinstance(value, Noted):
@@ -232,7 +206,7 @@ def plain(value: Any) -> Any:
 
 
 def as_place(value: Number) -> complex:
-    """Return a place as a complex number, its note with it where it has one.
+    """Return a place as a complex number. Its note stays with it, where it has one.
 
     >>> as_place(np.float64(2.0))
     (2+0j)
@@ -241,9 +215,5 @@ def as_place(value: Number) -> complex:
 
 
 def as_length(value: Number) -> Any:
-    """Return a real number as a plain one, its note with it where it has one.
-
-    >>> as_length(np.float64(2.0))
-    2.0
-    """
+    """Return a real number as a plain one. Its note stays with it, where it has one."""
     return value if isinstance(value, NotedLength) else float(value)

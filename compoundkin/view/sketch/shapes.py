@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
+from compoundkin.view.sketch.stroke_row import StrokeRow
 
 HATCH = 6.0  # distance of the strokes of a hatching
 HEAD = 10.0  # length of an arrow's head
@@ -35,32 +36,13 @@ class Polygon(PrintsShort):
     among: tuple[complex, ...] = ()
 
 
-class Row(NamedTuple):
-    """A row of equal strokes: the foot of the first, the way to the next foot, a stroke from its foot, their number."""
-
-    first: complex
-    step: complex
-    stroke: complex
-    number: float
-
-    @property
-    def lines(self) -> tuple[tuple[complex, complex], ...]:
-        """All strokes."""
-        feet = [self.first + self.step * k for k in range(round(self.number))]
-        return tuple((foot, foot + self.stroke) for foot in feet)
-
-    def moved(self, by: complex, turn: complex) -> Row:
-        """Return it turned about zero, then moved."""
-        return Row(self.first * turn + by, self.step * turn, self.stroke * turn, self.number)
-
-
 @dataclass(frozen=True, repr=False)
 class Strokes(PrintsShort):
     """Several lines of one style that belong together, such as a hatching. Equal ones tell their `row`."""
 
     lines: tuple[tuple[complex, ...], ...]
     style: str
-    row: Row | None = None
+    row: StrokeRow | None = None
 
 
 @dataclass(frozen=True)
@@ -198,7 +180,7 @@ def hatching(start: complex, stop: complex, side: float) -> Strokes:
     line, e = stop - start, direction(stop - start)
     count = np.maximum(2.0, np.rint(abs(line) / HATCH))
     slant = e * SLANT.real + e * 1j * side * SLANT.imag
-    row = Row(start + line * 0.7 / count, line / count, slant * HATCH, count)
+    row = StrokeRow(start + line * 0.7 / count, line / count, slant * HATCH, count)
     return Strokes(row.lines, "hatch", row)
 
 

@@ -11,9 +11,10 @@ from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Sliding, Strap, Stud, Track, Wheel
 from compoundkin.view.sketch.noted_numbers import as_length
 from compoundkin.view.sketch.scene import Seen
-from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Row, Strokes, box, direction, hatching, ticks
+from compoundkin.view.sketch.shapes import CircleShape, Polygon, Polyline, Strokes, box, direction, hatching, ticks
 from compoundkin.view.sketch.sketch_style import BLOCK, PIN, STUD
 from compoundkin.view.sketch.slide_shapes import BEYOND, Laid, Layer, Painter, sliding, stops
+from compoundkin.view.sketch.stroke_row import StrokeRow
 
 # Teeth nearer than this to each other are not drawn one by one.
 CLOSEST = 7.0
@@ -118,7 +119,7 @@ def _track(painter: Painter, seen: Seen, mark: Track) -> Iterator[Laid]:
         origin = painter.place(link, mark.at)
         first = np.ceil((e.conjugate() * (start - origin)).real / step)
         last = np.floor((e.conjugate() * (stop - origin)).real / step)
-        row = Row(origin + e * step * first - under * TOOTH, e * step, under * 2.0 * TOOTH, last - first + 1)
+        row = StrokeRow(origin + e * step * first - under * TOOTH, e * step, under * 2.0 * TOOTH, last - first + 1)
         yield Laid(Layer.BAR, Strokes(row.lines, painter.style("thin", link), row), link)
 
 

@@ -27,7 +27,7 @@ PLACE, TURN = ("x", "y"), ("cos", "sin")
 
 
 def noted_scene(scene: Scene, motion: Motion, names: Iterable[str]) -> tuple[Scene, OperationGraph]:
-    """Return a scene whose numbers note what is done with them, and the graph of the notes.
+    """Return a scene in numbers with notes, and the graph of these.
 
     Inputs are the dimensions of these names, which may change, and the poses of the links along the motion.
     """
