@@ -79,7 +79,9 @@ class Diagnosis:
 
     @cached_property
     def stress(self) -> Array:
-        """The states of self-stress, at a pose that is not special."""
+        """The states of self-stress, at a pose that is not special; none where all rows are independent."""
+        if self.rank == len(self.rows):
+            return np.zeros((self.rank, 0))
         return stresses(self.equations, self.motion.state)
 
     @cached_property

@@ -52,7 +52,8 @@ def null_space(rows: Array, tolerance: float = STRICT.rank) -> Array:
     """Return an orthonormal basis of what the rows leave free, in columns."""
     if not len(rows):
         return np.eye(rows.shape[1])
-    _, values, right = np.linalg.svd(rows, full_matrices=True)
+    # with rows enough the right side is whole without the left one being it
+    _, values, right = np.linalg.svd(rows, full_matrices=len(rows) < rows.shape[1])
     rank = int(np.sum(values > tolerance * max(values, default=1.0)))
     return np.asarray(right[rank:].T)
 

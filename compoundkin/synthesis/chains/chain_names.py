@@ -18,7 +18,7 @@ from compoundkin.synthesis.chains.joints import Joints
 
 _BARS = {3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight", 9: "nine", 10: "ten"}
 _OWN_NAMES = {"G?LTMO": "double butterfly", "G?DlU_": "single flier"}
-_SIX, _TERNARY = 6, 3
+_SIX, _BINARY, _TERNARY = 6, 2, 3
 # A pin of five links alone stands for 125 chains; above this number they are not told one by one.
 MOST_CHAINS = 2000
 
@@ -134,6 +134,9 @@ def _tree(links: list[int], sequence: Sequence[int]) -> tuple[tuple[int, int], .
 def derived_names(joints: Joints, frame: int | None) -> tuple[str, ...]:
     """Return the names of the chains it derives from, sorted."""
     if number_of_derived_chains(joints) > MOST_CHAINS or 1 in joints.degrees or joints.pieces > 1:
+        return ()
+    if len(joints.links) > MOST_LINKS and max(joints.degrees) > _BINARY:
+        # of chains so large only single loops have names
         return ()
     names = {chain_name(chain, frame): None for chain in derived_chains(joints) if chain.links}
     return tuple(sorted((name for name in names if name), key=_by_number))
