@@ -21,6 +21,7 @@ from compoundkin.model.elements import drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
 from compoundkin.model.loads import damper, effort, force, friction, gravity, mass, pretension, spring, torque
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.outlines import outline
 from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
 from compoundkin.model.pairs.cylinder import cylinder
 
@@ -106,6 +107,7 @@ __all__ = [
     "mobility_analysis",
     "mode",
     "optimise",
+    "outline",
     "page",
     "plot",
     "polar",

@@ -118,6 +118,8 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "mass": {"link": "a", "mass": 1.0, "at": "A", "inertia": 0.1, "density": None},
         "mobility_analysis": {"mechanism": m, "poses": None},
         "mode": {"sign": 1},
+        "outline": {"link": "a", "width": 8.0, "through": (), "at": None, "radius": None, "polygon": (), "pin": 5.0,
+                    "layer": 0, "name": ""},
         "optimise": {"mechanism": m, "free": {"coupler.C.x": (4.9, 5.1)},
                      "objective": ck.goals.path("C", [(4, 3), (3, 3), (2, 2)]), "subject_to": (),
                      "values": ck.deg([0, 90, 180]), "speed": 1.0, "acceleration": 0.0, "jerk": 0.0,

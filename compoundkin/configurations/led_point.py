@@ -18,7 +18,7 @@ from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.inputs import Inputs
 from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.elements import Drive, Expectation, Item, Lead, LoadWord, Mode, drive
+from compoundkin.model.elements import Drive, Expectation, Item, Lead, LinkOutline, LoadWord, Mode, drive
 from compoundkin.model.laws import constant_speed
 from compoundkin.model.laws.path_parts import PARTS
 from compoundkin.model.mechanism import Mechanism
@@ -101,7 +101,7 @@ class LedPoint:
 
 def _led(mechanism: Mechanism, point: str, free: tuple[str, ...]) -> Mechanism:
     """Return the mechanism with some drivers let go and a point carried about in their place."""
-    parts = [item for item in mechanism.parts if not isinstance(item, Mode | Expectation | LoadWord)]
+    parts = [item for item in mechanism.parts if not isinstance(item, Mode | Expectation | LoadWord | LinkOutline)]
     kept = [item for item in parts if not (isinstance(item, Drive) and item.name in free)]
     leader = Lead(LEADER, point, x=constant_speed(0.0), y=constant_speed(0.0))
     turned: tuple[Item, ...] = ()

@@ -12,6 +12,7 @@ from compoundkin.model.fields import Key, Kind
 from compoundkin.model.laws.program_segments import LIMITS, NAMES, ProgramSegment
 from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.outlines.link_outline import OUTLINES, LinkOutline
 from compoundkin.model.pairs import KINDS, WRITTEN
 from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.written import CYLINDERS, DRIVES
@@ -74,6 +75,7 @@ TABLES = (
     TableForm(CYLINDERS, "array", Cylinder.keys, "Each is a cylinder: a barrel and a rod between two pins."),
     TableForm(DRIVES, "array", Drive.keys, "The drivers: of pairs, of points that are led, of the angles of links."),
     *(TableForm(name, "array", kinds[0].keys, f"Each is a {kinds[0].title}.") for name, kinds in LOADS.items()),
+    TableForm(OUTLINES, "array", LinkOutline.keys, "Each is an outline of a link, or a part of it."),
     TableForm("modes", "array", MODE, "Assembly modes chosen by sign instead of by a drawing."),
     TableForm("expected", "array", EXPECTED, "Published numbers to hold the solution against."),
 )

@@ -131,6 +131,11 @@ def point(value: Number) -> Any:
     return {"polar": [plain(radius), plain(turned)]} if exact else xy
 
 
+def spot(value: Number | str) -> Any:
+    """Return the letter of a point, or a place as `point` does."""
+    return value if isinstance(value, str) else point(value)
+
+
 def _xy(value: Number) -> tuple[float, float]:
     return value.real, value.imag
 

@@ -97,7 +97,7 @@ def _tagged(kinds: Mapping[str, type[Any]], doc: str) -> dict[str, Any]:
 
 def _key(key: Key) -> dict[str, Any]:
     out = {**FRAGMENTS[key.kind], "description": key.doc}
-    if key.default in (None, "", ()):
+    if key.default in (None, "", ()) or key.kind == "layers":
         return out
     made = {"turn": exact_numbers.degrees, "angle": exact_numbers.degrees, "place": exact_numbers.point}
     return {**out, "default": made[key.kind](key.default) if key.kind in made else key.default}
@@ -175,10 +175,12 @@ FRAGMENTS: dict[Kind, dict[str, Any]] = {
     "text": {"type": "string"},
     "names": {"type": "array", "items": NAME, "uniqueItems": True},
     "length": _ref("numbers"),
-    "angle": _ref("angle"),
-    "point": _ref("point"),
+    **dict.fromkeys(("angle", "coordinate"), _ref("angle")),
+    **dict.fromkeys(("point", "place"), _ref("point")),
     "units": _ref("units"),
     "spot": {"anyOf": [NAME, _ref("point")]},
+    "spots": {"type": "array", "items": {"anyOf": [NAME, _ref("point")]}, "minItems": 2},
+    "layers": {"type": ["integer", "array"], "items": {"type": "integer"}, "minItems": 1},
     "amount": _ref("amount"),
     "planar": _ref("planar"),
     "sign": {"enum": [1, -1]},
@@ -194,12 +196,10 @@ FRAGMENTS: dict[Kind, dict[str, Any]] = {
     "whole": {"type": "integer"},
     "span": {"type": "number", "exclusiveMinimum": 0},
     "times": _ref("times"),
-    "coordinate": _ref("angle"),
     "segments": {"type": "array", "items": _ref("segment"), "minItems": 1},
     "law": _ref("law"),
     "number": NUMBER,
     "turn": _ref("single"),
-    "place": _ref("point"),
     "places": {"type": "array", "items": _ref("point"), "minItems": 4},
     "route": {"type": "array", "items": _ref("point"), "minItems": 2},
     "path": _ref("path"),

@@ -17,6 +17,7 @@ from compoundkin.files.written_quantities import rate, values
 from compoundkin.model.attributes import ANGLE, TIME, rated
 from compoundkin.model.elements import FRAME, Drawn, Drive, Expectation, Item, Lead, Link, Mode, drive
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.outlines.link_outline import OUTLINES, LinkOutline
 from compoundkin.model.pairs import WRITTEN, Pair
 from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.written import CYLINDERS, DRIVES
@@ -97,6 +98,9 @@ def _items(parts: Mapping[str, Any], log: Recovery) -> Iterator[Item]:
     yield from drives
     yield from drawn
     yield from written_loads(parts, log, _valid(base.items if base else (), drives))
+    yield from (
+        LinkOutline(**log.table(raw, LinkOutline.keys, where)) for raw, where in tables_of(parts, OUTLINES, log)
+    )
     yield from (Mode(**log.table(raw, doc.MODE, where)) for raw, where in tables_of(parts, "modes", log))
     yield from (_expected(angles, *at, log) for at in tables_of(parts, "expected", log))
 

@@ -15,6 +15,7 @@ from compoundkin.files.single_values import bad, wrong
 from compoundkin.files.value_readers import READERS
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.loads import WRITTEN as LOADS
+from compoundkin.model.outlines.link_outline import OUTLINES
 from compoundkin.model.profiles import disc
 
 # Begins every name that stands in for a broken one: the Unicode replacement character.
@@ -22,7 +23,8 @@ STAND_IN = "\ufffd"
 
 # Places that cannot be judged where the links of a pair, a link's letters or the drawing are not known.
 _LOADS = rf"({'|'.join(LOADS)})\[\d+\](\.\w+)*\.(link|to|at|point|fixed_in|pair|over)$"
-JOINED = (r"links\.[^.]+$", r"drives\[\d+\]$", _LOADS)
+_OUTLINES = rf"{OUTLINES}\[\d+\]\.(link|at|pin|through|polygon)(\[\d+\])?$"
+JOINED = (r"links\.[^.]+$", r"drives\[\d+\]$", _LOADS, _OUTLINES)
 LETTERS = (*JOINED, r"drawn\.", r"points\.")
 DRAWING = (r"links\..+\.points\.", r"drawn\.")
 ALL = (r".*",)
@@ -120,7 +122,7 @@ class Recovery:
             "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
             "two": (1.0, 1.0), "profile": PROFILE, "program": None, "place": point, "places": (), "route": (),
             "path": None, "turned": (), "reach": None, "sweep": None, "planar": 0j, "spot": 0j,
-            "units": {"length": "m", "mass": "kg", "force": "N"},
+            "spots": (), "layers": (0,), "units": {"length": "m", "mass": "kg", "force": "N"},
         }  # fmt: skip
         return values.get(kind, 0.0)
 

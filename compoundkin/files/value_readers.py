@@ -7,6 +7,7 @@ from typing import Any
 from compoundkin.base.series import Number
 from compoundkin.files.single_values import (
     Reader,
+    bad,
     flag,
     name,
     names,
@@ -65,6 +66,30 @@ def spot(value: Any, where: str, angle: bool | None = None) -> Number | str:
     return name(value, where) if isinstance(value, str) else point(value, where)
 
 
+def spots(value: Any, where: str, angle: bool | None = None) -> tuple[Number | str, ...]:
+    """Read a list of points of a link, letters or places.
+
+    >>> spots(["A", [1, 2]], "outlines[0].polygon")
+    ('A', (1+2j))
+    """
+    if not isinstance(value, list):
+        raise wrong(where, value, "a list of points", 'write ["A", [3, 4], "B"]')
+    return tuple(spot(one, f"{where}[{index}]") for index, one in enumerate(value))
+
+
+def layers(value: Any, where: str, angle: bool | None = None) -> tuple[int, ...]:
+    """Read a layer, or a list of them.
+
+    >>> layers(1, "outlines[0].layer"), layers([0, 2], "outlines[0].layer")
+    ((1,), (0, 2))
+    """
+    if value == []:
+        raise bad(where, "the list is empty", "write a layer, or leave it out")
+    if not isinstance(value, list):
+        return (whole(value, where),)
+    return tuple(sorted({whole(one, f"{where}[{index}]") for index, one in enumerate(value)}))
+
+
 def units(value: Any, where: str, angle: bool | None = None) -> dict[str, str]:
     """Read the names of units.
 
@@ -79,6 +104,8 @@ def units(value: Any, where: str, angle: bool | None = None) -> dict[str, str]:
 READERS: dict[Kind, Reader] = {
     "name": name,
     "spot": spot,
+    "spots": spots,
+    "layers": layers,
     "units": units,
     "text": text,
     "names": names,

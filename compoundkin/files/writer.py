@@ -21,6 +21,7 @@ from compoundkin.model.laws.motion_programs import Program
 from compoundkin.model.laws.program_segments import ProgramSegment
 from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.outlines.link_outline import OUTLINES
 from compoundkin.model.pairs import WRITTEN
 from compoundkin.model.written import CYLINDERS, DRIVES
 
@@ -41,7 +42,7 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
     out[CYLINDERS] = [_pair(item) for item in mechanism.cylinders.values()]
     out[DRIVES] = [_driven(mechanism, item) for item in mechanism.items if isinstance(item, Drive | Lead)]
     out[doc.DRAWN.name] = _points(mechanism.sketch)
-    for name in LOADS:
+    for name in (*LOADS, OUTLINES):
         out[name] = [_load(mechanism, item) for item in mechanism.items if getattr(item, "table", "") == name]
     out["modes"] = [_table(item, doc.MODE) for item in mechanism.modes]
     out["expected"] = [_expected(mechanism, item) for item in mechanism.expectations]
@@ -56,7 +57,7 @@ def _head(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _load(mechanism: Mechanism, item: Any) -> dict[str, Any]:
-    """Return a mass or a load; its name where it has one of its own."""
+    """Return a mass, a load or an outline; its name where it has one of its own."""
     amounts = load_table(mechanism, item)
     angle = any(key.kind == "coordinate" for key in item.keys) and bool(doc.name_is_angle(mechanism, item.pair))
     out = {**_table(item, tuple(key for key in item.keys if key.name not in amounts), angle), **amounts}
@@ -188,7 +189,9 @@ WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "length": lambda value, _: exact_numbers.plain(value),
     "angle": lambda value, _: exact_numbers.degrees(value),
     "point": lambda value, _: exact_numbers.point(value),
-    "spot": lambda value, _: value if isinstance(value, str) else exact_numbers.point(value),
+    "spot": lambda value, _: exact_numbers.spot(value),
+    "spots": lambda value, _: [exact_numbers.spot(one) for one in value],
+    "layers": lambda value, _: value[0] if len(value) == 1 else list(value),
     "units": lambda value, _: {"length": value.length, "mass": value.mass, "force": value.force},
     "whole": lambda value, _: int(value),
     "span": lambda value, _: exact_numbers.plain(value),

@@ -17,6 +17,7 @@ from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.limits import CLIPPED, LimitRule
 from compoundkin.kinematics.passed_ends import BEFORE, GuideEnds
 from compoundkin.model.load_problems import load_designs
+from compoundkin.model.outlines.outline_problems import outline_designs
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.optional_answers import as_turn_counting, held_scales
@@ -54,11 +55,11 @@ class SolvingOrder(PrintsShort):
 
     @cached_property
     def dimension_arrays(self) -> tuple[tuple[str, Number], ...]:
-        """The dimensions and loads that are arrays, with their places; a mechanism's never change."""
+        """What of dimensions, loads and outlines are arrays, with their places."""
         named = [(name, v) for name, ends in self.ends.items() for end in ends for v in end if v is not None]
         points = self.structure.mechanism.geometry.points
         named += [(f"links.{name}.points.{k}", v) for name, placed in points.items() for k, v in placed.items()]
-        named += load_designs(self.structure.mechanism)
+        named += [*load_designs(self.structure.mechanism), *outline_designs(self.structure.mechanism)]
         return tuple((where, value) for where, value in named if isinstance(value, np.ndarray))
 
     @cached_property

@@ -23,6 +23,7 @@ from compoundkin.model.loads import Load as Load
 from compoundkin.model.loads import LoadWord as LoadWord
 from compoundkin.model.loads import Mass as Mass
 from compoundkin.model.loads import Pretension as Pretension
+from compoundkin.model.outlines import LinkOutline as LinkOutline
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder
 
@@ -78,7 +79,7 @@ class Expectation:
     at: tuple[tuple[str, float], ...] = ()
 
 
-Item: TypeAlias = Link | Pair | Cylinder | Drive | Lead | Mode | Drawn | Expectation | LoadWord
+Item: TypeAlias = Link | Pair | Cylinder | Drive | Lead | Mode | Drawn | Expectation | LoadWord | LinkOutline
 
 
 @checked

@@ -33,6 +33,8 @@ from compoundkin.base.errors import Problem, nearest
 #   law      table with a kind, and the keys of that law  law
 #   units    table of the units of length, mass, force   the same
 #   spot     name of a point, or a point in the link's frame   str, complex or array
+#   spots    list of such                                 tuple of str, complex or array
+#   layers   whole number, or a list of them              tuple of int
 #   amount   number or nested list, {over, at, values}    float, array or LoadTable
 #   planar   the same of a vector: a point, or a list of two amounts   complex, array or tuple of two
 #   number   a single number                              float
@@ -58,7 +60,7 @@ Kind = Literal[
     "name", "text", "names", "length", "angle", "point", "sign", "flag", "two", "points", "drawing",
     "values", "rate", "at", "published", "margin",
     "whole", "span", "times", "coordinate", "segments", "law",
-    "units", "spot", "amount", "planar",
+    "units", "spot", "spots", "layers", "amount", "planar",
     "number", "turn", "place", "places", "route", "path", "turned", "program", "profile", "reach", "sweep",
 ]  # fmt: skip
 

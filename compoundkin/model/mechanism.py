@@ -18,6 +18,7 @@ from compoundkin.model.elements import FRAME, Drawn, Expectation, Item, Lead, Li
 from compoundkin.model.geometry import Geometry, fitted_pose, read_off, real
 from compoundkin.model.load_problems import load_problems, load_warnings
 from compoundkin.model.number_problems import places_wanted
+from compoundkin.model.outlines.outline_problems import crossed_polygons, outline_problems
 from compoundkin.model.pairs.profile_contact import as_profiled
 from compoundkin.model.pin_pairs import NamesOfPairs
 from compoundkin.model.units import given_units
@@ -71,7 +72,8 @@ class Mechanism(Written, ShowsPicture):
         self.time: Number | None = real("time", time)
         self.items: tuple[Item, ...] = items
         problems += problems_of(self)
-        problems += load_problems(self, self.names, units is not None) or ([] if problems else self._misfits())
+        problems += load_problems(self, self.names, units is not None) + outline_problems(self, self.names)
+        problems += [] if problems else self._misfits()
         if problems:
             raise InvalidMechanism(problems, heading=f"{title!r} cannot be built")
         load_warnings(self)
@@ -80,6 +82,7 @@ class Mechanism(Written, ShowsPicture):
         """Find dimensions of pairs that do not fit, where nothing else is wrong and all points have places."""
         for where, pair in self.placed_pairs if not self.unplaced else ():
             yield from pair.misfits(self.geometry, where)
+        yield from crossed_polygons(self) if not self.unplaced else ()
 
     @cached_property
     def geometry(self) -> Geometry:

@@ -43,7 +43,7 @@ def _words(mechanism: Written) -> Iterator[Problem]:
             yield Problem(
                 f"items[{index}]",
                 f"{item!r} is not a word",
-                "known: link, the pairs such as slide, cylinder, drive, drawn, mode, expect, mass, the loads",
+                "known: link, the pairs such as slide, cylinder, drive, drawn, mode, expect, mass, the loads, outline",
             )
 
 

@@ -1,4 +1,4 @@
-"""What is written of masses and loads, by name."""
+"""What is written of masses, loads and outlines, by name."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from functools import cached_property
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.model.elements import Friction, Gravity, Item, Load, Mass, Pretension
+from compoundkin.model.elements import Friction, Gravity, Item, LinkOutline, Load, Mass, Pretension
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.loads.contract import WrittenNames
 from compoundkin.model.units import Units
 
 
 class WrittenLoads:
-    """The masses, the gravity and the loads of a mechanism, checked or not."""
+    """The masses, gravity, loads and outlines of a mechanism, checked or not."""
 
     items: tuple[Item, ...]
     units: Units | None
@@ -72,6 +72,11 @@ class WrittenLoads:
     def pretensions(self) -> dict[str, Pretension]:
         """The pretensions by their belts."""
         return {self._pair_meant(item.pair): item for item in self.items if isinstance(item, Pretension)}
+
+    @cached_property
+    def outlines(self) -> dict[str, LinkOutline]:
+        """The outlines by name; of a link there may be several."""
+        return {item.name: item for item in self.items if isinstance(item, LinkOutline)}
 
     def _pair_meant(self, name: str) -> str:
         """Return the name of the pair that a name means, be it that of its driver."""

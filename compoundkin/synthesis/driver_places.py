@@ -20,6 +20,7 @@ from compoundkin.model.elements import (
     Item,
     Lead,
     Link,
+    LinkOutline,
     Load,
     Mass,
     Mode,
@@ -144,7 +145,7 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
         return replace(item, name=names.get(item.name, item.name))
     if isinstance(item, Drive | Lead):
         return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
-    if isinstance(item, Mass | Load | Friction | Pretension):
+    if isinstance(item, Mass | Load | Friction | Pretension | LinkOutline):
         return item.renamed(names)
     return item if isinstance(item, Mode | Drawn | Expectation | Gravity) else renamed_pair(item, names)
 

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from compoundkin.base.convex_hull import convex_hull
 from compoundkin.model.elements import FRAME
 from compoundkin.model.pairs.symbols import Pin
 from compoundkin.view.sketch.guide_points import shown_points
@@ -80,27 +81,12 @@ def outline(points: Places) -> list[complex]:
     e = (second - first) / abs(second - first)
     if max(abs((np.conjugate(e) * (p - first)).imag) for p in found) < ON_LINE:
         return [second, first]
-    return _hull(found)
+    return convex_hull(found)
 
 
 def edges(corners: Places) -> list[tuple[complex, complex]]:
     """Return the lines between corners, all around."""
     return list(pairwise(corners)) + ([(corners[-1], corners[0])] if len(corners) > 2 else [])
-
-
-def _hull(points: Places) -> list[complex]:
-    """The convex hull. Source: A. M. Andrew, 1979."""
-    ordered = sorted(points, key=lambda p: (p.real, p.imag))
-
-    def half(run: Places) -> list[complex]:
-        chain: list[complex] = []
-        for p in run:
-            while len(chain) > 1 and (np.conjugate(chain[-1] - chain[-2]) * (p - chain[-1])).imag <= 0:
-                chain.pop()
-            chain.append(p)
-        return chain[:-1]
-
-    return half(ordered) + half(ordered[::-1])
 
 
 def pins(painter: Painter) -> Iterator[Laid]:

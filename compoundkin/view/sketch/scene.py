@@ -15,6 +15,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.inputs import fit
 from compoundkin.model.elements import FRAME
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.outlines.outline_shapes import OutlineShape, outline_shapes
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.model.pairs.guide_ends import as_ended, bounds_name
@@ -52,6 +53,7 @@ class Scene:
     shown: Motion | None = None
     pose: tuple[int, int] = (0, 0)
     known: Number = None  # the indices of the assembled poses
+    outlines: tuple[OutlineShape, ...] = ()
 
     @property
     def mechanism(self) -> Mechanism:
@@ -188,16 +190,15 @@ def scene_of_motion(motion: Motion, shown: Motion, design: int, pose: int) -> Sc
     """Return the scene of a pose of `shown`. Its guides are used as in the whole `motion`."""
     known = np.flatnonzero(motion.failed[min(design, len(motion.failed) - 1)] == 0)
     at = min(design, shown.inputs.designs - 1), pose
-    geometry = motion.mechanism.geometry
-    points = {
-        link: {k: complex(_number(p, at, shown)) for k, p in placed.items()} for link, placed in geometry.points.items()
-    }
+    placed = motion.mechanism.geometry.points.items()
+    points = {link: {k: complex(_number(p, at, shown)) for k, p in own.items()} for link, own in placed}
     ends = {
         name: tuple(End(*(_side(v, at) for v in end)) for end in sides) for name, sides in shown.inputs.ends.items()
     }
     whole = {name: _along(pose, design, known) for name, pose in motion.poses.items()}
     here = {name: pose.entry(at) for name, pose in shown.poses.items()}
-    return Scene(motion.structure, whole, here, points, ends, shown, at, known)
+    own = outline_shapes(motion.mechanism, points, motion.shape, design)
+    return Scene(motion.structure, whole, here, points, ends, shown, at, known, own)
 
 
 def _along(pose: Pose, design: int, known: Number) -> Pose:

@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.base.display import PrintsShort
 from compoundkin.base.series import Number
+from compoundkin.view.sketch.band import Band as Band
 from compoundkin.view.sketch.stroke_row import StrokeRow
 
 HATCH = 6.0  # distance of the strokes of a hatching
@@ -91,7 +92,7 @@ class ShapeGroup:
     links: tuple[str, ...] = ()
 
 
-Shape: TypeAlias = Polyline | Polygon | Strokes | CircleShape | ArcShape | Text | ShapeGroup
+Shape: TypeAlias = Polyline | Polygon | Band | Strokes | CircleShape | ArcShape | Text | ShapeGroup
 
 
 def corners(shapes: Iterable[Shape]) -> list[complex]:
@@ -106,6 +107,8 @@ def corners(shapes: Iterable[Shape]) -> list[complex]:
             found += shape.points
         elif isinstance(shape, Strokes):
             found += [point for line in shape.lines for point in line]
+        elif isinstance(shape, Band):
+            found += shape.corners
         elif isinstance(shape, CircleShape):
             reach = shape.radius * (1 + 1j)
             found += [shape.centre - reach, shape.centre + reach]
@@ -151,6 +154,8 @@ def _moved(shape: Shape, by: complex, turn: complex) -> Shape:
     if isinstance(shape, Polyline | Polygon):
         points, among = (tuple(p * turn + by for p in places) for places in (shape.points, shape.among))
         return replace(shape, points=points, among=among)
+    if isinstance(shape, Band):
+        return shape.moved(by, turn)
     if isinstance(shape, Strokes):
         lines = tuple(tuple(p * turn + by for p in line) for line in shape.lines)
         return replace(shape, lines=lines, row=None if shape.row is None else shape.row.moved(by, turn))

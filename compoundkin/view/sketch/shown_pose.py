@@ -28,6 +28,7 @@ from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.one_design import alone, motion_of_design
 from compoundkin.model.attributes import RATES, after_number
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.outlines.outline_shapes import outline_shapes
 from compoundkin.structure import Structure, decompose
 from compoundkin.view.sketch.scene import Scene, scene_of_motion
 
@@ -99,7 +100,7 @@ def scene_as_drawn(structure: Structure) -> Scene:
             raise InvalidInput(Problem(f"links.{name}", what, "draw its points with drawn(...)"))
     points = {link: {k: complex(first_entry(p)) for k, p in placed.items()} for link, placed in geometry.points.items()}
     ends = {pair.name: tuple(End(*map(_first_side, end)) for end in pair.ends(geometry)) for pair in structure.pairs}
-    return Scene(structure, here, here, points, ends)
+    return Scene(structure, here, here, points, ends, outlines=outline_shapes(structure.mechanism, points))
 
 
 def solved_over(what: Mechanism | Structure) -> Motion | None:

@@ -8,7 +8,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from compoundkin.model.attributes import ACCELERATION, VELOCITY
-from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text
+from compoundkin.view.sketch.shapes import (
+    ArcShape,
+    Band,
+    CircleShape,
+    Polygon,
+    Polyline,
+    Shape,
+    ShapeGroup,
+    Strokes,
+    Text,
+)
 
 # Sizes that shapes are made with, in picture units.
 PIN = 4.5
@@ -46,7 +56,8 @@ OF_FORCES: Mapping[str, tuple[str, str]] = {
     INERTIA: ("#7a4fa3", "#c9a6ee"),
 }
 
-_LINE = "fill:none;stroke-linecap:round;stroke-linejoin:round"
+_ROUND = "stroke-linecap:round;stroke-linejoin:round"
+_LINE = f"fill:none;{_ROUND}"
 
 # What each class looks like: its rules, `{}` standing for its colour.
 CLASSES: Mapping[str, tuple[str, tuple[str, str]]] = {
@@ -92,7 +103,14 @@ GROUPED: Mapping[str, str] = {
     "dashed": f"{_LINE};stroke:{{}};stroke-width:1.2;stroke-dasharray:5 4",
     "track": f"{_LINE};stroke:{{}};stroke-width:12",
     "ring": "stroke:{}",
+    # outlines: what is wide has its width as an attribute, which rules of a class would take away
+    "contour": f"fill:{{edge}};stroke:{{edge}};{_ROUND}",
+    "contour-bar": f"fill:none;stroke:{{edge}};{_ROUND}",
+    "area": f"fill:{{pale}};stroke:{{pale}};{_ROUND}",
+    "area-bar": f"fill:none;stroke:{{pale}};{_ROUND}",
 }
+# How much of its group's colour an outline has, within and along its edge; the rest is paper.
+MIXED: Mapping[str, float] = {"pale": 0.16, "edge": 0.6}
 
 
 def style_of(kind: str, group: int | None = None) -> str:
@@ -136,7 +154,20 @@ def _rule(name: str, paper: int) -> str:
         rules, colour = CLASSES[name]
         return f".ck-{name}{{{rules.replace('{}', colour[paper])}}}"
     kind, number = name.rstrip("0123456789"), int(name[len(name.rstrip("0123456789")) :])
-    return f".ck-{name}{{{GROUPED[kind].replace('{}', COLOURS[number][paper])}}}"
+    rules = GROUPED[kind].replace("{}", COLOURS[number][paper])
+    for word, part in MIXED.items():
+        rules = rules.replace(f"{{{word}}}", mixed(COLOURS[number][paper], PAPER[paper], part))
+    return f".ck-{name}{{{rules}}}"
+
+
+def mixed(colour: str, other: str, part: float) -> str:
+    """Return a part of a colour mixed with another one.
+
+    >>> mixed("#000000", "#ffffff", 0.25)
+    '#bfbfbf'
+    """
+    two = zip(bytes.fromhex(colour[1:]), bytes.fromhex(other[1:]), strict=True)
+    return "#" + "".join(f"{round(part * one + (1.0 - part) * rest):02x}" for one, rest in two)
 
 
 def _styles(shapes: Iterable[Shape]) -> Iterable[str]:
@@ -144,5 +175,5 @@ def _styles(shapes: Iterable[Shape]) -> Iterable[str]:
         if isinstance(shape, ShapeGroup):
             yield shape.style
             yield from _styles(shape.shapes)
-        elif isinstance(shape, Polyline | Polygon | Strokes | CircleShape | ArcShape | Text):
+        elif isinstance(shape, Polyline | Polygon | Band | Strokes | CircleShape | ArcShape | Text):
             yield shape.style

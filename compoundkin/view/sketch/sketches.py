@@ -15,6 +15,7 @@ from compoundkin.model.pairs.symbols import Groove, Outline, Sliding, Strap, Tra
 from compoundkin.view.sketch.centre_pictures import centre_labels, centre_places, centre_shapes, shown_centres
 from compoundkin.view.sketch.driver_shapes import drives
 from compoundkin.view.sketch.label_places import placed
+from compoundkin.view.sketch.link_contours import contours
 from compoundkin.view.sketch.link_shapes import body, edges, pins, skeleton
 from compoundkin.view.sketch.picture import MARGIN, Picture, Window, checked_size, fitted, smooth, thinned, window_of
 from compoundkin.view.sketch.scene import Scene
@@ -96,13 +97,13 @@ def layered(painter: Painter, *, grounded: bool = True) -> list[Shape]:
 
 def in_layers(painter: Painter, *, grounded: bool = True) -> list[Laid]:
     """Return the same as `layered`, each shape with the link that it moves with."""
-    laid: list[Laid] = [*marks(painter)]
+    laid: list[Laid] = [*contours(painter), *marks(painter)]
     for name in filter(painter.shows, painter.scene.mechanism.links):
         shapes = body(painter.scene, painter.window, name)
         laid += [Laid(Layer.PLATE if isinstance(shape, Polygon) else Layer.BAR, shape, name) for shape in shapes]
     laid += [*pins(painter), *drives(painter)] if grounded else []
     ordered = sorted(laid, key=lambda one: one.layer)  # which keeps the order within a layer
-    return [one for one in ordered if grounded or one.layer not in (Layer.BACK, Layer.FRAME)]
+    return [one for one in ordered if grounded or one.layer > Layer.FRAME]
 
 
 def by_links(laid: Iterable[Laid]) -> list[Shape]:

@@ -28,6 +28,7 @@ STOP = 2.0
 class Layer(IntEnum):
     """What is drawn first is behind."""
 
+    OUTLINE = -1
     BACK = 0
     FRAME = 1
     WHEEL = 2

@@ -10,7 +10,17 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.series import Number
-from compoundkin.view.sketch.shapes import ArcShape, CircleShape, Polygon, Polyline, Shape, ShapeGroup, Strokes, Text
+from compoundkin.view.sketch.shapes import (
+    ArcShape,
+    Band,
+    CircleShape,
+    Polygon,
+    Polyline,
+    Shape,
+    ShapeGroup,
+    Strokes,
+    Text,
+)
 from compoundkin.view.sketch.sketch_style import PAPER, css
 
 FONT = "font-family:Helvetica,Arial,sans-serif"
@@ -104,7 +114,7 @@ def elements(shapes: Iterable[Shape], *, tagged: bool = False) -> Iterator[str]:
             yield _element(shape)
 
 
-def _element(shape: Polyline | Polygon | Strokes | CircleShape | ArcShape | Text) -> str:
+def _element(shape: Polyline | Polygon | Band | Strokes | CircleShape | ArcShape | Text) -> str:
     style = _class(shape.style)
     if isinstance(shape, Text):
         x, y = number(shape.at.real), number(shape.at.imag)
@@ -119,6 +129,9 @@ def _element(shape: Polyline | Polygon | Strokes | CircleShape | ArcShape | Text
         return f'<path{style} d="{way}"/>'
     if isinstance(shape, Strokes):
         return f'<path{style} d="{"".join(_way(line) for line in shape.lines)}"/>'
+    if isinstance(shape, Band):
+        way = f'd="{_way(shape.points)}{"Z" if shape.closed else ""}"'
+        return f'<path{style} stroke-width="{number(shape.width)}" {way}/>'
     return f'<path{style} d="{_way(shape.points)}{"Z" if isinstance(shape, Polygon) else ""}"/>'
 
 

@@ -1,0 +1,102 @@
+"""Outlines of one design as shapes in their links' frames: a place, a line, a polygon, and all within a radius."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from compoundkin.base.convex_hull import convex_hull
+from compoundkin.base.display import PrintsShort
+from compoundkin.model.design_numbers import number_of_design
+from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.outlines.link_outline import LinkOutline
+
+Points: TypeAlias = Mapping[str, Mapping[str, complex]]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OutlineShape(PrintsShort):
+    """All places nearer than `radius` to a core, in the frame of a link.
+
+    The core is one place, the line through several, or, where it is `closed`, the polygon with these corners. The
+    `body` it belongs to is the link, or "pin B"; `links` are the link that carries it and, of a pin, those it joins.
+    """
+
+    body: str
+    links: tuple[str, ...]
+    core: tuple[complex, ...]
+    closed: bool
+    radius: float
+    layers: tuple[int, ...]
+
+    @property
+    def link(self) -> str:
+        """The link that it moves with."""
+        return self.links[0]
+
+    @property
+    def is_pin(self) -> bool:
+        """Whether it is a pin, which belongs to all links that it joins."""
+        return len(self.links) > 1
+
+
+def outline_shapes(
+    mechanism: Mechanism, points: Points, shape: tuple[int, ...] = (1,), design: int = 0
+) -> tuple[OutlineShape, ...]:
+    """Return all outlines of one design of a mechanism, in the order written. The shape is that of its motion.
+
+    `points` are those of all links, numbers.
+
+    >>> from compoundkin.model.elements import drive, link
+    >>> from compoundkin.model.outlines import outline
+    >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=9), drive("crank"), outline("crank", 2))
+    >>> found = outline_shapes(crank, crank.geometry.points)[0]
+    >>> found.core, found.radius
+    ((0j, (9+0j)), 1.0)
+    """
+    found: list[OutlineShape] = []
+    for item in mechanism.outlines.values():
+        found += _shapes(item, points[item.link], (shape, design))
+        found += _pins(mechanism, item, points[item.link], (shape, design))
+    return tuple(found)
+
+
+def _shapes(
+    item: LinkOutline, points: Mapping[str, complex], of: tuple[tuple[int, ...], int]
+) -> Iterator[OutlineShape]:
+    """Yield the bar or plate, the disc and the polygon of an outline."""
+
+    def shape(core: tuple[complex, ...], closed: bool, radius: float) -> OutlineShape:
+        return OutlineShape(item.link, (item.link,), core, closed, radius, item.layer)
+
+    if item.width is not None:
+        own = _places(item.through, points, of)
+        hull = own or tuple(convex_hull(points.values()))
+        yield shape(hull, not own and len(hull) > 2, number_of_design(item.width, *of) / 2.0)
+    if item.radius is not None:
+        yield shape(_places((item.at,), points, of), False, number_of_design(item.radius, *of))
+    if item.polygon:
+        yield shape(_places(item.polygon, points, of), True, 0.0)
+
+
+def _places(
+    spots: tuple[Any, ...], points: Mapping[str, complex], of: tuple[tuple[int, ...], int]
+) -> tuple[complex, ...]:
+    return tuple(points[one] if isinstance(one, str) else complex(number_of_design(one, *of)) for one in spots)
+
+
+def _pins(
+    mechanism: Mechanism, item: LinkOutline, points: Mapping[str, complex], of: tuple[tuple[int, ...], int]
+) -> Iterator[OutlineShape]:
+    """Yield the pins of an outline, each on the layers of all links that it joins, and those between."""
+    own = [letter for letter in points if letter in mechanism.real_pins]
+    for letter in () if item.pin is None else own if item.at is None else (item.at,):
+        used = (pair.members for pair in mechanism.real_pairs if letter in pair.letters)
+        joined = dict.fromkeys([item.link, *mechanism.carriers[letter], *(name for two in used for name in two)])
+        links = tuple(name for name in joined if name not in mechanism.led_links)
+        layers = [one for other in mechanism.outlines.values() if other.link in links for one in other.layer]
+        spanned = tuple(range(min(layers), max(layers) + 1))
+        yield OutlineShape(
+            f"pin {letter}", links, (points[letter],), False, number_of_design(item.pin, *of) / 2.0, spanned
+        )
