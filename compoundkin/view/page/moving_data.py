@@ -17,6 +17,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
 from compoundkin.model.attributes import ANGULAR_ACCELERATION, ANGULAR_VELOCITY, unit_of
 from compoundkin.view.page.force_data import force_data
+from compoundkin.view.page.live.handle_data import handled
 from compoundkin.view.page.live.live_data import live_data
 from compoundkin.view.page.markup import brief, exact, shown_parts
 from compoundkin.view.report.shown_poses import Sample
@@ -85,6 +86,7 @@ class MotionData:
         """All of it for a script, in the user's length unit, radians and seconds."""
         window, mechanism = self.sketch.window, self.motion.mechanism
         column, places = self.sample.places
+        live = live_data(self.sample, self.chosen, self.links, self.outputs)
         return {
             "title": mechanism.title,
             "unit": unit_of(mechanism.unit, "length"),
@@ -110,7 +112,7 @@ class MotionData:
             "parts": self._parts,
             **self._overlays(),
             "outputs": [self._quantity(self.sample.quantity(name), brief) for name in self.outputs],
-            "live": live_data(self.sample, self.chosen, self.links, self.outputs),
+            "live": handled(live, self.sketch.scene, self.links),
         }
 
     @cached_property

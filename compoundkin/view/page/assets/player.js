@@ -56,6 +56,12 @@
     for (let k = 0; k < values.length; k++) values[k] = Math.abs(values[k]) <= floor ? 0 : values[k] * by + 0;
   };
 
+  // a point of a link, in its own frame (px, py), at a pose
+  const pointAt = (link, px, py, k) => {
+    const c = Math.cos(link.angle[k]), s = Math.sin(link.angle[k]);
+    return [link.x[k] + c * px - s * py, link.y[k] + s * px + c * py];
+  };
+
   class Player {
     constructor(root, data) {
       this.root = root;
@@ -71,6 +77,7 @@
         ...link, x: open(link.x), y: open(link.y), angle: open(link.angle),
         v: link.v && link.v.map(open), a: link.a && link.a.map(open),
       }));
+      this.upright = this.links.map(({ angle }) => angle[data.start]);
       const quantity = (one) => ({
         ...one, parts: Object.fromEntries(Object.entries(one.parts).map(([name, text]) => [name, open(text)])),
       });
@@ -199,9 +206,7 @@
       return this.at(point.link, point.x, point.y, k);
     }
     at(index, px, py, k) {
-      const link = this.links[index];
-      const c = Math.cos(link.angle[k]), s = Math.sin(link.angle[k]);
-      return [link.x[k] + c * px - s * py, link.y[k] + s * px + c * py];
+      return pointAt(this.links[index], px, py, k);
     }
     // the velocity (order 1) or acceleration (order 2) of a point: of the link's origin, and of its turning
     rate(letter, order, k = this.pose) {
@@ -263,18 +268,20 @@
     }
     move(k) {
       this.parts.forEach((part, index) => {
-        const [link, px, py, turns] = this.data.parts[index];
         const name = this.letters > 1 && this.names[index];
-        const [x, y] = name ? this.within(this.paper(this.at(link, px, py, k)), name) : this.paper(this.at(link, px, py, k));
-        const angle = this.links[link].angle;
-        // y points downward on paper: what turns counterclockwise has a negative angle there
-        const turned = turns ? ` rotate(${-(angle[k] - angle[this.data.start]) * DEGREE})` : "";
-        const enlarged = name ? ` scale(${this.letters})` : "";
-        const placed = `translate(${x} ${y})${turned}${enlarged}`;
+        const placed = this.placement(this.links, this.data.parts[index], k, name);
         // the frame's parts stay where they are
         if (placed !== this.placed[index]) part.setAttribute("transform", placed);
         this.placed[index] = placed;
       });
+    }
+
+    // where a part is at a pose of some links; shapes that turn are drawn as at the first pose of the page
+    placement(links, [link, px, py, turns], k, name = null) {
+      const at = this.paper(pointAt(links[link], px, py, k)), [x, y] = name ? this.within(at, name) : at;
+      // y points downward on paper: what turns counterclockwise has a negative angle there
+      const turned = turns ? ` rotate(${-(links[link].angle[k] - this.upright[link]) * DEGREE})` : "";
+      return `translate(${x} ${y})${turned}${name ? ` scale(${this.letters})` : ""}`;
     }
 
     // the box of a name as seen from the point it belongs to: its middle, half its width and height
@@ -298,6 +305,13 @@
       this.trace();
       this.overlay();
     }
+    get isChanged() {
+      return Boolean(this.design && this.design.isChanged);
+    }
+    // forces are those of the dimensions that the page came with
+    get showsForces() {
+      return Boolean(this.forces && this.shown.has("forces") && !this.isChanged);
+    }
     // vectors get the room that their tips take at any pose, and their scales a place below
     makeRoom() {
       const { width, height } = this.data.window;
@@ -316,8 +330,8 @@
           }
         }
       }
-      const told = kinds.length + (this.shown.has("forces") && this.forces ? 1 + Object.keys(this.data.forces.kinds).length : 0);
-      if (this.shown.has("forces") && this.forces) {
+      const told = kinds.length + (this.showsForces ? 1 + Object.keys(this.data.forces.kinds).length : 0);
+      if (this.showsForces) {
         for (const one of this.forces) {
           for (let k = 0; k < this.poses; k++) {
             const [x, y] = this.paper(this.acts(one, k)), [dx, dy] = one.force.map((c) => c[k] * this.data.forces.scale);
@@ -340,7 +354,7 @@
         if (known && this.shown.has(kind)) this.vectors(kind, order, this.layers[layer]);
       }
       this.layers.forces.replaceChildren();
-      if (known && this.forces && this.shown.has("forces")) this.acting(this.layers.forces);
+      if (known && this.showsForces) this.acting(this.layers.forces);
       this.layers.dots.replaceChildren();
       this.layers.rays.replaceChildren();
       if (known && this.shown.has("centres")) this.centred();
@@ -392,7 +406,7 @@
     centred() {
       const { width, height } = this.data.window;
       const places = this.centres.map((centre) => {
-        const [x, y, w] = centre.at.map((values) => values[this.pose]);
+        const [x, y, w] = this.isChanged ? this.pole(centre) : centre.at.map((values) => values[this.pose]);
         if (!Number.isFinite(x + y + w)) return null;
         const [px, py] = this.paper([x / w, y / w]);
         const near = Math.abs(px) < FAR && Math.abs(py) < FAR;
@@ -420,6 +434,13 @@
       }
       const gone = this.centres.filter((_, k) => places[k] && places[k].far).map(({ name }) => name);
       if (gone.length) this.text(`at infinity: ${gone.join(", ")}`, 12, 12, "ck-note", "start", this.layers.dots);
+    }
+    // the centre of a changed mechanism, one that does not depend on how quick the drivers are
+    pole({ links, at }) {
+      if (!at.some((values) => values.some(Number.isFinite))) return [NaN, NaN, NaN];
+      const [i, j] = links.map((name) => this.data.links.findIndex((link) => link.name === name));
+      const { width, scale } = this.data.window;
+      return page.pole(this.links, i, j, this.pose, width / scale);
     }
     // where the letters and numbers are: boxes by their middle and half their size
     taken() {
@@ -510,7 +531,7 @@
     }
   }
 
-  Object.assign(page, { Player, written, withUnit, raised, unpacked, players: [] });
+  Object.assign(page, { Player, written, withUnit, raised, unpacked, drawn: make, players: [] });
   for (const root of document.querySelectorAll(".player")) {
     const data = JSON.parse(document.getElementById("ck-motion").textContent);
     page.players.push(new Player(root, data));

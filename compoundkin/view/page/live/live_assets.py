@@ -7,7 +7,19 @@ from typing import Any
 
 PLAYER_SCRIPT, PLAYER_STYLE = "player.js", "player.css"
 # In this order: each uses those before it.
-SCRIPTS = ("live/machine.js", "live/path.js", "live/design.js")
+SCRIPTS = (
+    "live/machine.js",
+    "live/path.js",
+    "live/design.js",
+    "live/poles.js",
+    "live/snapping.js",
+    "live/handles.js",
+    "live/readout.js",
+    "live/free_pose.js",
+    "live/drag.js",
+    "live/ghost.js",
+    "live/history.js",
+)
 STYLES = ("live/live.css",)
 
 
