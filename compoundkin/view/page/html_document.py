@@ -42,12 +42,16 @@ THEMES = {"auto": "Auto", "light": "Light", "dark": "Dark"}
 
 @cache
 def asset(name: str) -> str:
-    """Return the text of a file.
+    """Return the text of a file. Of our own without indents and lines of comment, a sixth of it.
 
-    >>> "sortable" in asset("vendor/sortable.min.js")
-    True
+    >>> "sortable" in asset("vendor/sortable.min.js"), "//" in asset("theme.js")
+    (True, False)
     """
-    return (ASSETS / name).read_text(encoding="utf-8").strip()
+    text = (ASSETS / name).read_text(encoding="utf-8").strip()
+    if name.startswith("vendor/"):
+        return text
+    kept = (line.strip() for line in text.splitlines())
+    return "\n".join(line for line in kept if line and not line.startswith("//"))
 
 
 def vendored(name: str, licence: str, gives: str = "") -> str:

@@ -86,7 +86,6 @@ class MotionData:
         """All of it for a script, in the user's length unit, radians and seconds."""
         window, mechanism = self.sketch.window, self.motion.mechanism
         column, places = self.sample.places
-        live = live_data(self.sample, self.chosen, self.links, self.outputs)
         return {
             "title": mechanism.title,
             "unit": unit_of(mechanism.unit, "length"),
@@ -112,8 +111,13 @@ class MotionData:
             "parts": self._parts,
             **self._overlays(),
             "outputs": [self._quantity(self.sample.quantity(name), brief) for name in self.outputs],
-            "live": handled(live, self.sketch.scene, self.links),
+            "live": self._live,
         }
+
+    @property
+    def _live(self) -> dict[str, Any] | None:
+        live = live_data(self.sample, self.chosen, self.links, self.outputs)
+        return handled(live, self.sketch.scene, self.links)
 
     @cached_property
     def forces(self) -> Forces | None:
